@@ -1,0 +1,128 @@
+"""Who is joined to whom: marker names, segments, left-right pairs and groups."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+Segment = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """The markers of a body and how they belong together.
+
+    Parameters
+    ----------
+    markers : tuple of str
+        Marker names, in the order in which arrays hold them.
+    segments : tuple of pairs of str
+        Markers joined by a link of the stick figure.
+    pairs : tuple of pairs of str
+        Left markers with their right counterparts.
+    groups : mapping of str to tuple of str
+        Parts of the body, such as ``"arms"``.
+
+    Raises
+    ------
+    ValueError
+        If a name comes twice, or a segment, pair or group names no marker.
+
+    Examples
+    --------
+    >>> leg = Skeleton(("hip", "knee", "ankle"), (("hip", "knee"), ("knee", "ankle")))
+    >>> leg.index("ankle")
+    2
+
+    """
+
+    markers: tuple[str, ...]
+    segments: tuple[Segment, ...] = ()
+    pairs: tuple[Segment, ...] = ()
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        known = set(self.markers)
+        if len(known) < len(self.markers):
+            raise ValueError(f"Marker names must differ from each other; got {self.markers}.")
+        named = [name for link in (*self.segments, *self.pairs) for name in link]
+        named += [name for members in self.groups.values() for name in members]
+        if unknown := sorted(set(named) - known):
+            raise ValueError(f"The skeleton joins {unknown}, which are not among its markers.")
+
+    def index(self, marker: str) -> int:
+        """Return the place of a marker in arrays."""
+        return self.markers.index(marker)
+
+    def mirror(self) -> tuple[int, ...]:
+        """Return, for each marker, the place of its left-right counterpart.
+
+        Examples
+        --------
+        >>> Skeleton(("nose", "left_eye", "right_eye"), pairs=(("left_eye", "right_eye"),)).mirror()
+        (0, 2, 1)
+
+        """
+        partner = dict(self.pairs) | {right: left for left, right in self.pairs}
+        return tuple(self.index(partner.get(name, name)) for name in self.markers)
+
+    def restricted_to(self, markers: Iterable[str]) -> Skeleton:
+        """Return the part of the skeleton that these markers span, in their order.
+
+        Markers that the skeleton does not know stay, joined to nothing.
+
+        Examples
+        --------
+        >>> JOINTS.restricted_to(["left_knee", "left_ankle", "toe"]).segments
+        (('left_knee', 'left_ankle'),)
+
+        """
+        kept = tuple(markers)
+
+        def among(links: tuple[Segment, ...]) -> tuple[Segment, ...]:
+            return tuple(link for link in links if set(link) <= set(kept))
+
+        groups = {
+            name: tuple(m for m in members if m in kept) for name, members in self.groups.items()
+        }
+        return Skeleton(kept, among(self.segments), among(self.pairs), groups)
+
+
+def _both_sides(*parts: str) -> tuple[str, ...]:
+    return tuple(f"{side}_{part}" for side in ("left", "right") for part in parts)
+
+
+JOINTS = Skeleton(
+    markers=(
+        "head",
+        "sternum",
+        *("left_shoulder", "left_elbow", "left_wrist"),
+        *("right_shoulder", "right_elbow", "right_wrist"),
+        "pelvis",
+        *("left_hip", "left_knee", "left_ankle"),
+        *("right_hip", "right_knee", "right_ankle"),
+    ),
+    segments=(
+        ("head", "sternum"),
+        ("sternum", "pelvis"),
+        *(("sternum", shoulder) for shoulder in _both_sides("shoulder")),
+        *((f"{side}_shoulder", f"{side}_elbow") for side in ("left", "right")),
+        *((f"{side}_elbow", f"{side}_wrist") for side in ("left", "right")),
+        *(("pelvis", hip) for hip in _both_sides("hip")),
+        *((f"{side}_hip", f"{side}_knee") for side in ("left", "right")),
+        *((f"{side}_knee", f"{side}_ankle") for side in ("left", "right")),
+    ),
+    pairs=tuple(
+        (f"left_{part}", f"right_{part}")
+        for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
+    ),
+    groups={
+        "head": ("head",),
+        "trunk": ("sternum", "pelvis"),
+        "arms": _both_sides("shoulder", "elbow", "wrist"),
+        "legs": _both_sides("hip", "knee", "ankle"),
+        "upper_body": ("head", "sternum", *_both_sides("shoulder", "elbow", "wrist")),
+        "lower_body": ("pelvis", *_both_sides("hip", "knee", "ankle")),
+    },
+)
+"""The 15 joints of Troje (2002, fig. 1), J3 and J4, in the project's order."""

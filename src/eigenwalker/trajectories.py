@@ -1,0 +1,204 @@
+"""Marker positions over time: a labelled array, and what makes one.
+
+Trajectories are a plain `xarray.DataArray` with dims ``(time, marker, axis)`` in millimetres and
+seconds; x points forward, y to the walker's left, z up. Missing samples are NaN.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+DIMS = ("time", "marker", "axis")
+AXES = ("x", "y", "z")
+MILLIMETRES = {
+    "um": 1e-3,
+    "mm": 1.0,
+    "cm": 10.0,
+    "dm": 100.0,
+    "m": 1000.0,
+    "in": 25.4,
+    "ft": 304.8,
+}
+"""How many millimetres each unit that a capture may come in has."""
+
+
+def label_trajectories(
+    values: ArrayLike,
+    *,
+    markers: Sequence[str],
+    rate_hz: float,
+    unit: str = "mm",
+    start_s: float = 0.0,
+) -> xr.DataArray:
+    """Return marker positions as trajectories.
+
+    Parameters
+    ----------
+    values : array of shape (time, marker, axis)
+        Positions in `unit`; the axes are x (forward), y (left), z (up). NaN marks a missing sample.
+    markers : sequence of str
+        One name a marker.
+    rate_hz : float
+        Frames a second.
+    unit : {"um", "mm", "cm", "dm", "m", "in", "ft"}
+        Unit of `values`.
+    start_s : float
+        Time of the first frame in seconds.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        Positions in millimetres.
+
+    Raises
+    ------
+    ValueError
+        If shapes and names do not fit, a value is infinite, or rate or unit make no sense.
+
+    Examples
+    --------
+    >>> walk = label_trajectories(np.zeros((3, 1, 3)), markers=["head"], rate_hz=100)
+    >>> walk.time.values.tolist()
+    [0.0, 0.01, 0.02]
+    >>> walk.attrs["units"]
+    'mm'
+
+    """
+    if not np.isfinite(rate_hz) or rate_hz <= 0:
+        raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")
+    if unit not in MILLIMETRES:
+        raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
+    values = np.asarray(values, dtype=float) * MILLIMETRES[unit]
+    time = start_s + np.arange(len(values) if values.ndim else 0) / rate_hz
+    return trajectories_at(time, values, markers)
+
+
+def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) -> xr.DataArray:
+    """Return positions in millimetres, sampled at the given times, as trajectories.
+
+    Parameters
+    ----------
+    time : array of shape (time,)
+        Seconds, of any spacing.
+    values : array of shape (time, marker, axis)
+        Positions in millimetres.
+    markers : sequence of str
+        One name a marker.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+
+    Examples
+    --------
+    >>> trajectories_at([0.0, 0.5], np.ones((2, 1, 3)), ["head"]).sizes["time"]
+    2
+
+    """
+    time = np.asarray(time, dtype=float)
+    values = np.asarray(values, dtype=float)
+    names = [str(marker) for marker in markers]
+    amiss = []
+    if values.shape != (len(time), len(names), 3):
+        amiss.append(
+            f"values have shape {values.shape}, where {len(time)} times and {len(names)} markers "
+            f"ask for {(len(time), len(names), 3)}, that is (time, marker, axis)"
+        )
+    if len(set(names)) < len(names):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        amiss.append(f"marker names must differ from each other, and these come twice: {twice}")
+    if not all(names):
+        amiss.append("a marker has an empty name")
+    if np.isinf(values).any():
+        amiss.append("some values are infinite; mark missing samples by NaN")
+    if not np.isfinite(time).all():
+        amiss.append("some times are not finite")
+    if amiss:
+        raise ValueError("These are no trajectories: " + "; ".join(amiss) + ".")
+    return xr.DataArray(
+        values,
+        dims=DIMS,
+        coords={"time": time, "marker": names, "axis": list(AXES)},
+        name="position",
+        attrs={"units": "mm"},
+    )
+
+
+def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.DataArray:
+    """Return `walk` if it is what this package calls trajectories, in the usual order of dims.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        What a caller handed in.
+    complete : bool
+        Whether missing samples are refused too.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is anything else, saying what and what to do.
+
+    """
+    if not isinstance(walk, xr.DataArray):
+        raise TypeError(
+            f"Expected trajectories (a DataArray with dims {DIMS}), got "
+            f"{type(walk).__name__}; make them with label_trajectories()."
+        )
+    if set(walk.dims) != set(DIMS) or not set(DIMS) <= set(walk.coords):
+        raise ValueError(
+            f"Expected trajectories with labelled dims {DIMS}, got dims {walk.dims} with "
+            f"coordinates {sorted(map(str, walk.coords))}; make them with label_trajectories()."
+        )
+    walk = walk.transpose(*DIMS)
+    if list(walk.axis.values) != list(AXES):
+        raise ValueError(f"Expected the axes {AXES}, got {walk.axis.values.tolist()}.")
+    if walk.attrs.get("units", "mm") != "mm":
+        raise ValueError(
+            f"Expected millimetres, got units={walk.attrs['units']!r}; "
+            "convert with label_trajectories(..., unit=...)."
+        )
+    if np.isinf(walk.values).any():
+        raise ValueError("Some positions are infinite; mark missing samples by NaN.")
+    if complete and (missing := np.isnan(walk.values).any(axis=(0, 2))).any():
+        raise ValueError(
+            f"Samples are missing for {walk.marker.values[missing].tolist()}; "
+            "fill them first with in_place()."
+        )
+    return walk
+
+
+def sampling_rate(walk: xr.DataArray) -> float:
+    """Return the frames a second of evenly sampled trajectories.
+
+    Examples
+    --------
+    >>> walk = label_trajectories(np.zeros((5, 1, 3)), markers=["head"], rate_hz=120)
+    >>> round(sampling_rate(walk), 6)
+    120.0
+
+    """
+    time = walk.time.values
+    if len(time) < 2:
+        raise ValueError(f"A rate needs two frames or more, got {len(time)}.")
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    if step <= 0 or np.abs(np.diff(time) - step).max() > 0.01 * step:
+        raise ValueError(
+            "The frames are not evenly spaced in time; resample them first, "
+            "for instance with trajectories.interp(time=...)."
+        )
+    return 1 / step
+
+
+def missing_markers(walk: xr.DataArray, wanted: Sequence[str]) -> list[str]:
+    """Return those of the wanted marker names that the trajectories lack."""
+    present = set(walk.marker.values.tolist())
+    return [name for name in wanted if name not in present]
