@@ -45,7 +45,7 @@ def forward_kinematics(
 
     """
     n_frames, n_joints, _ = rotations.shape
-    offsets = np.broadcast_to(offsets, (n_frames, n_joints, 3))
+    offsets = np.array(np.broadcast_to(offsets, (n_frames, n_joints, 3)))
     positions = np.empty((n_frames, n_joints, 3))
     orientations: list[Rotation] = []
     for joint, parent in enumerate(parents):

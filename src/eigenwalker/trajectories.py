@@ -195,7 +195,7 @@ def sampling_rate(walk: xr.DataArray) -> float:
             "The frames are not evenly spaced in time; resample them first, "
             "for instance with trajectories.interp(time=...)."
         )
-    return 1 / step
+    return float(1 / step)
 
 
 def missing_markers(walk: xr.DataArray, wanted: Sequence[str]) -> list[str]:
