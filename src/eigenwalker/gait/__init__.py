@@ -1,0 +1,4 @@
+"""From a capture to a steady walk in place: frequency, gaps, steady strides, heading, events."""
+
+from eigenwalker.gait.frequency import frequency_of_scores as frequency_of_scores
+from eigenwalker.gait.frequency import fundamental_frequency as fundamental_frequency
