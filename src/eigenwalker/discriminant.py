@@ -1,0 +1,294 @@
+"""What tells walkers apart: the linear discriminant ``c K = r`` (Troje 2002, eq. 10 and 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, Self, get_args
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+from sklearn.base import BaseEstimator, ClassifierMixin, RegressorMixin
+from sklearn.utils import Tags, validation
+from sklearn.utils.multiclass import check_classification_targets
+from sklearn.utils.validation import check_is_fitted
+
+Order = Literal["standardised", "raw", "variance"]
+
+_validated: Callable[..., Any] = validation.validate_data
+"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
+
+
+class _Discriminant(BaseEstimator):
+    """What a discriminant of two classes and one of a continuous trait have in common."""
+
+    n_components: int | None
+    order: Order
+
+    def _fit_traits(self, K: np.ndarray, r: np.ndarray, *, centred: bool) -> None:
+        """Solve ``c K = r`` by least squares and keep the components that contribute most."""
+        middle = K.mean(axis=0) if centred else np.zeros(K.shape[1])
+        level = r.mean() if centred else 0.0
+        c = np.linalg.lstsq(K - middle, r - level, rcond=None)[0]
+        self.order_ = order_of_components(c, K.std(axis=0, ddof=1), self.order)
+        kept = self.order_[: self._n_kept(K.shape[1])]
+        self.coef_ = np.zeros_like(c)
+        self.coef_[kept] = c[kept]
+        self.intercept_ = float(level - middle @ self.coef_)
+        self._describe_walkers(K, kept)
+
+    def _n_kept(self, n_columns: int) -> int:
+        if self.n_components is None:
+            return n_columns
+        if not 1 <= self.n_components <= n_columns:
+            raise ValueError(
+                f"n_components={self.n_components} is not among the 1 to {n_columns} that scores "
+                f"with {n_columns} columns offer."
+            )
+        return self.n_components
+
+    def _describe_walkers(self, K: np.ndarray, kept: np.ndarray) -> None:
+        projections = K @ self.coef_
+        self.spread_ = float(projections.std(ddof=1))
+        deviations = projections - projections.mean()
+        self.pattern_ = np.zeros_like(self.coef_)
+        self.pattern_[kept] = K[:, kept].T @ deviations / (len(K) - 1)
+
+    def _projections(self, X: ArrayLike) -> np.ndarray:
+        check_is_fitted(self)
+        K = _validated(self, X, dtype=np.float64, reset=False)
+        return K @ self.coef_ + self.intercept_
+
+
+class DiscriminantClassifier(ClassifierMixin, _Discriminant):
+    """Tells two classes of walkers apart by a weighted sum of their scores.
+
+    The discriminant c solves ``c K = r`` by least squares, r being -1 and +1 (Troje 2002, eq. 10).
+    Components are re-ordered by their contribution to it, the first n are kept, and a walker
+    belongs to the class that the sign of its sum tells (eq. 11). Put a `WalkerSpace` before it:
+    ``make_pipeline(WalkerSpace(), DiscriminantClassifier(n_components=4))``.
+
+    Scores of a `WalkerSpace` are orthogonal, so leaving components out equals fitting again
+    without them. On other columns c is the solution of least norm, and is cut short as it is.
+
+    Parameters
+    ----------
+    n_components : int, optional
+        Components to keep, those that contribute most first; all if not given.
+    order : {"standardised", "raw", "variance"}
+        What counts as contribution: ``|c_i| sd(k_i)``, which goes with the correlation of score
+        and class; ``|c_i|`` as it is, which favours components that hardly vary; or the variance
+        of the scores, which leaves the order of the eigenwalkers as it is.
+    fit_intercept : bool
+        Whether to fit a constant too. The paper has none; with one, leaving a walker out tilts
+        the constant towards the other class, so that chance looks worse than it is.
+
+    Attributes
+    ----------
+    classes_ : array of shape (2,)
+        The classes in sorted order: r is -1 for the first and +1 for the second.
+    positive_pole_, negative_pole_ : str
+        Names of the two ends of the discriminant.
+    coef_ : array of shape (column,)
+        The discriminant c, 0 where a component is left out.
+    intercept_ : float
+        0 unless fitted.
+    order_ : array of int of shape (column,)
+        Columns of K from the highest contribution to the lowest.
+    spread_ : float
+        Standard deviation (ddof 1) of c K over the walkers fitted on.
+    class_means_ : array of shape (2, column)
+        Mean scores of either class.
+    pattern_ : array of shape (column,)
+        cov(K) c within the components kept: what goes along with c, rather than what filters it.
+
+    Examples
+    --------
+    >>> scores = [[-2, 1], [-1, -1], [1, -1], [2, 1]]
+    >>> classifier = DiscriminantClassifier(n_components=1)
+    >>> classifier.fit(scores, ["female", "female", "male", "male"]).positive_pole_
+    'male'
+    >>> classifier.coef_.round(2).tolist(), classifier.predict([[3, 0]]).tolist()
+    ([0.6, 0.0], ['male'])
+
+    """
+
+    def __init__(
+        self,
+        n_components: int | None = None,
+        order: Order = "standardised",
+        fit_intercept: bool = False,
+    ) -> None:
+        self.n_components = n_components
+        self.order = order
+        self.fit_intercept = fit_intercept
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
+        """Find the discriminant.
+
+        Parameters
+        ----------
+        X : array of shape (walker, column)
+            Scores of a `WalkerSpace`.
+        y : array of shape (walker,)
+            Two classes, named or numbered.
+
+        Raises
+        ------
+        ValueError
+            If y has missing values or does not hold two classes, or if there are fewer columns
+            than `n_components`.
+
+        """
+        refuse_missing(y)
+        K, traits = _validated(self, X, y, dtype=np.float64, ensure_min_samples=2)
+        check_classification_targets(traits)
+        self.classes_, which = two_classes(traits)
+        self.negative_pole_, self.positive_pole_ = (str(name) for name in self.classes_)
+        self._fit_traits(K, 2.0 * which - 1, centred=self.fit_intercept)
+        self.class_means_ = np.array([K[which == 0].mean(axis=0), K[which == 1].mean(axis=0)])
+        return self
+
+    def decision_function(self, X: ArrayLike) -> np.ndarray:
+        """Return how far each walker lies towards the positive pole: the sum of eq. 11.
+
+        Times r it is the confidence z of eq. 14.
+        """
+        return self._projections(X)
+
+    def predict(self, X: ArrayLike) -> np.ndarray:
+        """Return the class of each walker (eq. 11)."""
+        positive = self.decision_function(X) > 0
+        return self.classes_[positive.astype(int)]
+
+    def __sklearn_tags__(self) -> Tags:
+        tags = super().__sklearn_tags__()
+        tags.classifier_tags.multi_class = False
+        return tags
+
+
+class DiscriminantRegressor(RegressorMixin, _Discriminant):
+    """Tells a continuous trait of walkers (age, weight, a rating) from a weighted sum of scores.
+
+    As `DiscriminantClassifier`, with r the trait about its mean (Troje 2002, WDP2002); the mean is
+    given back in the prediction.
+
+    Parameters
+    ----------
+    n_components : int, optional
+        Components to keep, those that contribute most first; all if not given.
+    order : {"standardised", "raw", "variance"}
+        What counts as contribution, as in `DiscriminantClassifier`.
+
+    Attributes
+    ----------
+    positive_pole_, negative_pole_ : str
+        "more" and "less" of the trait, with its name where y is a named pandas Series.
+    coef_, intercept_, order_, spread_, pattern_
+        As in `DiscriminantClassifier`; c is in units of the trait.
+
+    Examples
+    --------
+    >>> weight_kg = [50, 60, 70, 80]
+    >>> regressor = DiscriminantRegressor(n_components=1)
+    >>> regressor.fit([[-3, 1], [-1, -1], [1, -1], [3, 1]], weight_kg).predict([[5, 0]]).round(6)
+    array([90.])
+
+    """
+
+    def __init__(self, n_components: int | None = None, order: Order = "standardised") -> None:
+        self.n_components = n_components
+        self.order = order
+
+    def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
+        """Find the discriminant.
+
+        Parameters
+        ----------
+        X : array of shape (walker, column)
+            Scores of a `WalkerSpace`.
+        y : array of shape (walker,)
+            The trait, a number a walker.
+
+        Raises
+        ------
+        ValueError
+            If y has missing values, or if there are fewer columns than `n_components`.
+
+        """
+        refuse_missing(y)
+        trait = getattr(y, "name", None)
+        K, r = _validated(self, X, y, dtype=np.float64, ensure_min_samples=2, y_numeric=True)
+        self.positive_pole_, self.negative_pole_ = (
+            more if trait is None else f"{more} {trait}" for more in ("more", "less")
+        )
+        self._fit_traits(K, np.asarray(r, dtype=float), centred=True)
+        return self
+
+    def predict(self, X: ArrayLike) -> np.ndarray:
+        """Return the trait of each walker, in its own units."""
+        return self._projections(X)
+
+
+def order_of_components(c: np.ndarray, spread: np.ndarray, order: Order) -> np.ndarray:
+    """Return components from the highest contribution to the discriminant to the lowest (J21).
+
+    Parameters
+    ----------
+    c : array of shape (component, ...)
+        Weights of the discriminant, or of several.
+    spread : array that broadcasts against `c`
+        Standard deviations of the scores.
+    order : {"standardised", "raw", "variance"}
+        What counts as contribution, as in `DiscriminantClassifier`.
+
+    Returns
+    -------
+    array of int of the shape of `c`
+        Contributions within 1e-12 of the highest are ties, and stay in the order they came in.
+
+    """
+    if order not in get_args(Order):
+        raise ValueError(f"order={order!r} is unknown; choose from {', '.join(get_args(Order))}.")
+    contribution = {
+        "standardised": np.abs(c) * spread,
+        "raw": np.abs(c),
+        "variance": np.broadcast_to(spread, c.shape),
+    }[order]
+    highest = contribution.max(axis=0, initial=np.finfo(float).tiny)
+    return np.argsort(-np.round(contribution / highest, 12), axis=0, kind="stable")
+
+
+def two_classes(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the two classes in sorted order, and 0 or 1 for each walker: 1 is the positive pole.
+
+    Raises
+    ------
+    ValueError
+        If there are not two.
+
+    """
+    classes, which = np.unique(y, return_inverse=True)
+    if len(classes) > 2:
+        named = ", ".join(str(name) for name in classes[:5]) + (", ..." if len(classes) > 5 else "")
+        raise ValueError(
+            f"Only binary classification is supported. The trait has {len(classes)} classes "
+            f"({named}): choose two, or use DiscriminantRegressor if it is a number."
+        )
+    if len(classes) < 2:
+        raise ValueError(
+            f"A discriminant needs walkers of two classes; all {len(y)} here are "
+            f"of the class {classes[0]}."
+        )
+    return classes, which
+
+
+def refuse_missing(y: ArrayLike) -> None:
+    """Raise a ValueError that says which walkers lack the trait."""
+    missing = np.flatnonzero(pd.isna(np.asarray(y, dtype=object)).reshape(-1))
+    if y is not None and missing.size:
+        rows = ", ".join(str(row) for row in missing[:10]) + (", ..." if missing.size > 10 else "")
+        raise ValueError(
+            f"{missing.size} of {np.size(np.asarray(y, dtype=object))} walkers have no value of "
+            f"the trait (rows {rows}); leave them out of X and y."
+        )

@@ -1,0 +1,220 @@
+"""What varies between walkers: standardised principal components (Troje 2002, eq. 4 to 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
+from sklearn.utils import validation
+from sklearn.utils.validation import check_is_fitted
+
+Scale = str | None | ArrayLike
+
+_validated: Callable[..., Any] = validation.validate_data
+"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
+
+
+class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):
+    """The space that walkers span: an average walker and eigenwalkers to add to it.
+
+    Walkers are standardised, since their features are millimetres, hertz and radians, and then
+    decomposed: ``W = W_0 + V K`` with ``V = diag(u) V'`` and V' the unit eigenvectors of the
+    covariance of the standardised walkers (Troje 2002, eq. 4 to 8). `transform` gives the scores
+    K, `inverse_transform` the walkers they stand for.
+
+    Parameters
+    ----------
+    n_components : int, optional
+        Eigenwalkers to keep, those of most variance first; all that the walkers span if not given.
+    scale : {"sd"}, None, or array of shape (feature,)
+        What each feature is divided by before the decomposition: its standard deviation over the
+        walkers (J), nothing (W), or divisors of one's own, say one for each block of features.
+
+    Attributes
+    ----------
+    average_walker_ : array of shape (feature,)
+        The mean walker w_0.
+    scale_ : array of shape (feature,)
+        The divisors u. Standard deviations have ddof 1. A feature that does not vary, up to
+        rounding of the largest number in the table, is divided by 1 and stays at its mean.
+    eigenwalkers_ : array of shape (component, feature)
+        The rows of V', in units of the features: add them to a walker as they are. Their sign is
+        arbitrary in itself; here the standardised feature that weighs most is positive.
+    explained_variance_ : array of shape (component,)
+        Variance of the scores over the walkers (ddof 1).
+    explained_variance_ratio_ : array of shape (component,)
+        The same as a share of the variance of all standardised features.
+
+    Examples
+    --------
+    Walkers who differ in one way only, being larger or smaller in both features together:
+
+    >>> walkers = np.array([[9, 90], [10, 100], [11, 110]])
+    >>> space = WalkerSpace().fit(walkers)
+    >>> space.average_walker_.tolist(), space.eigenwalkers_.round(3).tolist()
+    ([10.0, 100.0], [[0.707, 7.071]])
+    >>> space.transform([[12, 120]]).round(3).tolist()
+    [[2.828]]
+    >>> space.inverse_transform([[2 * 2**0.5]]).round(6).tolist()
+    [[12.0, 120.0]]
+
+    """
+
+    def __init__(self, n_components: int | None = None, scale: Scale = "sd") -> None:
+        self.n_components = n_components
+        self.scale = scale
+
+    def fit(self, X: ArrayLike, y: object = None) -> Self:
+        """Find the average walker and the eigenwalkers.
+
+        Parameters
+        ----------
+        X : array of shape (walker, feature)
+            At least two walkers that differ.
+        y : None
+            Ignored.
+
+        Raises
+        ------
+        ValueError
+            If the walkers are all the same, if they do not span `n_components` dimensions, or if
+            `scale` is none of the above.
+
+        """
+        W: np.ndarray = _validated(self, X, dtype=np.float64, ensure_min_samples=2)
+        self.average_walker_ = W.mean(axis=0)
+        self.scale_ = divisors(W, self.scale)
+        standardised = (W - self.average_walker_) / self.scale_
+        standardised[:, constant_features(W)] = 0
+        singular_values, axes = _principal_axes(standardised)
+        kept = self._kept(len(axes), W.shape)
+        variances = singular_values**2 / (len(W) - 1)
+        self.eigenwalkers_ = axes[:kept] * self.scale_
+        self.explained_variance_ = variances[:kept]
+        self.explained_variance_ratio_ = variances[:kept] / variances.sum()
+        return self
+
+    def _kept(self, n_spanned: int, shape: tuple[int, int]) -> int:
+        if n_spanned == 0:
+            raise ValueError(
+                f"All {shape[0]} walkers are the same in all {shape[1]} features; "
+                "a space needs walkers that differ."
+            )
+        if self.n_components is None:
+            return n_spanned
+        if not 1 <= self.n_components <= n_spanned:
+            raise ValueError(
+                f"n_components={self.n_components} is not among the 1 to {n_spanned} that "
+                f"{shape[0]} walkers with {shape[1]} features span."
+            )
+        return self.n_components
+
+    def transform(self, X: ArrayLike) -> np.ndarray:
+        """Return the scores K of walkers (eq. 8).
+
+        Parameters
+        ----------
+        X : array of shape (walker, feature)
+
+        Returns
+        -------
+        array of shape (walker, component)
+
+        """
+        check_is_fitted(self)
+        W = _validated(self, X, dtype=np.float64, reset=False)
+        axes = self.eigenwalkers_ / self.scale_
+        return ((W - self.average_walker_) / self.scale_) @ axes.T
+
+    def inverse_transform(self, K: ArrayLike) -> np.ndarray:
+        """Return the walkers that scores stand for (eq. 6).
+
+        Parameters
+        ----------
+        K : array of shape (walker, component)
+
+        Returns
+        -------
+        array of shape (walker, feature)
+
+        """
+        check_is_fitted(self)
+        K = np.asarray(K, dtype=float)
+        if K.ndim != 2 or K.shape[1] != len(self.eigenwalkers_):
+            raise ValueError(
+                f"Scores must have shape (walker, {len(self.eigenwalkers_)}), one column an "
+                f"eigenwalker; got {K.shape}."
+            )
+        return self.average_walker_ + K @ self.eigenwalkers_
+
+    def get_feature_names_out(self, input_features: ArrayLike | None = None) -> np.ndarray:
+        """Return "eigenwalker1", "eigenwalker2" ... as names of the scores."""
+        n_scores = len(super().get_feature_names_out(input_features))
+        return np.array([f"eigenwalker{i + 1}" for i in range(n_scores)], dtype=object)
+
+    @property
+    def _n_features_out(self) -> int:
+        return len(self.eigenwalkers_)
+
+
+def divisors(X: np.ndarray, scale: Scale) -> np.ndarray:
+    """Return what each feature is divided by before PCA: u of eq. 4.
+
+    Parameters
+    ----------
+    X : array of shape (walker, feature)
+    scale : {"sd"}, None, or array of shape (feature,)
+        As in `WalkerSpace`.
+
+    Returns
+    -------
+    array of shape (feature,)
+        Above 0 everywhere; 1 for a feature that does not vary.
+
+    """
+    n_features = X.shape[1]
+    if scale is None:
+        return np.ones(n_features)
+    if isinstance(scale, str):
+        if scale != "sd":
+            raise ValueError(
+                f"scale={scale!r} is unknown; give 'sd', None, or one divisor a feature."
+            )
+        return np.where(constant_features(X), 1.0, X.std(axis=0, ddof=1))
+    given = np.array(scale, dtype=float)
+    if given.shape != (n_features,) or not (np.isfinite(given).all() and (given > 0).all()):
+        raise ValueError(
+            f"scale must be one divisor above 0 for each of {n_features} features; "
+            f"got an array of shape {given.shape} with least value {given.min(initial=np.inf):.4g}."
+        )
+    return given
+
+
+def constant_features(X: np.ndarray) -> np.ndarray:
+    """Return which features do not vary, up to rounding of the largest number in the table.
+
+    A feature held at zero by construction, as the mean place of the pelvis is, comes out of
+    floating point as some 1e-14 mm; standardising would blow that up to a unit.
+    """
+    rounding = 10 * np.finfo(float).eps * np.abs(X).max(initial=0)
+    return np.ptp(X, axis=0) <= rounding
+
+
+def _principal_axes(standardised: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Singular values and axes (component, feature), signs fixed, as many as the walkers span."""
+    _, singular_values, axes = np.linalg.svd(standardised, full_matrices=False)
+    spanned = singular_values > spanning_tolerance(singular_values, standardised.shape)
+    spanned[len(standardised) - 1 :] = False
+    singular_values, axes = singular_values[spanned], axes[spanned]
+    weights = np.abs(axes)
+    nearly_strongest = weights >= (1 - 1e-6) * weights.max(axis=1, keepdims=True, initial=0)
+    strongest = nearly_strongest.argmax(axis=1)[:, None]
+    return singular_values, axes * np.sign(np.take_along_axis(axes, strongest, axis=1))
+
+
+def spanning_tolerance(singular_values: np.ndarray, shape: tuple[int, ...]) -> float:
+    """Return the size at which a singular value is rounding, as `numpy.linalg.matrix_rank` has."""
+    return singular_values.max(initial=0) * max(shape) * np.finfo(float).eps
