@@ -1,0 +1,73 @@
+"""The body of a simulated person: lengths of its segments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from eigenwalker.simulation.foot import Foot
+
+GRAVITY = 9810.0
+"""mm/s2."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """Segment lengths in millimetres, and places of joints in the frame of pelvis and trunk.
+
+    The pelvis point, centre of the pelvis, lies above the middle between the hips; the trunk turns
+    about it, so that its distance to all joints of pelvis and trunk stays the same.
+    """
+
+    height: float
+    thigh: float
+    shank: float
+    foot: Foot
+    hip: np.ndarray
+    shoulder: np.ndarray
+    sternum: np.ndarray
+    neck: np.ndarray
+    head: np.ndarray
+    upper_arm: float
+    forearm: float
+
+    @property
+    def leg(self) -> float:
+        """Length of the leg from hip to sole."""
+        return self.thigh + self.shank + self.foot.height
+
+
+def body_of(person: Mapping[str, float]) -> Body:
+    """Return the body that a person's parameters describe.
+
+    Shares of height are ANSUR's (see `traits.PARAMETERS`). Recalled, not looked up: the pelvis
+    point lies 0.035 of height above the hips, the sternum 0.03 ahead of the shoulders, the ankle
+    0.042 ahead of the heel's point of contact.
+    """
+    height = person["height_mm"]
+
+    def of(share: str) -> float:
+        return height * person[share]
+
+    legs = of("thigh_share") + of("shank_share") + of("ankle_share")
+    pelvis = legs + 0.035 * height
+    return Body(
+        height=height,
+        thigh=of("thigh_share"),
+        shank=of("shank_share"),
+        foot=Foot(
+            heel=0.042 * height,
+            ball=0.745 * of("foot_share") - 0.050 * height,
+            toe=0.24 * of("foot_share"),
+            height=of("ankle_share"),
+        ),
+        hip=np.array([0.0, of("hip_share") / 2, -0.035 * height]),
+        shoulder=np.array([-0.01 * height, of("shoulder_share") / 2, of("trunk_share") - pelvis]),
+        sternum=np.array([0.02 * height, 0.0, of("trunk_share") + 0.018 * height - pelvis]),
+        neck=np.array([-0.02 * height, 0.0, of("trunk_share") + 0.033 * height - pelvis]),
+        head=np.array([0.02 * height, 0.0, of("head_share") - of("trunk_share") - 0.033 * height]),
+        upper_arm=of("upper_arm_share"),
+        forearm=of("forearm_share"),
+    )

@@ -1,0 +1,76 @@
+"""The foot as a rocker: it rolls over the heel, lies flat, rolls over the ball, then the toes.
+
+Seen from the side, in the plane of the foot: first coordinate forward, second up, millimetres.
+Pitch is in radians, positive with the heel up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+TOE_BEND = np.radians(38)
+"""How far toes bend up before the ball leaves the ground."""
+
+
+@dataclass(frozen=True)
+class Foot:
+    """Where heel, ball and toes are, from the ankle, on level ground."""
+
+    heel: float
+    ball: float
+    toe: float
+    height: float
+
+    def ankle_over_print(self, pitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return where the ankle of a planted foot is, from the print of its ball.
+
+        The sole rolls without slipping: about the heel while toes are up, about the ball while
+        toes can bend, about the tip of the toes after that.
+
+        Parameters
+        ----------
+        pitch : array of shape (frame,)
+
+        Returns
+        -------
+        place, slope : arrays of shape (frame, 2)
+            Place of the ankle, and its derivative by pitch.
+
+        """
+        heel = np.array([-self.heel - self.ball, 0.0])
+        on_heel, on_heel_slope = _turned(pitch, self.heel, self.height)
+        on_ball, on_ball_slope = _turned(pitch, -self.ball, self.height)
+        rolled = np.maximum(pitch - TOE_BEND, 0.0)
+        toes, toes_slope = _turned(rolled, self.toe, 0.0)
+        lifted = (pitch > TOE_BEND)[:, None]
+        place = np.where((pitch < 0)[:, None], heel + on_heel, on_ball + [self.toe, 0.0] - toes)
+        slope = np.where((pitch < 0)[:, None], on_heel_slope, on_ball_slope - lifted * toes_slope)
+        return place, slope
+
+    def ankle_over_ball(self, pitch: np.ndarray) -> np.ndarray:
+        """Return how far the ankle is ahead of the ball: array of shape (frame,)."""
+        return _turned(pitch, -self.ball, self.height)[0][:, 0]
+
+    def sole_under_ankle(self, pitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return heel, ball and tip of the toes from the ankle, and their derivatives by pitch.
+
+        Arrays of shape (frame, 3, 2).
+        """
+        bend = np.clip(pitch, 0.0, TOE_BEND)
+        heel, heel_slope = _turned(pitch, -self.heel, -self.height)
+        ball, ball_slope = _turned(pitch, self.ball, -self.height)
+        toes, toes_slope = _turned(pitch - bend, self.toe, 0.0)
+        bending = ((pitch > 0) & (pitch < TOE_BEND))[:, None]
+        return (
+            np.stack([heel, ball, ball + toes], axis=1),
+            np.stack([heel_slope, ball_slope, ball_slope + ~bending * toes_slope], axis=1),
+        )
+
+
+def _turned(pitch: np.ndarray, forward: float, up: float) -> tuple[np.ndarray, np.ndarray]:
+    cos, sin = np.cos(pitch), np.sin(pitch)
+    place = np.stack([forward * cos + up * sin, up * cos - forward * sin], axis=1)
+    slope = np.stack([up * cos - forward * sin, -up * sin - forward * cos], axis=1)
+    return place, slope

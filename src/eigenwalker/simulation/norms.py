@@ -1,0 +1,104 @@
+"""How joints turn over a stride: published norms as Fourier series.
+
+Angles in degrees over a cycle phase in [0, 1) that begins at the left heel strike,
+``mean + sum_h a_h cos(2 pi h phase) + b_h sin(2 pi h phase)``; the right limb follows half a stride
+later. Forward, left side up, left side forward, flexion, abduction and inward rotation are
+positive.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+
+FREE_SPEED = 0.43
+"""Speed over sqrt(g leg) of the group "Free" of Schwartz et al. (2008)."""
+
+
+def _series(mean: float, *pairs: tuple[float, float]) -> np.ndarray:
+    return np.array([mean, *np.ravel(pairs)])
+
+
+CURVES_DEG = MappingProxyType(
+    {
+        # Schwartz, Rozumalski & Trost 2008, J Biomech 41:1639, 82 walks at free speed: Fourier
+        # series of the printed group means. Pelvis against the room, hip on pelvis.
+        "pelvis_tilt": _series(11.6, (0, 0), (0.4, -0.7), (0, 0), (0.2, 0)),
+        "pelvis_obliquity": _series(0, (1.9, 2.1), (0, 0), (-1.2, 0.2)),
+        "pelvis_rotation": _series(0, (3.7, 2.1), (0, 0), (0.3, -0.4)),
+        "hip_flexion": _series(18.4, (20.9, -3.2), (-3.1, -1.5), (-0.1, 1.6), (-0.1, -0.1)),
+        "knee_flexion": _series(22.9, (-1.9, -18.7), (-13.6, 7.0), (-0.7, 4.3), (-0.9, 0.6)),
+        "ankle_dorsiflexion": _series(0.8, (-2.0, 7.1), (0.8, -7.2), (-4.6, 0.9), (2.2, 0.2)),
+        # The same source, trunk on pelvis.
+        "trunk_obliquity": _series(0, (-4.3, -3.3), (0, 0), (1.4, -0.2)),
+        "trunk_rotation": _series(0, (-4.0, 0.5), (0, 0), (-0.5, 0.2)),
+        # The arm is furthest back at the heel strike of its side (Perry: an arc of about 30
+        # degrees; Murray 1967: 24 back, 8 forward), and the elbow bends as the arm swings
+        # forward (range 29.7 in 15 adults, Clin Shoulder Elb 2023;26:126). One unit each:
+        # the person gives mean and amplitude.
+        "arm_swing": _series(0, (-1.0, 0.0)),
+        "elbow_swing": _series(0, (-0.98, -0.17), (0.18, 0.0)),
+    }
+)
+
+SPEED_SLOPES_DEG = MappingProxyType(
+    {
+        # Change for each +0.1 of dimensionless speed: line through the slow, free and fast
+        # groups of Schwartz et al. (2008).
+        "pelvis_tilt": _series(0.81, (0, 0), (-0.10, -0.31)),
+        "pelvis_obliquity": _series(0, (0.34, 0.70), (0, 0), (-0.12, -0.04)),
+        "pelvis_rotation": _series(0, (1.10, -0.18), (0, 0), (0.15, -0.20)),
+        "hip_flexion": _series(0.85, (2.45, 0), (-0.64, 0.57), (0, 0.08)),
+        "knee_flexion": _series(1.48, (0.94, -0.27), (-0.68, 1.69), (-0.26, -0.15)),
+        "ankle_dorsiflexion": _series(-0.97, (1.90, 1.25), (-1.09, -0.59), (0.05, 0.71)),
+    }
+)
+
+
+def basis(phase: np.ndarray, n_harmonics: int) -> np.ndarray:
+    """Return 1, cos, sin of each harmonic at each phase: array of shape (phase, coefficient).
+
+    Examples
+    --------
+    >>> basis(np.array([0.0, 0.25]), 1).round(9).tolist()
+    [[1.0, 1.0, 0.0], [1.0, 0.0, 1.0]]
+
+    """
+    angle = 2 * np.pi * np.outer(phase, np.arange(1, n_harmonics + 1))
+    columns = np.ones((len(phase), 2 * n_harmonics + 1))
+    columns[:, 1::2], columns[:, 2::2] = np.cos(angle), np.sin(angle)
+    return columns
+
+
+def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
+    """Return the Fourier coefficients, in degrees, of a joint's norm at a walking speed.
+
+    One number, the dimensionless speed, slides hip, knee and ankle together along the family that
+    Schwartz et al. (2008) measured.
+
+    Parameters
+    ----------
+    name : str
+        A key of `CURVES_DEG`.
+    speed : float
+        Speed divided by sqrt(g times leg length).
+    n_harmonics : int
+        Harmonics wanted; those that the norm lacks are 0.
+
+    Returns
+    -------
+    array of shape (1 + 2 * n_harmonics,)
+
+    Examples
+    --------
+    >>> norm_coefficients("hip_flexion", 0.43, 1).tolist()
+    [18.4, 20.9, -3.2]
+
+    """
+    coefficients = np.zeros(1 + 2 * max(n_harmonics, 4))
+    curve = CURVES_DEG[name]
+    coefficients[: len(curve)] += curve
+    if (slope := SPEED_SLOPES_DEG.get(name)) is not None:
+        coefficients[: len(slope)] += slope * (speed - FREE_SPEED) / 0.1
+    return coefficients[: 1 + 2 * n_harmonics]
