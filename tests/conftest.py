@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from eigenwalker.skeleton import JOINTS
+from eigenwalker.walker import Form, Walker
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "data"
 
@@ -17,3 +22,33 @@ def captures() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no real captures in {folder}; name their folder in EIGENWALKER_DATA")
     return folder
+
+
+def _orthogonal_walker(
+    seed: int = 0, *, frequency_hz: float = 0.8, form: Form = "eigenposture"
+) -> Walker:
+    """A made-up walker for whom both decompositions must agree (A1).
+
+    Eigenpostures are orthogonal and a quarter cycle apart; the left ankle is ahead in the first.
+    """
+    rng = np.random.default_rng(seed)
+    n_markers = len(JOINTS.markers)
+    directions = np.linalg.qr(rng.normal(size=(3 * n_markers, 4)))[0].T
+    p = (directions * np.array([600.0, 300, 150, 100])[:, None]).reshape(4, n_markers, 3)
+    ahead = p[0, JOINTS.index("left_ankle"), 0] - p[0, JOINTS.index("right_ankle"), 0]
+    p[0] *= np.sign(ahead)
+    return Walker(
+        markers=JOINTS.markers,
+        p0=rng.normal(scale=300, size=(n_markers, 3)),
+        p=p,
+        harmonics=np.array([1, 1, 2, 2]),
+        phases=np.array([0, np.pi / 2, 0.3, 0.3 + np.pi / 2]),
+        frequency_hz=frequency_hz,
+        form=form,
+    )
+
+
+@pytest.fixture(scope="session")
+def orthogonal_walker() -> Callable[..., Walker]:
+    """Maker of walkers for whom both decompositions must agree, one a seed."""
+    return _orthogonal_walker

@@ -1,0 +1,372 @@
+"""One walk taken apart: eigenpostures (Troje 2002) or a Fourier series (WDP2002, Moler 2016).
+
+Both give the same `Walker`, ``p(t) = p0 + sum_i p_i sin(h_i w t + phi_i)``. The eigenposture form
+finds the postures by principal components and leaves the phases free; the Fourier form fixes the
+phases at 0 and a quarter cycle and finds the postures by regression. The two share the stride
+frequency, which is the only thing that is not linear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.gait import frequency_of_scores
+from eigenwalker.trajectories import check_trajectories, sampling_rate
+from eigenwalker.walker import CaptureFit, Form, Walker, shift_origin
+
+PHASE_REFERENCE = ("left_ankle", "right_ankle")
+"""The markers whose distance along x sets the time origin: first minus second rises through 0."""
+_SHARES_KEPT = 10
+_ROUNDING = 1e-9
+
+
+class Eigenpostures(NamedTuple):
+    """Principal components of postures, and the sines fitted to their scores (J5 to J8)."""
+
+    mean: np.ndarray
+    components: np.ndarray
+    variance_share: np.ndarray
+    frequency_hz: float
+    harmonics: np.ndarray
+    amplitudes: np.ndarray
+    phases: np.ndarray
+    sine_r2: np.ndarray
+    fourier: np.ndarray
+    fourier_residual: float
+    total: float
+    rate_hz: float
+
+
+def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
+    """Return the eigenpostures of a walk and the sines they ride on.
+
+    Troje (2002), eq. 1 to 3 (J5 to J11): principal components of the postures, two for each
+    harmonic; a sine of the stride frequency or of the multiple that explains most, fitted to the
+    scores of each; amplitudes multiplied into the eigenpostures; the phase of the first set to 0.
+
+    The sign of the first eigenposture is the one in which the left ankle is ahead of the right
+    where its sine is positive (its largest entry is positive where there are no ankles); the
+    others have the sign that puts their phase between 0 and pi. Which eigenposture of one walker
+    corresponds to which of another is settled by `Population`.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        Steady walking in place, such as `in_place` returns; millimetres, no missing samples.
+    n_harmonics : int
+        Multiples of the stride frequency to allow; there are two eigenpostures for each.
+
+    Returns
+    -------
+    Walker
+        With ``walker.fit`` telling how well it explains the walk.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 10, 0.01)
+    >>> swing = np.sin(2 * np.pi * time)[:, None, None] * [[200, 0, 0], [-200, 0, 0]]
+    >>> lift = np.cos(4 * np.pi * time)[:, None, None] * [[0, 0, 30], [0, 0, 30]]
+    >>> feet = ["left_ankle", "right_ankle"]
+    >>> walk = ew.label_trajectories(swing + lift, markers=feet, rate_hz=100)
+    >>> walker = decompose_pca(walk)
+    >>> round(walker.frequency_hz, 6), walker.harmonics[:2].tolist()
+    (1.0, [1, 2])
+    >>> walker.eigenpostures.sel(component=1, axis="x").values.round(6).tolist()
+    [200.0, -200.0]
+
+    """
+    walk, postures, rate_hz = _postures(walk, n_harmonics)
+    found = eigenpostures_of(postures, rate_hz, n_harmonics)
+    markers = walk.marker.values.tolist()
+    p = (found.amplitudes[:, None] * found.components).reshape(-1, len(markers), 3)
+    phases = found.phases.copy()
+    if is_negative(p[0], markers):
+        p[0], phases[0] = -p[0], phases[0] + np.pi
+    origin = -phases[0] / found.harmonics[0]
+    phases, turned = _half_turn(phases + found.harmonics * origin)
+    p[turned] *= -1
+    explained = found.sine_r2 * found.variance_share[: len(p)]
+    return _walker(
+        walk,
+        postures,
+        found,
+        form="eigenposture",
+        origin=origin,
+        residual=found.total * max(1 - float(explained.sum()), 0.0),
+        p0=found.mean,
+        p=p,
+        harmonics=found.harmonics,
+        phases=phases,
+    )
+
+
+def decompose_fourier(
+    walk: xr.DataArray,
+    *,
+    n_harmonics: int = 2,
+    phase_ref: tuple[str, str] = PHASE_REFERENCE,
+) -> Walker:
+    """Return a walk as a Fourier series with vectors for coefficients.
+
+    WDP2002, eq. 1, and Moler (2016), by least squares (W2, M2); postures ``p1`` to ``p4`` are the
+    coefficients of sin 1, cos 1, sin 2, cos 2. Neither paper states a time origin, which walkers
+    must share if they are to be compared: here the fundamental of left minus right ankle along the
+    walking direction is a pure sine (A4).
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        Steady walking in place, such as `in_place` returns; millimetres, no missing samples.
+    n_harmonics : int
+        Harmonics to take.
+    phase_ref : pair of str
+        Markers whose distance along x sets the origin. Where the walk lacks them, the largest
+        axis of the ellipse on which the fundamental moves all markers does.
+
+    Returns
+    -------
+    Walker
+        With ``walker.fit`` telling how well it explains the walk.
+
+    Examples
+    --------
+    >>> time = np.arange(0, 10, 0.01)
+    >>> foot = np.cos(2 * np.pi * time)[:, None, None] * [[200, 0, 0]]
+    >>> walk = ew.label_trajectories(foot, markers=["foot"], rate_hz=100)
+    >>> walker = decompose_fourier(walk, n_harmonics=1)
+    >>> walker.eigenpostures.values[:, 0, 0].round(6).tolist()  # sin 1, cos 1
+    [200.0, 0.0]
+    >>> round(walker.time_origin_s, 6)
+    0.75
+
+    """
+    walk, postures, rate_hz = _postures(walk, n_harmonics)
+    found = eigenpostures_of(postures, rate_hz, n_harmonics)
+    markers = walk.marker.values.tolist()
+    # The mean posture is regressed too: over broken strides it is not the average of frames.
+    coefficients = found.fourier[1:].reshape(2 * n_harmonics, len(markers), 3)
+    origin = origin_angle(coefficients, markers, phase_ref)
+    return _walker(
+        walk,
+        postures,
+        found,
+        form="fourier",
+        origin=origin,
+        residual=found.fourier_residual,
+        p0=found.fourier[0],
+        p=shift_origin(coefficients, origin),
+        harmonics=np.repeat(np.arange(1, n_harmonics + 1), 2),
+        phases=np.tile([0.0, np.pi / 2], n_harmonics),
+    )
+
+
+def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2) -> Eigenpostures:
+    """Return the principal components of postures with sines fitted to their scores (J5 to J8).
+
+    The numerical core of both decompositions, on plain arrays.
+
+    Parameters
+    ----------
+    postures : array of shape (time, feature)
+        Evenly sampled.
+    rate_hz : float
+        Frames a second.
+    n_harmonics : int
+        Multiples of the stride frequency to choose from.
+
+    Returns
+    -------
+    Eigenpostures
+        Phases count from the middle of the postures; components are rows of unit length.
+
+    """
+    n_frames, n_features = postures.shape
+    n_components = min(2 * n_harmonics, n_features)
+    # Shifted by the first frame, the Gram matrix keeps all digits however far the origin is.
+    shifted = postures - postures[0]
+    offset = shifted.mean(axis=0)
+    covariance = shifted.T @ shifted - n_frames * np.outer(offset, offset)
+    variance, axes = np.linalg.eigh(covariance)
+    variance = np.clip(variance[::-1], 0, None)
+    components = axes[:, ::-1].T[:n_components]
+    scores = (shifted - offset) @ components.T
+    frequency_hz = frequency_of_scores(scores, rate_hz, n_harmonics=n_harmonics)
+
+    sines = _sines(n_frames, frequency_hz / rate_hz, n_harmonics)
+    harmonics, amplitudes, phases, sine_r2 = _fit_sines(scores, sines)
+    design = np.column_stack([np.ones(n_frames), sines])
+    products = design.T @ shifted
+    fourier = np.linalg.solve(design.T @ design, products)
+    residual = np.vdot(shifted, shifted) - np.vdot(fourier, products)
+    fourier[0] += postures[0]
+    total = float(variance.sum())
+    return Eigenpostures(
+        mean=postures[0] + offset,
+        components=components,
+        variance_share=variance[:_SHARES_KEPT] / (total or 1.0),
+        frequency_hz=frequency_hz,
+        harmonics=harmonics,
+        amplitudes=amplitudes,
+        phases=phases,
+        sine_r2=sine_r2,
+        fourier=fourier,
+        fourier_residual=max(float(residual), 0.0),
+        total=total,
+        rate_hz=rate_hz,
+    )
+
+
+def _sines(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
+    """Columns sin 1, cos 1, sin 2, cos 2 ... on a clock with its zero in the middle."""
+    frames = np.arange(n_frames) - (n_frames - 1) / 2
+    turn = np.exp(2j * np.pi * cycles_per_frame * frames)
+    columns = np.empty((n_frames, 2 * n_harmonics))
+    power = np.ones_like(turn)
+    for harmonic in range(n_harmonics):
+        power = power * turn
+        columns[:, 2 * harmonic] = power.imag
+        columns[:, 2 * harmonic + 1] = power.real
+    return columns
+
+
+def _fit_sines(
+    scores: np.ndarray, sines: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Fit each score's dominant harmonic, c_i(t) = a_i sin(h_i w t + psi_i) with a_i > 0 (J8)."""
+    products = sines.T @ scores
+    gram = sines.T @ sines
+    power = np.einsum("tc,tc->c", scores, scores)
+    n_harmonics = sines.shape[1] // 2
+    weights = np.empty((n_harmonics, 2, scores.shape[1]))
+    explained = np.empty((n_harmonics, scores.shape[1]))
+    for harmonic in range(n_harmonics):
+        pair = slice(2 * harmonic, 2 * harmonic + 2)
+        weights[harmonic] = np.linalg.solve(gram[pair, pair], products[pair])
+        explained[harmonic] = (weights[harmonic] * products[pair]).sum(axis=0)
+    best = explained.argmax(axis=0)
+    each = np.arange(scores.shape[1])
+    sine, cosine = weights[best, 0, each], weights[best, 1, each]
+    r2 = explained[best, each] / np.where(power > 0, power, 1)
+    return best + 1, np.hypot(sine, cosine), np.arctan2(cosine, sine), r2
+
+
+def _postures(walk: xr.DataArray, n_harmonics: int) -> tuple[xr.DataArray, np.ndarray, float]:
+    """Check what came, once, and lay each posture out as a row (J4)."""
+    if n_harmonics < 1:
+        raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")
+    walk = check_trajectories(walk, complete=True)
+    rate_hz = sampling_rate(walk)
+    if (needed := 4 * n_harmonics + 2) > len(walk.time):
+        raise ValueError(
+            f"A walk with {n_harmonics} harmonics needs {needed} frames or more, "
+            f"got {len(walk.time)}."
+        )
+    return walk, walk.values.reshape(len(walk.time), -1), rate_hz
+
+
+def _half_turn(phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phases taken into [0, pi), and which of them changed sign for it.
+
+    The first phase, 0 by its making, keeps its sign whatever the rounding.
+    """
+    phases = (phases + _ROUNDING) % (2 * np.pi) - _ROUNDING
+    phases[0] = 0.0
+    turned = phases >= np.pi - _ROUNDING
+    return np.where(turned, phases - np.pi, phases), turned
+
+
+def is_negative(posture: np.ndarray, markers: Sequence[str]) -> bool:
+    """Return whether a first eigenposture has to change its sign (A4).
+
+    It is positive where the left ankle is ahead of the right; where there are no ankles, where its
+    largest entry is positive.
+    """
+    left, right = PHASE_REFERENCE
+    if left in markers and right in markers:
+        names = list(markers)
+        ahead = posture[names.index(left), 0] - posture[names.index(right), 0]
+        if ahead != 0:
+            return bool(ahead < 0)
+    return bool(posture.flat[np.abs(posture).argmax()] < 0)
+
+
+def origin_angle(
+    coefficients: np.ndarray,
+    markers: Sequence[str],
+    phase_ref: tuple[str, str] = PHASE_REFERENCE,
+) -> float:
+    """Return the angle of the stride at which the reference rises through zero (A4).
+
+    Parameters
+    ----------
+    coefficients : array of shape (2 * harmonic, marker, axis)
+        Of sin 1, cos 1, sin 2, cos 2 ...
+    markers : sequence of str
+    phase_ref : pair of str
+        See `decompose_fourier`.
+
+    Returns
+    -------
+    float
+        Radians of the fundamental.
+
+    """
+    if set(phase_ref) <= set(markers):
+        first, second = (list(markers).index(name) for name in phase_ref)
+        sine, cosine = coefficients[:2, first, 0] - coefficients[:2, second, 0]
+    else:
+        plane = coefficients[:2].reshape(2, -1)
+        scores, _, axes = np.linalg.svd(plane, full_matrices=False)
+        sine, cosine = scores[:, 0] * np.sign(axes[0, np.abs(axes[0]).argmax()])
+    return float(-np.arctan2(cosine, sine))
+
+
+def _walker(
+    walk: xr.DataArray,
+    postures: np.ndarray,
+    found: Eigenpostures,
+    *,
+    form: Form,
+    origin: float,
+    residual: float,
+    p0: np.ndarray,
+    p: np.ndarray,
+    harmonics: np.ndarray,
+    phases: np.ndarray,
+) -> Walker:
+    """Gather a walker whose clock starts at an angle of the stride past the middle of the walk."""
+    time = walk.time.values
+    n_markers = walk.sizes["marker"]
+    period_s = 1 / found.frequency_hz
+    middle_s = (time[0] + time[-1]) / 2
+    after_start_s = (middle_s + origin / (2 * np.pi) * period_s - time[0]) % period_s
+    share = residual / found.total if found.total else 1.0
+    fit = CaptureFit(
+        r2=1 - share,
+        fourier_r2=1 - found.fourier_residual / (found.total or 1.0),
+        residual_power=residual / float(np.vdot(postures, postures)),
+        relative_rms=float(np.sqrt(share)),
+        variance_share=found.variance_share,
+        sine_r2=found.sine_r2,
+        fourier=shift_origin(found.fourier[1:].reshape(-1, n_markers, 3), origin),
+        eigenpostures=p,
+        harmonics=harmonics,
+        phases=phases,
+        n_strides=len(time) * found.frequency_hz / found.rate_hz,
+    )
+    return Walker(
+        markers=tuple(walk.marker.values.tolist()),
+        p0=p0.reshape(n_markers, 3),
+        p=p,
+        harmonics=harmonics,
+        phases=phases,
+        frequency_hz=found.frequency_hz,
+        form=form,
+        speed_mm_s=walk.attrs.get("speed_mm_s", float("nan")),
+        time_origin_s=time[0] + after_start_s,
+        fit=fit,
+    )

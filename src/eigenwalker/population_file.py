@@ -1,0 +1,213 @@
+"""A population as one self-describing NetCDF file.
+
+Dimensions are ``walker, component, marker, axis``; every number has its unit beside it, and the
+file says its version, so that other programs can read it without this one. Nothing in it is code.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+import eigenwalker
+from eigenwalker.correspondence import Correspondence, Reference
+from eigenwalker.mocap.unreadable import UnreadableFile
+from eigenwalker.trajectories import AXES
+from eigenwalker.walker import CaptureFit, Walker
+
+FORMAT = "eigenwalker population"
+VERSION = 1
+_ENGINE = "h5netcdf"
+_UNITS = {
+    "p0": "mm",
+    "p": "mm",
+    "phases": "rad",
+    "frequency_hz": "Hz",
+    "speed_mm_s": "mm/s",
+    "time_origin_s": "s",
+}
+_FIT_DIMS = {
+    "variance_share": ("walker", "share"),
+    "sine_r2": ("walker", "component"),
+    "fourier": ("walker", "coefficient", "marker", "axis"),
+    "eigenpostures": ("walker", "component", "marker", "axis"),
+    "harmonics": ("walker", "component"),
+    "phases": ("walker", "component"),
+}
+
+
+class Stored(NamedTuple):
+    """What a population file holds."""
+
+    walkers: tuple[Walker, ...]
+    traits: pd.DataFrame
+    correspondence: Correspondence
+    provenance: dict[str, str]
+
+
+def write_population(
+    path: Path,
+    walkers: Sequence[Walker],
+    traits: pd.DataFrame,
+    correspondence: Correspondence,
+    provenance: Mapping[str, str],
+) -> None:
+    """Write walkers in correspondence, with their traits, to a NetCDF file.
+
+    The file appears whole or not at all.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"There is no folder {path.parent} to write {path.name} into.")
+    dataset = _dataset(walkers, traits, correspondence)
+    dataset.attrs = {
+        "format": FORMAT,
+        "format_version": VERSION,
+        "program": f"eigenwalker {eigenwalker.__version__}",
+        "form": walkers[0].form,
+        "provenance": json.dumps(dict(provenance)),
+    }
+    handle, unfinished = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".nc")
+    os.close(handle)
+    try:
+        dataset.to_netcdf(unfinished, engine=_ENGINE)
+        os.chmod(unfinished, 0o666 & ~_umask())
+        os.replace(unfinished, path)
+    finally:
+        Path(unfinished).unlink(missing_ok=True)
+
+
+def read_population(path: Path) -> Stored:
+    """Read what `write_population` wrote.
+
+    Raises
+    ------
+    UnreadableFile
+        If the file is none of ours, is damaged, or comes from a newer version.
+
+    """
+    if not path.is_file():
+        raise UnreadableFile(f"{path}: there is no such file.")
+    try:
+        with xr.open_dataset(path, engine=_ENGINE, decode_times=False) as opened:
+            dataset = opened.load()
+    except Exception as error:  # a damaged file fails anywhere in the library, in many ways
+        raise UnreadableFile(
+            f"{path}: expected a population file (NetCDF, written by 'eigenwalker fit' or "
+            f"Population.save), and it could not be opened as one: {error}"
+        ) from error
+    if dataset.attrs.get("format") != FORMAT:
+        raise UnreadableFile(
+            f"{path}: this NetCDF file holds no population (its format is "
+            f"{dataset.attrs.get('format')!r}, expected {FORMAT!r})."
+        )
+    if (version := dataset.attrs.get("format_version")) != VERSION:
+        raise UnreadableFile(
+            f"{path}: population format {version}, and this program ({eigenwalker.__version__}) "
+            f"reads format {VERSION}; update eigenwalker."
+        )
+    try:
+        return _stored(dataset)
+    except (KeyError, ValueError, TypeError, IndexError) as error:
+        raise UnreadableFile(f"{path}: the population file is damaged: {error}") from error
+
+
+def _dataset(
+    walkers: Sequence[Walker], traits: pd.DataFrame, correspondence: Correspondence
+) -> xr.Dataset:
+    first = walkers[0]
+    dims = {
+        "p0": ("walker", "marker", "axis"),
+        "p": ("walker", "component", "marker", "axis"),
+        "phases": ("walker", "component"),
+        "frequency_hz": ("walker",),
+        "speed_mm_s": ("walker",),
+        "time_origin_s": ("walker",),
+    }
+    variables: dict[str, tuple] = {
+        name: (dim, np.stack([getattr(walker, name) for walker in walkers]), {"units": unit})
+        for (name, dim), unit in zip(dims.items(), _UNITS.values(), strict=True)
+    }
+    if all(walker.fit is not None for walker in walkers):
+        for entry in fields(CaptureFit):
+            stacked = np.stack([np.asarray(getattr(walker.fit, entry.name)) for walker in walkers])
+            variables[f"fit_{entry.name}"] = (_FIT_DIMS.get(entry.name, ("walker",)), stacked)
+    for number, name in enumerate(traits):
+        variables[f"trait_{number}"] = ("walker", _storable(traits[name]), {"trait": str(name)})
+    found = correspondence
+    variables["similarity"] = (("walker", "component"), found.similarity)
+    variables["correspondence_flag"] = ("walker", np.array(found.flags, dtype=object))
+    variables["reference_axes"] = (("harmonic", "pair", "feature"), found.reference.axes)
+    variables["reference_average"] = (("coefficient", "feature"), found.reference.average)
+    coords = {
+        "marker": list(first.markers),
+        "axis": list(AXES),
+        "harmonics": ("component", first.harmonics),
+    }
+    return xr.Dataset(variables, coords)
+
+
+def _storable(column: pd.Series) -> np.ndarray:
+    if pd.api.types.is_bool_dtype(column) or not pd.api.types.is_numeric_dtype(column):
+        return column.astype(object).where(column.notna(), "").astype(str).to_numpy(dtype=object)
+    return column.to_numpy(dtype=float)
+
+
+def _stored(dataset: xr.Dataset) -> Stored:
+    markers = tuple(str(name) for name in dataset["marker"].values)
+    harmonics = dataset["harmonics"].values
+    form = dataset.attrs["form"]
+    arrays = {name: dataset[name].values for name in _UNITS}
+    fits = _fits(dataset) if "fit_r2" in dataset else [None] * dataset.sizes["walker"]
+    walkers = tuple(
+        Walker(
+            markers=markers,
+            harmonics=harmonics,
+            form=form,
+            fit=fits[number],
+            **{name: values[number] for name, values in arrays.items()},
+        )
+        for number in range(dataset.sizes["walker"])
+    )
+    traits = pd.DataFrame(
+        {
+            str(variable.attrs["trait"]): variable.values
+            for name, variable in dataset.variables.items()
+            if str(name).startswith("trait_")
+        }
+    )
+    reference = Reference(
+        dataset["reference_axes"].values, dataset["reference_average"].values, form, markers
+    )
+    flags = tuple(str(flag) for flag in dataset["correspondence_flag"].values)
+    provenance = json.loads(dataset.attrs["provenance"])
+    return Stored(
+        walkers,
+        traits,
+        Correspondence(reference, dataset["similarity"].values, flags),
+        {str(key): str(value) for key, value in dict(provenance).items()},
+    )
+
+
+def _fits(dataset: xr.Dataset) -> list[CaptureFit]:
+    names = [entry.name for entry in fields(CaptureFit)]
+    columns = {name: dataset[f"fit_{name}"].values for name in names}
+    columns = {name: column.tolist() if column.ndim == 1 else column for name, column in columns.items()}
+    return [
+        CaptureFit(**{name: column[number] for name, column in columns.items()})
+        for number in range(dataset.sizes["walker"])
+    ]
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
