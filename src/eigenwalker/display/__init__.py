@@ -1,0 +1,1 @@
+"""Figures and films of walkers: draws what it is given."""

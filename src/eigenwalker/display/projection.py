@@ -1,0 +1,104 @@
+"""What an observer sees of a walker: three dimensions onto two."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def project(
+    positions: ArrayLike,
+    *,
+    view_deg: float = 0.0,
+    elevation_deg: float = 0.0,
+    distance_mm: float = math.inf,
+) -> np.ndarray:
+    """Return where an observer sees points of the room.
+
+    The views of Troje (2002) and WDP2002: orthographic, at 0 (front), 30 (three-quarter) or 90
+    degrees (profile). The observer of view 0 faces the walker, whose left is then at the observer's
+    right. A positive view turns the walker to its own left, so that at 90 it walks to the right of
+    the picture, and at -90 to the left.
+
+    Parameters
+    ----------
+    positions : array of shape (..., 3)
+        Millimetres: x forward, y to the walker's left, z up. Trajectories will do.
+    view_deg : float
+        By how much the walker is turned out of the frontal view.
+    elevation_deg : float
+        By how much the observer is raised above the horizontal; 90 looks straight down.
+    distance_mm : float
+        From the eye to the middle of all points, about which the observer turns. Infinite gives the
+        orthographic picture; any other a perspective one, in which things as far as the middle keep
+        their size.
+
+    Returns
+    -------
+    array of shape (..., 2)
+        Millimetres to the right and up in the picture. Missing points stay NaN.
+
+    Raises
+    ------
+    ValueError
+        If positions have other than three coordinates, or a point lies beside or behind the eye.
+
+    Examples
+    --------
+    The left hand, 300 mm beside the body, in the frontal view and in profile:
+
+    >>> project([0, 300, 1000]).tolist()
+    [300.0, 1000.0]
+    >>> project([0, 300, 1000], view_deg=90).round(9).tolist()
+    [0.0, 1000.0]
+
+    """
+    positions = np.asarray(positions, dtype=float)
+    if positions.ndim == 0 or positions.shape[-1] != 3:
+        raise ValueError(
+            f"Expected positions with x, y, z along the last axis, got {positions.shape}."
+        )
+    seen = positions @ observer_axes(view_deg, elevation_deg).T
+    if math.isinf(distance_mm):
+        return seen[..., :2]
+    return _in_perspective(seen, distance_mm)
+
+
+def observer_axes(view_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
+    """Return the observer's right, up and the way to the observer as unit vectors of the room.
+
+    Returns
+    -------
+    array of shape (3, 3)
+        One direction a row, right-handed.
+
+    Examples
+    --------
+    In the frontal view the observer's right is the walker's left:
+
+    >>> observer_axes(0)[0].tolist()
+    [0.0, 1.0, 0.0]
+
+    """
+    view, elevation = math.radians(view_deg), math.radians(elevation_deg)
+    ahead = np.array([math.cos(view), -math.sin(view), 0.0])
+    right = np.array([math.sin(view), math.cos(view), 0.0])
+    above = np.array([0.0, 0.0, 1.0])
+    up = math.cos(elevation) * above - math.sin(elevation) * ahead
+    towards = math.cos(elevation) * ahead + math.sin(elevation) * above
+    return np.stack([right, up, towards])
+
+
+def _in_perspective(seen: np.ndarray, distance_mm: float) -> np.ndarray:
+    points = seen.reshape(-1, 3)
+    middle = (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) / 2
+    offset = seen - middle
+    from_eye = distance_mm - offset[..., 2]
+    if not (np.isnan(from_eye) | (from_eye > 0)).all():
+        raise ValueError(
+            f"distance_mm={distance_mm:g} puts the eye among the points; choose more than "
+            f"{np.nanmax(offset[..., 2]):.0f}."
+        )
+    return middle[:2] + offset[..., :2] * (distance_mm / from_eye)[..., None]

@@ -1,0 +1,134 @@
+"""Dots, lines and words as pixels, with soft edges and places between pixels.
+
+A canvas is an array (row, column) of how much each pixel is covered, 0 to 1. Places are (column,
+row), counted in pixels from the centre of the pixel at the upper left.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+
+def draw_discs(
+    canvas: np.ndarray,
+    centres: np.ndarray,
+    *,
+    radius: float | np.ndarray,
+    level: float | np.ndarray = 1.0,
+) -> None:
+    """Put discs on a canvas, in place.
+
+    Parameters
+    ----------
+    canvas : array of float32 of shape (row, column)
+        What is drawn on; where things overlap, the fuller cover stays.
+    centres : array of shape (disc, 2)
+        Columns and rows; a disc at NaN is left out, one that reaches over the border is cut.
+    radius : float or array of shape (disc,)
+        Pixels.
+    level : float or array of shape (disc,)
+        Cover of a pixel that lies within a disc.
+
+    Examples
+    --------
+    >>> canvas = np.zeros((5, 5), np.float32)
+    >>> draw_discs(canvas, np.array([[2, 2]]), radius=1)
+    >>> canvas[2].tolist()
+    [0.0, 0.5, 1.0, 0.5, 0.0]
+
+    """
+    centres = np.asarray(centres, dtype=np.float32)
+    radii = np.broadcast_to(np.float32(radius), len(centres))
+    levels = np.broadcast_to(np.float32(level), len(centres))
+    for centre, size, full in zip(centres, radii, levels, strict=True):
+        if not np.isfinite(centre).all():
+            continue
+        reach = math.ceil(size + 0.5)
+        steps = np.arange(-reach, reach + 1)
+        column, row = np.rint(centre).astype(int)
+        across = ((column + steps - centre[0]) ** 2).astype(np.float32)
+        down = ((row + steps - centre[1]) ** 2).astype(np.float32)
+        apart = np.sqrt(down[:, None] + across)
+        _cover(canvas, row - reach, column - reach, full * np.clip(size + 0.5 - apart, 0, 1))
+
+
+def draw_lines(
+    canvas: np.ndarray,
+    starts: np.ndarray,
+    ends: np.ndarray,
+    *,
+    width: float,
+    level: float | np.ndarray = 1.0,
+) -> None:
+    """Put straight lines with round ends on a canvas, in place.
+
+    Parameters
+    ----------
+    canvas : array of float32 of shape (row, column)
+        As for `draw_discs`.
+    starts, ends : array of shape (line, 2)
+        Columns and rows; a line with an end at NaN is left out.
+    width : float
+        Pixels.
+    level : float or array of shape (line,)
+        Cover of a pixel that lies within a line.
+
+    """
+    levels = np.broadcast_to(np.float32(level), len(starts))
+    reach = math.ceil(width / 2 + 0.5)
+    for start, end, full in zip(starts, ends, levels, strict=True):
+        if not (np.isfinite(start).all() and np.isfinite(end).all()):
+            continue
+        left, top = np.floor(np.minimum(start, end)).astype(int) - reach
+        right, bottom = np.ceil(np.maximum(start, end)).astype(int) + reach
+        across = np.arange(left, right + 1, dtype=np.float32) - np.float32(start[0])
+        down = np.arange(top, bottom + 1, dtype=np.float32)[:, None] - np.float32(start[1])
+        along_x, along_y = (np.asarray(end) - start).astype(np.float32)
+        length2 = max(along_x**2 + along_y**2, np.float32(1e-12))
+        share = np.clip((across * along_x + down * along_y) / length2, 0, 1)
+        apart = np.sqrt((across - share * along_x) ** 2 + (down - share * along_y) ** 2)
+        _cover(canvas, top, left, full * np.clip(width / 2 + 0.5 - apart, 0, 1))
+
+
+def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
+    n_rows, n_columns = canvas.shape
+    rows = slice(max(top, 0), max(min(top + patch.shape[0], n_rows), 0))
+    columns = slice(max(left, 0), max(min(left + patch.shape[1], n_columns), 0))
+    inside = canvas[rows, columns]
+    if inside.size:
+        cut = patch[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+        np.maximum(inside, cut, out=inside)
+
+
+def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.ndarray:
+    """Return a line of words, centred on a canvas of its own; long ones are set smaller.
+
+    Parameters
+    ----------
+    words : str
+        Taken as they are, without mathematical markup.
+    width, height : int
+        Of the canvas, in pixels.
+    level : float
+        Cover within the strokes.
+
+    Returns
+    -------
+    array of float32 of shape (height, width)
+
+    """
+    dots_an_inch = 72
+    figure = Figure(figsize=(width / dots_an_inch, height / dots_an_inch), dpi=dots_an_inch)
+    figure.set_facecolor("black")
+    canvas = FigureCanvasAgg(figure)
+    text = figure.text(0.5, 0.5, words, color="white", ha="center", va="center", parse_math=False)
+    text.set_fontsize(height * 0.55)
+    breadth = text.get_window_extent(canvas.get_renderer()).width
+    if breadth > 0.94 * width:
+        text.set_fontsize(height * 0.55 * 0.94 * width / breadth)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., 0].astype(np.float32) * (level / 255)

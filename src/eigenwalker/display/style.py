@@ -1,0 +1,68 @@
+"""The look that all figures share: few inks, thin lines, no state of matplotlib's own."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+BLUE, RED = "#0077BB", "#CC3311"
+"""Told apart under every common colour blindness (Paul Tol's vibrant scheme)."""
+INK, GREY, PALE = "#1A1A1A", "#6E6E6E", "#C8C8C8"
+SMALL, USUAL = 7.0, 8.0
+"""Sizes of letters in points."""
+LINE = 30
+"""Letters in a line of a title."""
+
+
+def new_figure(width_in: float, height_in: float) -> Figure:
+    """Return an empty figure, drawn by Agg, that pyplot knows nothing of."""
+    figure = Figure(figsize=(width_in, height_in), layout="constrained", dpi=150)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def panels(figure: Figure, n_rows: int, n_columns: int, **how: Any) -> list[list[Axes]]:
+    """Return calm axes, row by row."""
+    axes = figure.subplots(n_rows, n_columns, squeeze=False, **how)
+    return [[calm(panel) for panel in row] for row in axes]
+
+
+def calm(axes: Axes) -> Axes:
+    """Return the axes with thin spines below and at the left, and small letters."""
+    for name, spine in axes.spines.items():
+        spine.set_visible(name in ("left", "bottom"))
+        spine.set_linewidth(0.6)
+        spine.set_color(INK)
+    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, color=INK, labelcolor=INK)
+    axes.xaxis.label.set_fontsize(USUAL)
+    axes.yaxis.label.set_fontsize(USUAL)
+    return axes
+
+
+def bare(axes: Axes) -> Axes:
+    """Return axes for a picture of a body: equal scales, no frame, no ticks."""
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return axes
+
+
+def head_line(axes: Axes, words: str, *, letter: str = "") -> None:
+    """Write a short title at the left over the axes, after a bold letter that names the panel."""
+    words = textwrap.fill(words, LINE)
+    axes.set_title(words, fontsize=USUAL, loc="left", color=INK, pad=5, parse_math=False)
+    if letter:
+        axes.annotate(
+            letter,
+            (0, 1),
+            xycoords="axes fraction",
+            xytext=(-14, 5),
+            textcoords="offset points",
+            fontsize=USUAL + 1,
+            fontweight="bold",
+            color=INK,
+            va="bottom",
+        )

@@ -1,0 +1,1 @@
+"""Report pages: one file of HTML that needs nothing else."""

@@ -1,0 +1,109 @@
+"""What a report says, before anything is said about how it looks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.figure
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph of plain words."""
+
+    words: str
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list of plain words, one point each."""
+
+    items: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Code:
+    """Lines to copy as they stand: a command, a reference."""
+
+    lines: str
+
+
+Cell = str | int | float | None
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table whose first column names the rows.
+
+    Numbers are set with three figures and at the right; None and NaN are dashes.
+
+    Parameters
+    ----------
+    caption : str
+        What the table tells, in a sentence.
+    columns : sequence of str
+        Names of all columns.
+    rows : sequence of sequences
+        Cells, as many a row as there are columns.
+
+    """
+
+    caption: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) != len(self.columns):
+                raise ValueError(
+                    f"The table {self.caption!r} has {len(self.columns)} columns "
+                    f"{list(self.columns)}, and a row of {len(row)} cells: {list(row)}."
+                )
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure, a sentence that says what to see in it, and words for those who cannot see it."""
+
+    figure: matplotlib.figure.Figure
+    caption: str
+    alt: str
+
+
+@dataclass(frozen=True)
+class Film:
+    """A film in a file (MP4, WebM or GIF), a sentence on it, and words for those who cannot see."""
+
+    path: Path
+    caption: str
+    alt: str
+
+
+Block = Text | Items | Code | Table | Figure | Film
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands under it."""
+
+    title: str
+    blocks: Sequence[Block]
+
+
+@dataclass(frozen=True)
+class Report:
+    """A title, a lead that tells the main result, and sections.
+
+    Examples
+    --------
+    >>> data = Section("Data", [Text("Twenty women and twenty men.")])
+    >>> Report("Sex from gait", "Three of 40 walkers are misclassified.", [data]).title
+    'Sex from gait'
+
+    """
+
+    title: str
+    lead: str
+    sections: Sequence[Section] = ()
