@@ -283,12 +283,12 @@ def two_classes(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return classes, which
 
 
-def refuse_missing(y: ArrayLike) -> None:
-    """Raise a ValueError that says which walkers lack the trait."""
-    missing = np.flatnonzero(pd.isna(np.asarray(y, dtype=object)).reshape(-1))
+def refuse_missing(y: ArrayLike, what: str = "value of the trait") -> None:
+    """Raise a ValueError that says which walkers lack what they should have."""
+    missing = np.flatnonzero(pd.isna(np.asarray(y, dtype=object)))
     if y is not None and missing.size:
         rows = ", ".join(str(row) for row in missing[:10]) + (", ..." if missing.size > 10 else "")
         raise ValueError(
-            f"{missing.size} of {np.size(np.asarray(y, dtype=object))} walkers have no value of "
-            f"the trait (rows {rows}); leave them out of X and y."
+            f"{missing.size} of {len(np.asarray(y, dtype=object))} walkers have no {what} "
+            f"(rows {rows}); leave them out of X and y."
         )

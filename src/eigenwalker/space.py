@@ -206,15 +206,30 @@ def constant_features(X: np.ndarray) -> np.ndarray:
 def _principal_axes(standardised: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values and axes (component, feature), signs fixed, as many as the walkers span."""
     _, singular_values, axes = np.linalg.svd(standardised, full_matrices=False)
-    spanned = singular_values > spanning_tolerance(singular_values, standardised.shape)
-    spanned[len(standardised) - 1 :] = False
-    singular_values, axes = singular_values[spanned], axes[spanned]
+    n_spanned = spanned_dimensions(singular_values, standardised.shape)
+    singular_values, axes = singular_values[:n_spanned], axes[:n_spanned]
     weights = np.abs(axes)
     nearly_strongest = weights >= (1 - 1e-6) * weights.max(axis=1, keepdims=True, initial=0)
     strongest = nearly_strongest.argmax(axis=1)[:, None]
     return singular_values, axes * np.sign(np.take_along_axis(axes, strongest, axis=1))
 
 
-def spanning_tolerance(singular_values: np.ndarray, shape: tuple[int, ...]) -> float:
-    """Return the size at which a singular value is rounding, as `numpy.linalg.matrix_rank` has."""
-    return singular_values.max(initial=0) * max(shape) * np.finfo(float).eps
+def spanned_dimensions(singular_values: np.ndarray, shape: tuple[int, ...]) -> int:
+    """Return how many dimensions walkers span about their mean.
+
+    Parameters
+    ----------
+    singular_values : array of shape (dimension,)
+        Of the centred walkers, from the largest to the smallest.
+    shape : tuple of int
+        Number of walkers and of features.
+
+    Returns
+    -------
+    int
+        Singular values above rounding (as `numpy.linalg.matrix_rank` has it), one less than there
+        are walkers at most.
+
+    """
+    rounding = singular_values.max(initial=0) * max(shape) * np.finfo(float).eps
+    return min(int((singular_values > rounding).sum()), shape[0] - 1)
