@@ -2,3 +2,4 @@
 
 from eigenwalker.gait.frequency import frequency_of_scores as frequency_of_scores
 from eigenwalker.gait.frequency import fundamental_frequency as fundamental_frequency
+from eigenwalker.gait.placement import in_place as in_place

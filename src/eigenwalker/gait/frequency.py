@@ -109,7 +109,7 @@ def frequency_of_scores(
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")
     lowest = max(bounds_hz[0], _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
-    if n_frames < 8 or lowest >= bounds_hz[1]:
+    if n_frames < 8 or lowest >= 0.9 * bounds_hz[1]:
         raise ValueError(
             f"{n_frames} frames at {rate_hz:.4g} Hz last {n_frames / rate_hz:.3g} s, too short for "
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."

@@ -1,0 +1,71 @@
+"""Progress through the room and wander on the belt: what is slower than a stride."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenwalker.gait.harmonics import harmonic_basis, regress
+
+DRIFT_BELOW = 0.4
+"""Cycles a stride below which movement of the whole body is drift and no part of the gait."""
+
+N_HARMONICS = 4
+"""Harmonics of the stride that are fitted beside the drift, so that it takes nothing of them."""
+
+
+def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
+    """Return the constant velocity in a movement that else repeats with every stride.
+
+    Parameters
+    ----------
+    path : array of shape (time, axis)
+        Positions of the body.
+    cycles : array of shape (time,)
+        Time in strides.
+
+    Returns
+    -------
+    array of shape (axis,)
+        Way a stride.
+
+    Examples
+    --------
+    >>> cycles = np.linspace(0, 2.3, 100)
+    >>> bobbing = np.sin(4 * np.pi * cycles) + 1400 * cycles
+    >>> mean_velocity(bobbing[:, None], cycles).round(6).tolist()
+    [1400.0]
+
+    """
+    basis = np.column_stack([cycles, harmonic_basis(cycles, N_HARMONICS)])
+    return regress(basis, path)[0]
+
+
+def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
+    """Return what of a movement is slower than a stride.
+
+    A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
+    the harmonics of the stride: a movement that repeats with every stride has no drift, whatever its
+    shape up to the fourth harmonic.
+
+    Parameters
+    ----------
+    path : array of shape (time, axis)
+        Positions of the body.
+    cycles : array of shape (time,)
+        Time in strides, evenly spaced.
+
+    Returns
+    -------
+    array of shape (time, axis)
+        The drift; its mean is that of the path without its harmonics.
+
+    """
+    n_frames = len(cycles)
+    n_strides = cycles[-1] - cycles[0]
+    orders = np.arange(1, int(2 * DRIFT_BELOW * n_strides) + 1)
+    middles = (np.arange(n_frames) + 0.5) / n_frames
+    waves = np.cos(np.pi * np.multiply.outer(middles, orders))
+    slow = np.column_stack([np.ones(n_frames), middles - 0.5, waves])
+    harmonics = harmonic_basis(cycles, N_HARMONICS)[:, 1:]
+    weights = regress(np.column_stack([slow, harmonics]), path)
+    return slow @ weights[: slow.shape[1]]

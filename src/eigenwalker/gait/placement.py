@@ -1,0 +1,248 @@
+"""A capture of walking as a steady walk in place, facing +x."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.spatial.transform import Rotation
+
+from eigenwalker.gait.drift import mean_velocity, slow_drift
+from eigenwalker.gait.gaps import MAX_GAP_S, Gap, fill_short_gaps, runs_of
+from eigenwalker.gait.heading import find_heading
+from eigenwalker.gait.origin import find_origin
+from eigenwalker.gait.steady import SteadyPart, steady_part
+from eigenwalker.trajectories import check_trajectories, sampling_rate
+
+FEWEST_STRIDES = 0.9
+"""Below about one stride nothing repeats, and a walk cannot be told from its drift."""
+
+_WHOLE = 0.05
+"""Strides that may lack to the next whole number: frames are discrete, frequencies estimates."""
+
+_MAX_ROUNDS = 10
+
+
+def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArray:
+    """Return the steady strides of a capture as a walk in place, facing +x.
+
+    Short gaps are filled by cubic splines. Standing, starting, stopping and turning are left out, and
+    what is kept is trimmed to a whole number of strides, to the nearest frame. The direction of
+    walking is turned to +x. Forward progress and slow drift of the body are taken out together, by
+    regression beside the harmonics of the stride, which they therefore do not touch. The
+    pelvis (else the middle of the hips, else of all markers) is at x = y = 0 in the mean, and z = 0 is
+    the floor: where the lowest standing ankle is as high above it as ankles are for such legs (0.084 of
+    thigh and shank), or, where legs are not known, the level of the lowest marker.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        Trajectories of someone who walks, in a room or on a treadmill; any markers. With the
+        joints' usual names, facing and standing feet are known, otherwise only the way travelled.
+    max_gap_s : float
+        Longest gap to be filled, in seconds.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        In millimetres, on the clock of the capture. A coordinate ``rotation`` is turned too. ``attrs``
+        tell ``speed_mm_s`` (NaN if it cannot be known; one that the attributes of a walk in
+        place already state is kept), ``heading_deg`` (direction of walking in the capture, from +x
+        towards +y), ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``,
+        ``frequency_hz``, ``climb_mm`` (how far the body rose) and ``filled_samples``.
+
+    Raises
+    ------
+    ValueError
+        If there is less than about a stride, or a gap in the midst of it is too long to be filled;
+        the marker and the times are named.
+
+    Examples
+    --------
+    Someone whose feet swing about a body that goes along +y at 1.2 m/s:
+
+    >>> time = np.arange(0, 4, 0.01)
+    >>> swing = 300 * np.sin(2 * np.pi * 0.9 * time)
+    >>> forward = np.stack([swing, -swing, 0 * time], axis=1) + 1200 * time[:, None]
+    >>> positions = np.stack([0 * forward, forward, 0 * forward], axis=2)
+    >>> capture = ew.label_trajectories(positions, markers=["a", "b", "c"], rate_hz=100)
+    >>> walk = in_place(capture)
+    >>> round(walk.attrs["speed_mm_s"]), round(walk.attrs["heading_deg"]), walk.attrs["n_strides"]
+    (1200, 90, 3)
+
+    """
+    walk = check_trajectories(walk)
+    rate_hz = sampling_rate(walk)
+    positions, gaps = fill_short_gaps(walk.values, rate_hz, max_gap_s)
+    _refuse_unseen(walk, gaps)
+    part = _whole_strides(positions, _steady_run(walk, positions, gaps, rate_hz), rate_hz)
+    kept = slice(part.start, part.stop)
+    placed = _placed(positions[kept], walk.marker.values.tolist(), part.frequency_hz, rate_hz)
+    result = walk.isel(time=kept).copy(data=placed.positions)
+    if "rotation" in result.coords:
+        result = result.assign_coords(rotation=_turned(result.rotation, -placed.angle))
+    filled = np.isnan(walk.values[kept]).any(axis=2).sum()
+    return result.assign_attrs(
+        _facts(walk, placed, part, rate_hz),
+        filled_samples=int(filled) + int(walk.attrs.get("filled_samples", 0)),
+    )
+
+
+def body_relative(positions: np.ndarray) -> np.ndarray:
+    """Return movement relative to the body, as columns, in which progress and drift do not show.
+
+    Relative to the middle of all markers; with less than three, to a straight path.
+    """
+    n_frames, n_markers, _ = positions.shape
+    if n_markers >= 3:
+        return (positions - positions.mean(axis=1, keepdims=True)).reshape(n_frames, -1)
+    frames = np.arange(n_frames) - (n_frames - 1) / 2
+    columns = positions.reshape(n_frames, -1)
+    columns = columns - columns.mean(axis=0)
+    return columns - np.multiply.outer(frames, frames @ columns / (frames @ frames))
+
+
+def _refuse_unseen(walk: xr.DataArray, gaps: list[Gap]) -> None:
+    n_frames = walk.sizes["time"]
+    unseen = [gap.marker for gap in gaps if gap.stop - gap.start == n_frames]
+    if unseen:
+        raise ValueError(
+            f"The markers {walk.marker.values[unseen].tolist()} were never seen; leave them out, "
+            "for instance with trajectories.drop_sel(marker=[...])."
+        )
+
+
+def _steady_run(
+    walk: xr.DataArray, positions: np.ndarray, gaps: list[Gap], rate_hz: float
+) -> SteadyPart:
+    """Return the steady part with most strides among the runs of frames that are complete."""
+    parts, complaints = [], []
+    for start, stop in runs_of(~np.isnan(positions).any(axis=(1, 2))):
+        try:
+            part = steady_part(body_relative(positions[start:stop]), rate_hz)
+        except ValueError as error:
+            complaints.append((stop - start, str(error)))
+        else:
+            parts.append(part._replace(start=start + part.start, stop=start + part.stop))
+    parts = [part for part in parts if part.strides(rate_hz) >= FEWEST_STRIDES]
+    if not parts:
+        raise ValueError(_no_stride(walk, gaps, complaints))
+    best = max(parts, key=lambda part: part.strides(rate_hz))
+    if within := _gaps_within(best, parts, gaps, rate_hz):
+        raise ValueError(
+            f"Gaps in the midst of the walk are too long to be filled: {_told(walk, within)}. Fill "
+            "them where the capture was made, cut the capture before or after them, or leave "
+            "the markers out."
+        )
+    return best
+
+
+def _gaps_within(
+    best: SteadyPart, parts: list[SteadyPart], gaps: list[Gap], rate_hz: float
+) -> list[Gap]:
+    """Return gaps that alone part the best steady part from another: both reach up to them."""
+    stride = rate_hz / best.frequency_hz
+    around = [part for part in parts if -1 < part.start - best.stop < 2 * stride]
+    around += [part for part in parts if -1 < best.start - part.stop < 2 * stride]
+    spans = [sorted([best.start, best.stop, part.start, part.stop])[1:3] for part in around]
+    return [
+        gap
+        for gap in gaps
+        if any(low - 1 <= gap.start and gap.stop <= high + 1 for low, high in spans)
+    ]
+
+
+def _no_stride(walk: xr.DataArray, gaps: list[Gap], complaints: list[tuple[int, str]]) -> str:
+    if gaps:
+        return (
+            "No stride is seen whole: the longest stretch in which all markers are there is too "
+            f"short, as these are missing: {_told(walk, gaps)}. Leave out markers that were "
+            "hardly seen, or fill their gaps."
+        )
+    return max(complaints)[1] if complaints else "No stride repeats here: this is no steady walk."
+
+
+def _told(walk: xr.DataArray, gaps: list[Gap], most: int = 5) -> str:
+    time = walk.time.values
+    told = [
+        f"{walk.marker.values[gap.marker]} from {time[gap.start]:.2f} to {time[gap.stop - 1]:.2f} s "
+        f"(frames {gap.start} to {gap.stop - 1})"
+        for gap in sorted(gaps, key=lambda gap: gap.start - gap.stop)[:most]
+    ]
+    return ", ".join(told) + (f" and {len(gaps) - most} more" if len(gaps) > most else "")
+
+
+def _whole_strides(positions: np.ndarray, part: SteadyPart, rate_hz: float) -> SteadyPart:
+    """Return the middle of a steady part that holds a whole number of its own strides.
+
+    What is cut may change what is steady and how long a stride is: repeated until it holds.
+    """
+    for _ in range(_MAX_ROUNDS):
+        n_strides = max(1, int(part.strides(rate_hz) + _WHOLE))
+        n_frames = min(round(n_strides * rate_hz / part.frequency_hz), part.stop - part.start)
+        start = part.start + (part.stop - part.start - n_frames) // 2
+        if n_strides < 2:  # too little to measure a frequency anew
+            return part._replace(start=start, stop=start + n_frames)
+        found = steady_part(body_relative(positions[start : start + n_frames]), rate_hz)
+        found = found._replace(start=start + found.start, stop=start + found.stop)
+        if found == part:
+            break
+        part = found
+    return part
+
+
+class _Placed(NamedTuple):
+    positions: np.ndarray
+    angle: float
+    speed_mm_s: float
+    treadmill: bool
+    climb_mm: float
+
+
+def _placed(
+    positions: np.ndarray, markers: list[str], frequency_hz: float, rate_hz: float
+) -> _Placed:
+    """Return whole strides with progress and drift taken out, turned to +x, about the origin."""
+    cycles = np.arange(len(positions)) * frequency_hz / rate_hz
+    path = positions.mean(axis=1)
+    drift = slow_drift(path, cycles)
+    way = mean_velocity(path, cycles)
+    still = positions - drift[:, None]
+    heading = find_heading(still, markers, way, frequency_hz, rate_hz)
+    still = still @ _about_z(-heading.angle).as_matrix().T
+    still -= find_origin(still, markers)
+    climb = float(way[2] * cycles[-1])
+    return _Placed(still, heading.angle, heading.speed_mm_s, heading.treadmill, climb)
+
+
+def _about_z(angle: float) -> Rotation:
+    return Rotation.from_euler("z", angle)
+
+
+def _turned(rotation: xr.DataArray, angle: float) -> xr.DataArray:
+    """Return rotation vectors of shape (time, marker, axis) in a frame that is turned about z."""
+    vectors = rotation.values.reshape(-1, 3)
+    seen = ~np.isnan(vectors).any(axis=1)
+    turned = np.full(vectors.shape, np.nan)
+    turned[seen] = (_about_z(angle) * Rotation.from_rotvec(vectors[seen])).as_rotvec()
+    return rotation.copy(data=turned.reshape(rotation.shape))
+
+
+def _facts(
+    walk: xr.DataArray, placed: _Placed, part: SteadyPart, rate_hz: float
+) -> dict[str, float | bool | int]:
+    """Return what is known of the walk; what its attributes state of it in place stays."""
+    time = walk.time.values
+    before = walk.attrs if placed.treadmill else {}
+    speed = before.get("speed_mm_s", np.nan)
+    return {
+        "speed_mm_s": float(speed if np.isfinite(speed) else placed.speed_mm_s),
+        "heading_deg": float(np.rad2deg(placed.angle)) + float(before.get("heading_deg", 0.0)),
+        "treadmill": bool(before.get("treadmill", placed.treadmill)),
+        "steady_start_s": float(time[part.start]),
+        "steady_end_s": float(time[part.stop - 1]),
+        "n_strides": round(part.strides(rate_hz)),
+        "frequency_hz": part.frequency_hz,
+        "climb_mm": placed.climb_mm + float(before.get("climb_mm", 0.0)),
+    }
