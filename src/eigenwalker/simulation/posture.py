@@ -1,0 +1,127 @@
+"""Where the joints of a body are when its segments are turned: closed-form forward kinematics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from eigenwalker.simulation.body import Body
+from eigenwalker.simulation.foot import TOE_BEND
+
+SIDES = {"left": 1, "right": -1}
+"""Each side with the sign of its lateral axis."""
+
+
+class Turn(NamedTuple):
+    """A rotation about an axis of the room, frame by frame: cosine and sine of its angle."""
+
+    axis: int
+    cos: np.ndarray
+    sin: np.ndarray
+
+
+def turn(axis: str, angle: np.ndarray) -> Turn:
+    """Return a right-handed rotation about x, y or z by an angle in radians."""
+    return Turn("xyz".index(axis), np.cos(angle), np.sin(angle))
+
+
+Turns = tuple[Turn, ...]
+
+
+def turned(vector: np.ndarray, turns: Turns) -> np.ndarray:
+    """Return a vector of a segment after the turns, one after the other: shape (frame, 3).
+
+    Examples
+    --------
+    A thigh lifted to the horizontal points forward:
+
+    >>> turned(np.array([0.0, 0.0, -400.0]), (turn("y", np.array([-np.pi / 2])),)).round(6).tolist()
+    [[400.0, 0.0, -0.0]]
+
+    """
+    parts = list(vector)
+    for axis, cos, sin in turns:
+        a, b = (axis + 1) % 3, (axis + 2) % 3
+        parts[a], parts[b] = cos * parts[a] - sin * parts[b], sin * parts[a] + cos * parts[b]
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def trunk_turns(angles: Mapping[str, np.ndarray], part: str) -> Turns:
+    """Return the turns of pelvis, trunk or head in the room: tilt, obliquity, rotation."""
+    return (
+        turn("y", angles[f"{part}_tilt"]),
+        turn("x", angles[f"{part}_obliquity"]),
+        turn("z", -angles[f"{part}_rotation"]),
+    )
+
+
+def segment_turns(angles: Mapping[str, np.ndarray]) -> dict[str, Turns]:
+    """Return how each segment stands in the room.
+
+    Parameters
+    ----------
+    angles : mapping of str to array of shape (frame,)
+        Radians: ``pelvis_``, ``trunk_``, ``head_`` ``tilt``, ``obliquity``, ``rotation`` against
+        the room, and for each side ``thigh`` (against the vertical, in the plane of the leg),
+        ``knee_flexion``, ``splay`` (of that plane), ``foot_pitch``, ``foot_yaw``,
+        ``shoulder_flexion``, ``shoulder_abduction``, ``shoulder_rotation``, ``elbow_flexion``.
+
+    """
+    turns = {part: trunk_turns(angles, part) for part in ("pelvis", "trunk", "head")}
+    for name, side in SIDES.items():
+        own = {
+            key.removeprefix(f"{name}_"): a for key, a in angles.items() if key.startswith(name)
+        }
+        splay, yaw = turn("x", own["splay"]), turn("z", -side * own["foot_yaw"])
+        pitch = own["foot_pitch"]
+        turns[f"{name}_thigh"] = (turn("y", -own["thigh"]), splay)
+        turns[f"{name}_shank"] = (turn("y", own["knee_flexion"] - own["thigh"]), splay)
+        turns[f"{name}_foot"] = (turn("y", pitch), yaw)
+        turns[f"{name}_toes"] = (turn("y", pitch - np.clip(pitch, 0.0, TOE_BEND)), yaw)
+        upper = (
+            turn("z", -side * own["shoulder_rotation"]),
+            turn("x", side * own["shoulder_abduction"]),
+            turn("y", -own["shoulder_flexion"]),
+            *turns["trunk"],
+        )
+        turns[f"{name}_upper_arm"] = upper
+        turns[f"{name}_forearm"] = (turn("y", -own["elbow_flexion"]), *upper)
+    return turns
+
+
+def joint_positions(
+    body: Body, turns: Mapping[str, Turns], pelvis: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return where all joints are, and heel, ball and tip of the toes: arrays (frame, 3).
+
+    Parameters
+    ----------
+    body : Body
+    turns : mapping of segment to turns
+        As `segment_turns` returns them.
+    pelvis : array of shape (frame, 3)
+        Path of the pelvis point.
+
+    """
+    places = {"pelvis": pelvis}
+
+    def put(joint: str, parent: str, segment: str, offset: np.ndarray | tuple) -> None:
+        places[joint] = places[parent] + turned(np.asarray(offset, dtype=float), turns[segment])
+
+    put("sternum", "pelvis", "trunk", body.sternum)
+    put("neck", "pelvis", "trunk", body.neck)
+    put("head", "neck", "head", body.head)
+    for name, side in SIDES.items():
+        mirrored, foot = np.array([1, side, 1]), body.foot
+        put(f"{name}_hip", "pelvis", "pelvis", body.hip * mirrored)
+        put(f"{name}_knee", f"{name}_hip", f"{name}_thigh", (0, 0, -body.thigh))
+        put(f"{name}_ankle", f"{name}_knee", f"{name}_shank", (0, 0, -body.shank))
+        put(f"{name}_heel", f"{name}_ankle", f"{name}_foot", (-foot.heel, 0, -foot.height))
+        put(f"{name}_ball", f"{name}_ankle", f"{name}_foot", (foot.ball, 0, -foot.height))
+        put(f"{name}_toe", f"{name}_ball", f"{name}_toes", (foot.toe, 0, 0))
+        put(f"{name}_shoulder", "pelvis", "trunk", body.shoulder * mirrored)
+        put(f"{name}_elbow", f"{name}_shoulder", f"{name}_upper_arm", (0, 0, -body.upper_arm))
+        put(f"{name}_wrist", f"{name}_elbow", f"{name}_forearm", (0, 0, -body.forearm))
+    return places
