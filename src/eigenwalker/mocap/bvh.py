@@ -1,0 +1,317 @@
+"""BVH files: a skeleton of bones and how its joints turn -> where its joints are.
+
+The grammar is that of Biovision (a HIERARCHY of joints with OFFSET and CHANNELS, then a MOTION
+table), read as programs write it: channels in any order and for each joint its own, positions for
+joints other than the root, frame times rounded to a few digits.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.spatial.transform import Rotation
+
+from eigenwalker.kinematics import forward_kinematics
+from eigenwalker.mocap.unreadable import UnreadableFile
+from eigenwalker.mocap.upright import Unit, guess_unit, turn_upright, up_axis
+from eigenwalker.trajectories import label_trajectories
+
+MOST_JOINTS = 2000
+MOST_POSITIONS = 100_000_000
+"""More joints, or joints times frames, are no capture of a person but a damaged file."""
+USUAL_RATES_HZ = (
+    *(24, 25, 30, 48, 50, 60, 72, 75, 80, 90, 96, 100, 120, 125, 128, 144, 150, 160, 180, 192),
+    *(200, 240, 250, 256, 300, 360, 400, 480, 500, 512, 600, 960, 1000),
+    *(24000 / 1001, 30000 / 1001, 60000 / 1001, 120000 / 1001, 240000 / 1001),
+)
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_AGAIN = "export or copy the file again"
+
+
+@dataclass
+class Joint:
+    """A joint or end site as the HIERARCHY describes it."""
+
+    name: str
+    parent: int
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    channels: tuple[str, ...] = ()
+
+
+class _Motion(NamedTuple):
+    values: np.ndarray
+    rate_hz: float
+
+
+def looks_like_bvh(content: bytes) -> bool:
+    """Return whether a file begins as BVH files do."""
+    return content.lstrip(b"\xef\xbb\xbf \t\r\n")[:9].upper() == b"HIERARCHY"
+
+
+def read_bvh(content: bytes, *, source: str, unit: Unit | None = None) -> xr.DataArray:
+    """Return where the joints and end sites of a BVH file are.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole file.
+    source : str
+        Its name, for messages.
+    unit : Unit, optional
+        Unit of its lengths; guessed from the height of the body if left out.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        In millimetres, z up. End sites are called ``<joint>_end``. The coordinate ``rotation``
+        (time, marker, axis) holds how each joint's own frame is turned in the room, as rotation
+        vectors in radians (`scipy.spatial.transform.Rotation.from_rotvec`).
+
+    Raises
+    ------
+    UnreadableFile
+        If the file is no BVH, damaged or cut short.
+
+    """
+    head, table = _split(content.decode("utf-8-sig", errors="replace"), source)
+    joints = _hierarchy(head, source)
+    motion = _motion(table, sum(len(joint.channels) for joint in joints), source)
+    if len(joints) * len(motion.values) > MOST_POSITIONS:
+        raise UnreadableFile(
+            source,
+            "the capture of one person",
+            f"{len(joints)} joints in {len(motion.values)} frames",
+            "cut it into shorter files",
+        )
+    positions, orientations = _pose(joints, motion.values, source)
+    names = [joint.name for joint in joints]
+    up = up_axis(positions, names)
+    turn = turn_upright(up or "y")
+    positions = positions @ turn.T
+    named = unit is not None
+    unit = unit or guess_unit(positions, names, source=source)
+    walk = label_trajectories(
+        positions * unit.millimetres, markers=names, rate_hz=motion.rate_hz
+    ).assign_coords(
+        rotation=(
+            ("time", "marker", "axis"),
+            _turned(orientations, turn),
+        )
+    )
+    walk.attrs.update(
+        source=source,
+        format="BVH",
+        up_axis=up or "y",
+        up_axis_known=up is not None,
+        unit=unit.name,
+        unit_guessed=not named,
+        unit_reason=unit.reason,
+    )
+    return walk
+
+
+def _split(text: str, source: str) -> tuple[str, str]:
+    """Return the HIERARCHY and what follows the word MOTION."""
+    parts = re.split(r"(?im)^\s*MOTION\b", text, maxsplit=1)
+    if len(parts) < 2:
+        raise UnreadableFile(
+            source, "a line MOTION after the skeleton", "none: the file is cut short", _AGAIN
+        )
+    return parts[0], parts[1]
+
+
+def _hierarchy(text: str, source: str) -> list[Joint]:
+    """Return the joints in the order of their channels, parents before children."""
+    words = iter(re.sub(r"([{}])", r" \1 ", text).split())
+    joints: list[Joint] = []
+    open_joints: list[int] = []
+    if next(words, "").upper() != "HIERARCHY":
+        raise UnreadableFile(source, "the word HIERARCHY at its beginning", "another", _AGAIN)
+    for word in words:
+        match word.upper():
+            case "ROOT" | "JOINT" | "END":
+                parent = open_joints[-1] if open_joints else -1
+                name = " ".join(_until_brace(words))
+                if word.upper() == "END":
+                    name = f"{joints[parent].name if joints else 'root'}_end"
+                joints.append(Joint(_unlike(name or "joint", joints), parent))
+                open_joints.append(len(joints) - 1)
+            case "OFFSET" if open_joints:
+                x, y, z = (_number(next(words, ""), "an OFFSET", source) for _ in range(3))
+                joints[open_joints[-1]].offset = (x, y, z)
+            case "CHANNELS" if open_joints:
+                joints[open_joints[-1]].channels = _channels(words, source)
+            case "}" if open_joints:
+                open_joints.pop()
+            case _:
+                raise UnreadableFile(
+                    source, "ROOT, JOINT, End Site, OFFSET, CHANNELS or }", repr(word[:40]), _AGAIN
+                )
+        if len(joints) > MOST_JOINTS:
+            raise UnreadableFile(
+                source, "the skeleton of a person", f"more than {MOST_JOINTS} joints", _AGAIN
+            )
+    if open_joints or not joints:
+        raise UnreadableFile(
+            source, "a closed skeleton", f"{len(open_joints)} joints without their }}", _AGAIN
+        )
+    return joints
+
+
+def _until_brace(words: Iterator[str]) -> Iterator[str]:
+    for word in words:
+        if word == "{":
+            return
+        yield word
+
+
+def _unlike(name: str, joints: Sequence[Joint]) -> str:
+    """Return the name, numbered where another joint bears it already."""
+    taken = {joint.name for joint in joints}
+    number = 2
+    unlike = name
+    while unlike in taken:
+        unlike = f"{name}_{number}"
+        number += 1
+    return unlike
+
+
+def _channels(words: Iterator[str], source: str) -> tuple[str, ...]:
+    count = next(words, "")
+    if not re.fullmatch(r"\d", count):
+        raise UnreadableFile(source, "a number of CHANNELS up to 6", repr(count[:40]), _AGAIN)
+    channels = tuple(next(words, "") for _ in range(int(count)))
+    plain = tuple(channel.lower() for channel in channels)
+    unknown = [c for c in plain if not re.fullmatch(r"[xyz](position|rotation)", c)]
+    if unknown or len(set(plain)) < len(plain):
+        raise UnreadableFile(
+            source, "CHANNELS such as Xposition and Zrotation, each once", f"{channels}", _AGAIN
+        )
+    return plain
+
+
+def _number(word: str, where: str, source: str) -> float:
+    number = float(word) if _NUMBER.fullmatch(word) else np.nan
+    if not np.isfinite(number):
+        advice = "write numbers with a decimal point" if "," in word else _AGAIN
+        raise UnreadableFile(source, f"a finite number in {where}", repr(word[:40]), advice)
+    return number
+
+
+def _motion(text: str, n_channels: int, source: str) -> _Motion:
+    """Return the table of channels and the rate, declared against delivered."""
+    declared = re.match(r"\s*Frames\s*:?\s*(\d{1,9})\s*Frame\s+Time\s*:?\s*(\S+)", text, re.I)
+    if not declared:
+        raise UnreadableFile(
+            source, "the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip()), _AGAIN
+        )
+    n_frames = int(declared[1])
+    step = _number(declared[2], "the frame time", source)
+    rows = [row for line in text[declared.end() :].splitlines() if (row := line.split())]
+    if len(rows) != n_frames:
+        why = "the file is cut short" if len(rows) < n_frames else "the count is wrong"
+        raise UnreadableFile(
+            source, f"{n_frames} frames, as it declares", f"{len(rows)}: {why}", _AGAIN
+        )
+    ragged = [i for i, row in enumerate(rows) if len(row) != n_channels]
+    if not n_frames or ragged:
+        came = f"{len(rows[ragged[0]])} in frame {ragged[0] + 1}" if ragged else "no frames"
+        raise UnreadableFile(source, f"{n_channels} numbers a frame", came, _AGAIN)
+    if not text[-1].isspace():
+        _refuse_cut_number(rows, source)
+    if step <= 0:
+        raise UnreadableFile(source, "a frame time above 0", declared[2][:40], _AGAIN)
+    return _Motion(_table(rows, source), _rate(declared[2]))
+
+
+def _refuse_cut_number(rows: list[list[str]], source: str) -> None:
+    """Refuse a file whose last number has fewer decimals than all others: it ends within it."""
+    decimals = [len(word.partition(".")[2]) for row in rows for word in row]
+    if len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]:
+        raise UnreadableFile(
+            source,
+            f"{decimals[0]} decimals in each number",
+            f"{rows[-1][-1]!r} as the last: the file is cut short",
+            _AGAIN,
+        )
+
+
+def _table(rows: list[list[str]], source: str) -> np.ndarray:
+    try:
+        table = np.array(rows, dtype=float)
+    except ValueError:
+        table = None
+    if table is None or not np.isfinite(table).all():
+        for row, words in enumerate(rows, 1):
+            for word in words:
+                _number(word, f"frame {row}", source)
+        raise UnreadableFile(source, "numbers", "something else", _AGAIN)
+    return table
+
+
+def _rate(written: str) -> float:
+    """Return the usual rate whose frame time, rounded as `written`, is the one in the file."""
+    step = float(written)
+    decimals = len(written.partition(".")[2]) if "e" not in written.lower() else 12
+    rounding = max(0.5000001 * 10.0**-decimals, 1e-6 * step)
+    near = [rate for rate in USUAL_RATES_HZ if abs(1 / rate - step) <= rounding]
+    whole = [rate for rate in near if rate == int(rate)]
+    return float(min(whole or near or [1 / step], key=lambda rate: abs(1 / rate - step)))
+
+
+def _pose(
+    joints: Sequence[Joint], values: np.ndarray, source: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions (time, joint, 3) and orientations (time, joint, 4) of the joints."""
+    offsets = np.tile(np.array([joint.offset for joint in joints]), (len(values), 1, 1))
+    rotations = np.zeros((len(values), len(joints), 4))
+    rotations[..., 3] = 1.0
+    moved = np.zeros((len(joints), 3), dtype=bool)
+    columns = np.cumsum([0] + [len(joint.channels) for joint in joints])
+    same_order: dict[str, list[tuple[int, list[int]]]] = {}
+    for index, joint in enumerate(joints):
+        turning: list[int] = []
+        order = ""
+        for column, channel in enumerate(joint.channels, columns[index]):
+            if channel.endswith("position"):
+                axis = "xyz".index(channel[0])
+                offsets[:, index, axis] = values[:, column]
+                moved[index, axis] = True
+            else:
+                turning.append(column)
+                order += channel[0].upper()
+        if order:
+            same_order.setdefault(order, []).append((index, turning))
+    for order, members in same_order.items():
+        indices = [index for index, _ in members]
+        angles = values[:, [turning for _, turning in members]].reshape(-1, len(order))
+        turns = Rotation.from_euler(order, angles, degrees=True)
+        rotations[:, indices] = turns.as_quat().reshape(len(values), len(indices), 4)
+    offsets = _placed(joints, offsets, moved)
+    return forward_kinematics([joint.parent for joint in joints], offsets, rotations)
+
+
+def _placed(joints: Sequence[Joint], offsets: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """Return where joints are in their parents' frames: position channels replace the OFFSET.
+
+    In a few files the channels of joints other than the root are added to it instead, and so are
+    nearer to 0 than to the OFFSET.
+    """
+    rest = np.array([joint.offset for joint in joints])
+    inner = moved & (np.array([joint.parent for joint in joints]) >= 0)[:, None]
+    channels = np.median(offsets, axis=0)
+    if np.abs(channels[inner]).sum() < np.abs(channels - rest)[inner].sum():
+        return offsets + np.where(inner, rest, 0.0)
+    return offsets
+
+
+def _turned(orientations: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Return orientations (x, y, z, w) as rotation vectors in the room turned by a matrix."""
+    turned = Rotation.from_matrix(turn) * Rotation.from_quat(orientations.reshape(-1, 4))
+    return turned.as_rotvec().reshape(*orientations.shape[:2], 3)

@@ -1,0 +1,151 @@
+"""What markers are called: the sets that are known, and how their names are found in a capture."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+SIDES = {"left": "right", "right": "left"}
+COMMON = 0.6
+"""Share of the names that must begin alike for the beginning to be the name of a subject."""
+
+
+@dataclass(frozen=True)
+class MarkerSet:
+    """A marker set or skeleton: which markers give each landmark, joint and extra point."""
+
+    name: str
+    landmarks: Mapping[str, str]
+    joints: Mapping[str, str]
+    extras: Mapping[str, str]
+
+
+@cache
+def known_sets() -> tuple[MarkerSet, ...]:
+    """Return the marker sets of ``marker_sets.toml``, in the order in which they are tried.
+
+    Examples
+    --------
+    >>> known_sets()[1].landmarks["right_thigh"]
+    '{right}THI | {right}THIGH | {right}THL'
+
+    """
+    text = files("eigenwalker.mocap").joinpath("marker_sets.toml").read_text(encoding="utf-8")
+    return tuple(
+        MarkerSet(
+            name,
+            landmarks=_both_sides(table.get("landmarks", {})),
+            joints=_both_sides(table.get("joints", {})),
+            extras=_both_sides(table.get("extras", {})),
+        )
+        for name, table in tomllib.loads(text).items()
+    )
+
+
+def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
+    """Return an entry with {L} twice, for the left and the right; others as they are."""
+    expanded: dict[str, str] = {}
+    for name, entry in entries.items():
+        if "{L}" in entry and "{R}" not in entry:
+            for side in SIDES:
+                expanded[f"{side}_{name}"] = entry.replace("{L}", f"{{{side}}}")
+        else:
+            expanded[name] = entry.replace("{L}", "{left}").replace("{R}", "{right}")
+    return expanded
+
+
+class MarkerNames:
+    """The marker names of a capture, to be asked in the spelling of a marker set.
+
+    Parameters
+    ----------
+    names : sequence of str
+        As they stand in the capture.
+
+    Examples
+    --------
+    >>> names = MarkerNames(["Anna:LKNE", "Anna:LWRA", "Anna:LWRB"])
+    >>> names.find("{left}KNEE | {left}KNE")
+    ['Anna:LKNE']
+    >>> names.find("{left}WRA + {left}WRB")
+    ['Anna:LWRA', 'Anna:LWRB']
+    >>> MarkerNames(["mixamorig:LeftUpLeg"]).find("{left}UpLeg")
+    ['mixamorig:LeftUpLeg']
+    >>> MarkerNames(["UpperLeg_L"]).find("{left}UpperLeg")
+    ['UpperLeg_L']
+
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._known: dict[str, str] = {}
+        for name, own in zip(names, _without_common_prefix(names), strict=True):
+            for key in (_plain(own), *_side_first(own)):
+                self._known.setdefault(key, name)
+
+    def find(self, entry: str) -> list[str]:
+        """Return the names of the first alternative of an entry that the capture has in full."""
+        for alternative in entry.split("|"):
+            found = [self._find_one(word.strip()) for word in alternative.split("+")]
+            if None not in found:
+                return [name for name in found if name is not None]
+        return []
+
+    def _find_one(self, word: str) -> str | None:
+        side = next((side for side in SIDES if f"{{{side}}}" in word), None)
+        if side is None:
+            return self._known.get(_plain(word))
+        mark = f"{{{side}}}"
+        keys = [_plain(word.replace(mark, side[0])), _plain(word.replace(mark, side))]
+        if word.startswith(mark):
+            keys.insert(0, f"{side}|{_plain(word.removeprefix(mark))}")
+        return next((self._known[key] for key in keys if key in self._known), None)
+
+
+def subjects(names: Sequence[str]) -> list[str]:
+    """Return the subjects that stand before the names, as in ``Anna:LKNE``.
+
+    Examples
+    --------
+    >>> subjects(["Anna:LKNE", "Ben:LKNE", "floor"])
+    ['Anna', 'Ben']
+
+    """
+    return sorted({name.rpartition(":")[0] for name in names} - {""})
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^a-z0-9*]", "", name.lower())
+
+
+def _side_first(name: str) -> list[str]:
+    """Return ``left|thigh`` for lThigh, L_Thigh, thigh.L, ThighLeft and other ways to say so."""
+    patterns = (
+        r"(?P<side>left|right)[ _.-]*(?P<part>.+)",
+        r"(?P<part>.+?)[ _.-]*(?P<side>left|right)",
+        r"(?P<side>[lr])[ _.-]+(?P<part>.+)",
+        r"(?P<part>.+?)[ _.-]+(?P<side>[lr])",
+    )
+    in_camel_case = (r"(?P<side>[lrLR])(?P<part>[A-Z].*)", r"(?P<part>.*[a-z])(?P<side>[LR])")
+    hits = [re.fullmatch(pattern, name.strip(), re.IGNORECASE) for pattern in patterns]
+    hits += [re.fullmatch(pattern, name.strip()) for pattern in in_camel_case]
+    sides = {"l": "left", "r": "right"}
+    return [f"{sides[hit['side'][0].lower()]}|{_plain(hit['part'])}" for hit in hits if hit]
+
+
+def _without_common_prefix(names: Sequence[str]) -> list[str]:
+    """Return the names without the subject or character that stands before most of them."""
+    names = [re.split(r"[:|]", name)[-1] for name in names]
+    starts = Counter(
+        hit[0] for name in names if (hit := re.match(r"[^ _.-]{2,}[ _.-]", name)) is not None
+    )
+    if not starts:
+        return names
+    start, count = starts.most_common(1)[0]
+    if count < COMMON * len(names) or start[:-1].lower() in SIDES:
+        return names
+    return [name.removeprefix(start) for name in names]

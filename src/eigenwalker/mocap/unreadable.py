@@ -1,0 +1,39 @@
+"""The one error that a file which cannot be read ends in."""
+
+from __future__ import annotations
+
+
+class UnreadableFile(ValueError):
+    """A file does not hold what a reader needs.
+
+    Whatever is wrong with a file, readers raise this and nothing else, so that one bad file among
+    many can be reported and the rest read.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    expected : str
+        What a sound file would hold.
+    came : str
+        What stood there instead.
+    advice : str
+        What the owner of the file can do.
+
+    Examples
+    --------
+    >>> error = UnreadableFile("a.bvh", "207 frames", "120", "export the file again")
+    >>> print(error)
+    a.bvh: expected 207 frames, but got 120; export the file again.
+
+    """
+
+    def __init__(self, source: str, expected: str, came: str, advice: str) -> None:
+        super().__init__(source, expected, came, advice)
+        self.source = source
+        self.expected = expected
+        self.came = came
+        self.advice = advice
+
+    def __str__(self) -> str:
+        return f"{self.source}: expected {self.expected}, but got {self.came}; {self.advice}."

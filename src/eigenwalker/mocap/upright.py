@@ -1,0 +1,171 @@
+"""Which way is up, and how long a unit is: told from where head and feet are."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+UPRIGHT = 3.0
+"""How many times further head and feet must be apart along up than along the other axes."""
+PERSON_MM = 1600.0
+"""A height between a child's and a tall man's, to which guessed units are held."""
+PLAUSIBLE_MM = (800.0, 2300.0)
+UNITS = {"mm": 1.0, "cm": 10.0, "in": 25.4, "asf": 25.4 / 0.45, "m": 1000.0}
+"""Millimetres a unit, for the units that files without one are written in.
+
+``"asf"`` is the length unit of the Acclaim skeletons of the CMU collection: inches over 0.45.
+"""
+
+_HIGH = re.compile(r"head|hd$|skull|nose|vertex|glabella|^sgl$")
+_NEXT_HIGH = re.compile(r"neck|^c7$|cv7|clav")
+_LOW = re.compile(r"foot|toe|heel|hee$|ankle|ank$|mt\d$|meta|malle|^[lr]f(al|cc)$")
+
+
+class UnitGuessed(UserWarning):
+    """A file names no unit of length, so it was told from the height of the body.
+
+    Silence it with ``warnings.simplefilter("ignore", UnitGuessed)``, or name the unit:
+    ``read_mocap(path, unit="cm")``.
+    """
+
+
+class Unit(NamedTuple):
+    """A unit of length, how long it is, and why it was taken (empty where a file names it)."""
+
+    name: str
+    millimetres: float
+    reason: str = ""
+
+
+def head_and_feet(positions: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the trajectories of the points at the head and of those at the feet.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, 3)
+        In any unit and frame.
+    names : sequence of str
+        One name a marker, in any common spelling.
+
+    Returns
+    -------
+    tuple of two arrays of shape (time, some markers, 3)
+        Either may be empty of markers.
+
+    """
+    plain = [re.sub(r"[^a-z0-9]", "", name.rsplit(":", 1)[-1].lower()) for name in names]
+    high = [i for i, name in enumerate(plain) if _HIGH.search(name)]
+    high = high or [i for i, name in enumerate(plain) if _NEXT_HIGH.search(name)]
+    low = [i for i, name in enumerate(plain) if _LOW.search(name)]
+    return positions[:, high], positions[:, low]
+
+
+def up_axis(positions: np.ndarray, names: Sequence[str]) -> str | None:
+    """Return the axis along which the head is above the feet.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, 3)
+        In any unit.
+    names : sequence of str
+        One name a marker.
+
+    Returns
+    -------
+    str or None
+        ``"z"``, ``"-y"`` and the like; None where names or posture leave it open.
+
+    Examples
+    --------
+    >>> up_axis(np.array([[[0, 1700, 0], [100, 0, 50]]]), ["Head", "LeftToe"])
+    'y'
+
+    """
+    high, low = (part[~np.isnan(part).any(axis=2)] for part in head_and_feet(positions, names))
+    if not len(high) or not len(low):
+        return None
+    rise = high.mean(axis=0) - low.mean(axis=0)
+    axis = int(np.abs(rise).argmax())
+    if abs(rise[axis]) <= UPRIGHT * np.abs(np.delete(rise, axis)).max():
+        return None
+    return ("-" if rise[axis] < 0 else "") + "xyz"[axis]
+
+
+def turn_upright(up: str) -> np.ndarray:
+    """Return the rotation matrix that turns the axis `up` into z.
+
+    The axes are exchanged in turn, so that a body which faces z in a y-up frame faces x.
+
+    Parameters
+    ----------
+    up : {"x", "y", "z", "-x", "-y", "-z"}
+        Axis that points up.
+
+    Returns
+    -------
+    array of shape (3, 3)
+        To be multiplied from the left.
+
+    Examples
+    --------
+    >>> turn_upright("y") @ [1, 2, 3]
+    array([3., 1., 2.])
+
+    """
+    axis = "xyz".index(up[-1])
+    turn = np.eye(3)[[(axis + 1) % 3, (axis + 2) % 3, axis]]
+    return np.diag([1.0, -1.0, -1.0]) @ turn if up.startswith("-") else turn
+
+
+def guess_unit(positions: np.ndarray, names: Sequence[str], *, source: str) -> Unit:
+    """Return the unit in which a body is as tall as people are, and warn that it is a guess.
+
+    The height is that of the highest point of the head above the lowest of the feet (of all points,
+    where names tell neither), in the middle of the frames.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, 3)
+        z up, in the unit that is sought.
+    names : sequence of str
+        One name a marker.
+    source : str
+        Name of the file, for the warning.
+
+    Returns
+    -------
+    Unit
+        The one of `UNITS` which brings the height nearest to that of a person, and the reason.
+
+    """
+    high, low = head_and_feet(positions, names)
+    if not high.size or not low.size:
+        high = low = positions
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # frames without a sample give NaN
+        height = np.nanmedian(np.nanmax(high[..., 2], axis=1) - np.nanmin(low[..., 2], axis=1))
+    if not height > 0:
+        height = np.nan
+        name = "mm"
+    else:
+        name = min(UNITS, key=lambda unit: abs(np.log(height * UNITS[unit] / PERSON_MM)))
+    tall = height * UNITS[name]
+    if PLAUSIBLE_MM[0] <= tall <= PLAUSIBLE_MM[1]:
+        reason = f"from head to foot the body measures {height:.4g}, which is {tall:.0f} mm"
+    else:
+        reason = (
+            f"the body measures {height:.4g} from head to foot, which makes no person "
+            f"in any known unit ({tall:.0f} mm here)"
+        )
+    reason += f" if the unit is {name}" + (" (inch/0.45)" if name == "asf" else "")
+    warnings.warn(
+        f"{source} names no unit of length; {reason}. Name it to be sure: "
+        f"read_mocap(..., unit={name!r}).",
+        UnitGuessed,
+        stacklevel=2,
+    )
+    return Unit(name, UNITS[name], reason)
