@@ -2,4 +2,5 @@
 
 from eigenwalker.gait.frequency import frequency_of_scores as frequency_of_scores
 from eigenwalker.gait.frequency import fundamental_frequency as fundamental_frequency
+from eigenwalker.gait.heading import stance_speed as stance_speed
 from eigenwalker.gait.placement import in_place as in_place

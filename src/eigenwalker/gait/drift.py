@@ -44,8 +44,8 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     """Return what of a movement is slower than a stride.
 
     A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
-    the harmonics of the stride: a movement that repeats with every stride has no drift, whatever its
-    shape up to the fourth harmonic.
+    the harmonics of the stride: what repeats with every stride, up to the fourth harmonic, has no
+    drift.
 
     Parameters
     ----------

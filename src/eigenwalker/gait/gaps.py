@@ -38,11 +38,12 @@ def runs_of(flags: np.ndarray) -> list[tuple[int, int]]:
 
 def find_gaps(positions: np.ndarray) -> list[Gap]:
     """Return all gaps in positions of shape (time, marker, axis), in the order of markers."""
-    missing = np.isnan(positions).any(axis=2)
+    missing = ~np.isfinite(positions).all(axis=2).T
     return [
-        Gap(int(marker), start, stop)
-        for marker in np.flatnonzero(missing.any(axis=0))
-        for start, stop in runs_of(missing[:, marker])
+        Gap(marker, start, stop)
+        for marker, flags in enumerate(missing)
+        if flags.any()
+        for start, stop in runs_of(flags)
     ]
 
 

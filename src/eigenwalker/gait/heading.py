@@ -6,11 +6,18 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+
+from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 SIDES = ("left", "right")
 
-STANCE_SHARE = 0.25
+STANCE_SHARE = 0.35
 """Share of the cycle in which an ankle is lowest: foot flat, when it hardly moves on the ground."""
+
+STANDING_BEYOND = 0.7
+"""A low ankle stands while it goes with the ground at this share of the usual speed or more; before
+heel strike it is low as well, but slower."""
 
 LEAST_PROGRESS_MM = 150.0
 """Way a stride below which a walker whose feet are not known counts as walking in place: more than
@@ -20,9 +27,14 @@ _FORWARD_WITHIN = np.cos(np.deg2rad(60))
 
 
 class Heading(NamedTuple):
-    """Direction of the walk and its speed, both in the frame of the capture."""
+    """Direction of the walk and its speed, both in the frame of the capture.
+
+    ``angle`` runs from +x towards +y, in radians. ``feet_angle`` is the direction that posture and
+    standing feet tell without any progress; it differs from the path by a degree or two.
+    """
 
     angle: float
+    feet_angle: float
     speed_mm_s: float
     treadmill: bool
 
@@ -30,15 +42,15 @@ class Heading(NamedTuple):
 def find_heading(
     positions: np.ndarray,
     markers: Sequence[str],
-    way: np.ndarray,
+    progress: np.ndarray,
     frequency_hz: float,
     rate_hz: float,
 ) -> Heading:
     """Return the direction of walking, the speed, and whether it was on a treadmill.
 
-    Feet that stand on the ground tell how body and ground move against each other, in a room as on a
-    belt; without ankles, the progress of the body does. Someone who walks backwards or sideways
-    still faces +x: speed along it is then negative, or small.
+    In a room the progress of the body tells both; on a treadmill the feet that stand on the belt
+    do; and where feet are not known, hips and shoulders tell the direction. Someone who walks
+    backwards or sideways still faces +x: speed along it is then negative, or small.
 
     Parameters
     ----------
@@ -46,8 +58,8 @@ def find_heading(
         Whole strides, progress taken out.
     markers : sequence of str
         Their names.
-    way : array of shape (2,)
-        Horizontal progress a stride that was taken out.
+    progress : array of shape (2,)
+        Horizontal velocity that was taken out, in mm/s.
     frequency_hz : float
         Strides a second.
     rate_hz : float
@@ -56,29 +68,41 @@ def find_heading(
     Returns
     -------
     Heading
-        The angle in radians from +x towards +y.
 
     """
-    progress = way[:2] * frequency_hz
-    ground = ground_velocity(positions, markers, rate_hz)
-    if ground is None:
-        treadmill = bool(np.hypot(*way[:2]) < LEAST_PROGRESS_MM)
-        walking = np.zeros(2) if treadmill else progress
-    else:
-        treadmill = bool(np.hypot(*progress) < 0.5 * np.hypot(*ground))
-        walking = -ground
     facing = _facing(positions, markers)
-    speed = float(np.hypot(*walking)) if treadmill else float(np.hypot(*progress))
-    if treadmill and ground is None:
-        speed = np.nan
-    towards = walking
-    if facing is not None:
-        along = facing @ walking / max(float(np.hypot(*walking)), 1e-9)
-        if along < _FORWARD_WITHIN:
-            backwards = along < -_FORWARD_WITHIN
-            towards = -walking if backwards else facing
-            speed *= -1 if backwards else along
-    return Heading(float(np.arctan2(towards[1], towards[0])), speed, treadmill)
+    ground = ground_velocity(positions, markers, rate_hz)
+    least = LEAST_PROGRESS_MM * frequency_hz if ground is None else 0.5 * _length(ground)
+    treadmill = _length(progress) < least
+    over_ground = np.zeros(2) if ground is None else -ground
+    feet_towards, speed = _forwards(over_ground, facing)
+    if not treadmill:
+        towards, speed = _forwards(progress, facing)
+    else:
+        towards = feet_towards
+        speed = np.nan if ground is None else speed
+    return Heading(_angle(towards), _angle(feet_towards), speed, treadmill)
+
+
+def _forwards(velocity: np.ndarray, facing: np.ndarray | None) -> tuple[np.ndarray, float]:
+    """Return a direction that the body faces, along the velocity if it can be, and the speed."""
+    speed = _length(velocity)
+    if facing is None:
+        return velocity, speed
+    along = float(facing @ velocity)
+    if along >= _FORWARD_WITHIN * speed and speed > 0:
+        return velocity, speed
+    if along <= -_FORWARD_WITHIN * speed and speed > 0:
+        return -velocity, -speed
+    return facing, along
+
+
+def _length(vector: np.ndarray) -> float:
+    return float(np.linalg.norm(vector))
+
+
+def _angle(vector: np.ndarray) -> float:
+    return float(np.arctan2(vector[1], vector[0]))
 
 
 def ground_velocity(
@@ -86,20 +110,46 @@ def ground_velocity(
 ) -> np.ndarray | None:
     """Return the horizontal velocity of the standing feet, in mm/s; None without both ankles.
 
-    Each ankle's mean velocity while it is lowest. Seen from the ankle the ground seems some percent
-    slower than it is, as the shank rolls forward over the foot.
+    The mean over both ankles of their velocity while they are low and go with the ground.
     """
     names = list(markers)
     ankles = [f"{side}_ankle" for side in SIDES]
     if not set(ankles) <= set(names):
         return None
-    velocities = []
-    for ankle in ankles:
-        path = positions[:, names.index(ankle)]
-        velocity = np.gradient(path[:, :2], 1 / rate_hz, axis=0)
-        low = path[:, 2] <= np.quantile(path[:, 2], STANCE_SHARE)
-        velocities.append(velocity[low].mean(axis=0))
-    return np.mean(velocities, axis=0)
+    return np.mean(
+        [_while_standing(positions[:, names.index(ankle)], rate_hz) for ankle in ankles], axis=0
+    )
+
+
+def _while_standing(path: np.ndarray, rate_hz: float) -> np.ndarray:
+    velocity = np.gradient(path[:, :2], 1 / rate_hz, axis=0)
+    low = path[:, 2] <= np.quantile(path[:, 2], STANCE_SHARE)
+    usual = velocity[low].mean(axis=0)
+    along = velocity[low] @ usual / max(_length(usual), 1e-9)
+    standing = along >= STANDING_BEYOND * np.median(along)
+    return velocity[low][standing].mean(axis=0)
+
+
+def stance_speed(walk: xr.DataArray) -> float:
+    """Return the speed of a walk in place, from the feet that stand on the ground.
+
+    The belt goes backwards as fast as they do. An ankle rolls forward over its foot meanwhile, so
+    this is some percent less than the belt makes.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        A walk in place, facing +x, with the markers left_ankle and right_ankle.
+
+    Returns
+    -------
+    float
+        Millimetres a second along +x; NaN without both ankles.
+
+    """
+    walk = check_trajectories(walk, complete=True)
+    ground = ground_velocity(walk.values, walk.marker.values.tolist(), sampling_rate(walk))
+    return float("nan") if ground is None else -float(ground[0])
 
 
 def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
@@ -118,11 +168,11 @@ def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
     if not pairs:
         return None
     to_left = np.sum([posture[left] - posture[right] for left, right in pairs], axis=0)
-    facing = np.array([to_left[1], -to_left[0]]) / max(float(np.hypot(*to_left)), 1e-9)
+    facing = np.array([to_left[1], -to_left[0]]) / max(_length(to_left), 1e-9)
     legs = [
         [place[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle")]
         for side in SIDES
         if all(f"{side}_{joint}" in place for joint in ("hip", "knee", "ankle"))
     ]
-    bend = sum(posture[knee] - (posture[hip] + posture[ankle]) / 2 for hip, knee, ankle in legs)
-    return -facing if legs and facing @ bend < 0 else facing
+    bends = [posture[knee] - (posture[hip] + posture[ankle]) / 2 for hip, knee, ankle in legs]
+    return -facing if legs and facing @ np.sum(bends, axis=0) < 0 else facing

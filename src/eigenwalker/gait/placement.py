@@ -27,13 +27,13 @@ _MAX_ROUNDS = 10
 def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
-    Short gaps are filled by cubic splines. Standing, starting, stopping and turning are left out, and
-    what is kept is trimmed to a whole number of strides, to the nearest frame. The direction of
-    walking is turned to +x. Forward progress and slow drift of the body are taken out together, by
-    regression beside the harmonics of the stride, which they therefore do not touch. The
-    pelvis (else the middle of the hips, else of all markers) is at x = y = 0 in the mean, and z = 0 is
-    the floor: where the lowest standing ankle is as high above it as ankles are for such legs (0.084 of
-    thigh and shank), or, where legs are not known, the level of the lowest marker.
+    Short gaps are filled by cubic splines. Standing, starting, stopping and turning are left out,
+    and what is kept is trimmed to a whole number of strides, to the nearest frame. The direction
+    of walking is turned to +x. Forward progress and slow drift of the body are taken out
+    together, by regression beside the harmonics of the stride, which they therefore do not touch.
+    The pelvis (else the middle of the hips, else of all markers) is at x = y = 0 in the mean, and
+    z = 0 is the floor: where the lowest standing ankle is as high above it as ankles are for such
+    legs (0.084 of thigh and shank), or, where legs are not known, the level of the lowest marker.
 
     Parameters
     ----------
@@ -46,10 +46,11 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        In millimetres, on the clock of the capture. A coordinate ``rotation`` is turned too. ``attrs``
-        tell ``speed_mm_s`` (NaN if it cannot be known; one that the attributes of a walk in
+        In millimetres, on the clock of the capture. A coordinate ``rotation`` is turned too.
+        ``attrs`` tell ``speed_mm_s`` (NaN if it cannot be known; one that the attributes of a walk in
         place already state is kept), ``heading_deg`` (direction of walking in the capture, from +x
-        towards +y), ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``,
+        towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
+        ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``,
         ``frequency_hz``, ``climb_mm`` (how far the body rose) and ``filled_samples``.
 
     Raises
@@ -78,7 +79,8 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
     _refuse_unseen(walk, gaps)
     part = _whole_strides(positions, _steady_run(walk, positions, gaps, rate_hz), rate_hz)
     kept = slice(part.start, part.stop)
-    placed = _placed(positions[kept], walk.marker.values.tolist(), part.frequency_hz, rate_hz)
+    names = walk.marker.values.tolist()
+    placed = _placed(positions[kept], names, part.frequency_hz, rate_hz, walk.attrs.get("feet_deg"))
     result = walk.isel(time=kept).copy(data=placed.positions)
     if "rotation" in result.coords:
         result = result.assign_coords(rotation=_turned(result.rotation, -placed.angle))
@@ -118,7 +120,8 @@ def _steady_run(
 ) -> SteadyPart:
     """Return the steady part with most strides among the runs of frames that are complete."""
     parts, complaints = [], []
-    for start, stop in runs_of(~np.isnan(positions).any(axis=(1, 2))):
+    complete = np.isfinite(positions).all(axis=(1, 2))
+    for start, stop in runs_of(np.atleast_1d(complete)):
         try:
             part = steady_part(body_relative(positions[start:stop]), rate_hz)
         except ValueError as error:
@@ -166,8 +169,8 @@ def _no_stride(walk: xr.DataArray, gaps: list[Gap], complaints: list[tuple[int, 
 def _told(walk: xr.DataArray, gaps: list[Gap], most: int = 5) -> str:
     time = walk.time.values
     told = [
-        f"{walk.marker.values[gap.marker]} from {time[gap.start]:.2f} to {time[gap.stop - 1]:.2f} s "
-        f"(frames {gap.start} to {gap.stop - 1})"
+        f"{walk.marker.values[gap.marker]} from {time[gap.start]:.2f} to "
+        f"{time[gap.stop - 1]:.2f} s (frames {gap.start} to {gap.stop - 1})"
         for gap in sorted(gaps, key=lambda gap: gap.start - gap.stop)[:most]
     ]
     return ", ".join(told) + (f" and {len(gaps) - most} more" if len(gaps) > most else "")
@@ -195,25 +198,42 @@ def _whole_strides(positions: np.ndarray, part: SteadyPart, rate_hz: float) -> S
 class _Placed(NamedTuple):
     positions: np.ndarray
     angle: float
+    feet_angle: float
     speed_mm_s: float
     treadmill: bool
     climb_mm: float
 
 
 def _placed(
-    positions: np.ndarray, markers: list[str], frequency_hz: float, rate_hz: float
+    positions: np.ndarray,
+    markers: list[str],
+    frequency_hz: float,
+    rate_hz: float,
+    feet_deg: float | None,
 ) -> _Placed:
-    """Return whole strides with progress and drift taken out, turned to +x, about the origin."""
+    """Return whole strides with progress and drift taken out, turned to +x, about the origin.
+
+    A walk in place that was turned before knows by how much its feet then differed from its path.
+    """
     cycles = np.arange(len(positions)) * frequency_hz / rate_hz
     path = positions.mean(axis=1)
     drift = slow_drift(path, cycles)
     way = mean_velocity(path, cycles)
     still = positions - drift[:, None]
-    heading = find_heading(still, markers, way, frequency_hz, rate_hz)
-    still = still @ _about_z(-heading.angle).as_matrix().T
+    heading = find_heading(still, markers, way[:2] * frequency_hz, frequency_hz, rate_hz)
+    angle = heading.angle
+    if heading.treadmill and feet_deg is not None:
+        angle -= np.deg2rad(feet_deg)
+    still = still @ _about_z(-angle).as_matrix().T
     still -= find_origin(still, markers)
-    climb = float(way[2] * cycles[-1])
-    return _Placed(still, heading.angle, heading.speed_mm_s, heading.treadmill, climb)
+    return _Placed(
+        still,
+        angle=angle,
+        feet_angle=heading.feet_angle - angle,
+        speed_mm_s=heading.speed_mm_s,
+        treadmill=heading.treadmill,
+        climb_mm=float(way[2] * cycles[-1]),
+    )
 
 
 def _about_z(angle: float) -> Rotation:
@@ -238,7 +258,8 @@ def _facts(
     speed = before.get("speed_mm_s", np.nan)
     return {
         "speed_mm_s": float(speed if np.isfinite(speed) else placed.speed_mm_s),
-        "heading_deg": float(np.rad2deg(placed.angle)) + float(before.get("heading_deg", 0.0)),
+        "heading_deg": _degrees(placed.angle + np.deg2rad(before.get("heading_deg", 0.0))),
+        "feet_deg": _degrees(placed.feet_angle),
         "treadmill": bool(before.get("treadmill", placed.treadmill)),
         "steady_start_s": float(time[part.start]),
         "steady_end_s": float(time[part.stop - 1]),
@@ -246,3 +267,8 @@ def _facts(
         "frequency_hz": part.frequency_hz,
         "climb_mm": placed.climb_mm + float(before.get("climb_mm", 0.0)),
     }
+
+
+def _degrees(angle: float) -> float:
+    """Return an angle in degrees from -180 to 180."""
+    return float(np.rad2deg(np.arctan2(np.sin(angle), np.cos(angle))))

@@ -73,12 +73,12 @@ def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
     coarse = movement[: n_blocks * block].reshape(n_blocks, block, -1).mean(axis=1)
     rate = rate_hz / block
     whole = (0, n_blocks)
-    core, irregularity = _most_regular(coarse, rate)
-    tolerated = max(TOLERATED_SHARE, TOLERANCE_BESIDE_CORE * irregularity)
-    window = _settle(coarse, rate, whole, tolerated)
+    window = _settle(coarse, rate, whole, TOLERATED_SHARE)
     if window != whole:
-        grown = _settle(coarse, rate, core, tolerated)
-        window = max(grown, window, key=lambda w: w[1] - w[0])
+        core, irregularity = _most_regular(coarse, rate)
+        tolerated = max(TOLERATED_SHARE, TOLERANCE_BESIDE_CORE * irregularity)
+        grown = [_settle(coarse, rate, start, tolerated) for start in (whole, core)]
+        window = max(grown, key=lambda w: w[1] - w[0])
     start, stop = window[0] * block, window[1] * block
     if window[1] == n_blocks:
         stop = len(movement)
