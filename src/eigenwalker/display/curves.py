@@ -18,9 +18,12 @@ from eigenwalker.display.style import BLUE, INK, RED, SMALL, USUAL, head_line, n
 class Curves(Protocol):
     """Misclassified walkers for 1, 2, ... components, as `jackknife_curves` returns them."""
 
-    n_components: np.ndarray
-    separation: np.ndarray
-    generalisation: np.ndarray
+    @property
+    def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+    @property
+    def separation(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+    @property
+    def generalisation(self) -> np.ndarray: ...  # noqa: D102 - the class tells
 
 
 def figure_curves(
