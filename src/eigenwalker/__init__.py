@@ -12,19 +12,81 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _HOME = {
-    "Skeleton": "skeleton",
+    "assess": "quality",
+    "classify": "classification",
+    "contrast": "contrast",
+    "decompose_fourier": "decomposition",
+    "decompose_pca": "decomposition",
+    "direction": "caricature",
+    "DiscriminantClassifier": "discriminant",
+    "DiscriminantRegressor": "discriminant",
+    "fit_folder": "study",
+    "fundamental_frequency": "gait",
+    "gait_events": "gait",
+    "gait_parameters": "gait",
+    "in_place": "gait",
+    "jackknife_curves": "jackknife",
     "JOINTS": "skeleton",
     "label_trajectories": "trajectories",
+    "load_population": "datasets",
+    "nested_leave_one_out": "validation",
+    "permutation_test": "validation",
+    "plausibility": "plausibility",
+    "Population": "population",
+    "read_mocap": "mocap",
+    "regress": "classification",
+    "regression_curves": "jackknife",
+    "simulate_captures": "simulation",
+    "simulate_population": "simulation",
+    "simulate_walk": "simulation",
+    "Skeleton": "skeleton",
+    "trait_axis": "trait_axis",
+    "UnreadableFile": "mocap",
+    "virtual_markers": "mocap",
     "Walker": "walker",
+    "walker_from_file": "study",
+    "WalkerSpace": "space",
+    "write_film": "display.films",
 }
 """Each public name and the module it lives in."""
 
 __all__ = sorted(_HOME)
 
 if TYPE_CHECKING:
+    from eigenwalker.caricature import direction as direction
+    from eigenwalker.classification import classify as classify
+    from eigenwalker.classification import regress as regress
+    from eigenwalker.contrast import contrast as contrast
+    from eigenwalker.datasets import load_population as load_population
+    from eigenwalker.decomposition import decompose_fourier as decompose_fourier
+    from eigenwalker.decomposition import decompose_pca as decompose_pca
+    from eigenwalker.discriminant import DiscriminantClassifier as DiscriminantClassifier
+    from eigenwalker.discriminant import DiscriminantRegressor as DiscriminantRegressor
+    from eigenwalker.display.films import write_film as write_film
+    from eigenwalker.gait import fundamental_frequency as fundamental_frequency
+    from eigenwalker.gait import gait_events as gait_events
+    from eigenwalker.gait import gait_parameters as gait_parameters
+    from eigenwalker.gait import in_place as in_place
+    from eigenwalker.jackknife import jackknife_curves as jackknife_curves
+    from eigenwalker.jackknife import regression_curves as regression_curves
+    from eigenwalker.mocap import UnreadableFile as UnreadableFile
+    from eigenwalker.mocap import read_mocap as read_mocap
+    from eigenwalker.mocap import virtual_markers as virtual_markers
+    from eigenwalker.plausibility import plausibility as plausibility
+    from eigenwalker.population import Population as Population
+    from eigenwalker.quality import assess as assess
+    from eigenwalker.simulation import simulate_captures as simulate_captures
+    from eigenwalker.simulation import simulate_population as simulate_population
+    from eigenwalker.simulation import simulate_walk as simulate_walk
     from eigenwalker.skeleton import JOINTS as JOINTS
     from eigenwalker.skeleton import Skeleton as Skeleton
+    from eigenwalker.space import WalkerSpace as WalkerSpace
+    from eigenwalker.study import fit_folder as fit_folder
+    from eigenwalker.study import walker_from_file as walker_from_file
+    from eigenwalker.trait_axis import trait_axis as trait_axis
     from eigenwalker.trajectories import label_trajectories as label_trajectories
+    from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out
+    from eigenwalker.validation import permutation_test as permutation_test
     from eigenwalker.walker import Walker as Walker
 
 

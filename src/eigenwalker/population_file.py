@@ -27,6 +27,8 @@ from eigenwalker.walker import CaptureFit, Walker
 FORMAT = "eigenwalker population"
 VERSION = 1
 _ENGINE = "h5netcdf"
+_EXPECTED = "a population file"
+_MAKE = "make one with 'eigenwalker fit' or Population.save"
 _UNITS = {
     "p0": "mm",
     "p": "mm",
@@ -95,29 +97,28 @@ def read_population(path: Path) -> Stored:
 
     """
     if not path.is_file():
-        raise UnreadableFile(f"{path}: there is no such file.")
+        came = "nothing of that name" if not path.exists() else "something else"
+        raise UnreadableFile(path.name, _EXPECTED, came, "check the path")
     try:
         with xr.open_dataset(path, engine=_ENGINE, decode_times=False) as opened:
             dataset = opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
-        raise UnreadableFile(
-            f"{path}: expected a population file (NetCDF, written by 'eigenwalker fit' or "
-            f"Population.save), and it could not be opened as one: {error}"
-        ) from error
-    if dataset.attrs.get("format") != FORMAT:
-        raise UnreadableFile(
-            f"{path}: this NetCDF file holds no population (its format is "
-            f"{dataset.attrs.get('format')!r}, expected {FORMAT!r})."
-        )
+        raise UnreadableFile(path.name, _EXPECTED, f"no such file ({error})", _MAKE) from error
+    if (found := dataset.attrs.get("format")) != FORMAT:
+        raise UnreadableFile(path.name, _EXPECTED, f"NetCDF of format {found!r}", _MAKE)
     if (version := dataset.attrs.get("format_version")) != VERSION:
         raise UnreadableFile(
-            f"{path}: population format {version}, and this program ({eigenwalker.__version__}) "
-            f"reads format {VERSION}; update eigenwalker."
+            path.name,
+            f"version {VERSION} of the format",
+            f"version {version}",
+            "update eigenwalker",
         )
     try:
         return _stored(dataset)
     except (KeyError, ValueError, TypeError, IndexError) as error:
-        raise UnreadableFile(f"{path}: the population file is damaged: {error}") from error
+        raise UnreadableFile(
+            path.name, _EXPECTED, f"a damaged one ({error})", "make or copy it again"
+        ) from error
 
 
 def _dataset(
@@ -200,7 +201,9 @@ def _stored(dataset: xr.Dataset) -> Stored:
 def _fits(dataset: xr.Dataset) -> list[CaptureFit]:
     names = [entry.name for entry in fields(CaptureFit)]
     columns = {name: dataset[f"fit_{name}"].values for name in names}
-    columns = {name: column.tolist() if column.ndim == 1 else column for name, column in columns.items()}
+    columns = {
+        name: column.tolist() if column.ndim == 1 else column for name, column in columns.items()
+    }
     return [
         CaptureFit(**{name: column[number] for name, column in columns.items()})
         for number in range(dataset.sizes["walker"])

@@ -1,0 +1,285 @@
+"""How well walkers can be told apart from all or some of their features (J fig. 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.features import NAMED_PARTS
+from eigenwalker.jackknife import (
+    JackknifeCurves,
+    Progress,
+    RegressionCurves,
+    jackknife_curves,
+    regression_curves,
+)
+from eigenwalker.population import Population
+from eigenwalker.validation import NestedErrors, nested_leave_one_out, permutation_test
+
+
+class Input(NamedTuple):
+    """What a classifier is given: a part of the features, with or without size."""
+
+    title: str
+    part: str
+    size_normalised: bool = True
+
+
+INPUTS = (
+    Input("a  everything, with size", "all", size_normalised=False),
+    Input("b  everything", "all"),
+    Input("c  structure (p0)", "structure"),
+    Input("d  dynamics", "dynamics"),
+    Input("e  first eigenposture", "p1"),
+    Input("f  second eigenposture", "p2"),
+    Input("g  third eigenposture", "p3"),
+    Input("h  fourth eigenposture", "p4"),
+    Input("i  first three eigenpostures", "p1+p2+p3"),
+    Input("size alone", "size", size_normalised=False),
+    Input("phases alone", "phases"),
+    Input("frequency alone", "frequency"),
+)
+"""The panels of fig. 4 of Troje (2002), a to i, and what its text adds (J24)."""
+N_PANELS = 9
+
+
+@dataclass(frozen=True, eq=False)
+class InputResult:
+    """What a classifier makes of one input.
+
+    Parameters
+    ----------
+    input : Input
+    curves : JackknifeCurves
+        Separation and generalisation over the number of components.
+    nested : NestedErrors
+        Errors when the number of components is chosen without the walker judged (A14).
+    p : float
+        Share of random labels that reach as few errors on the curve.
+
+    """
+
+    input: Input
+    curves: JackknifeCurves
+    nested: NestedErrors
+    p: float
+
+
+@dataclass(frozen=True, eq=False)
+class Classification:
+    """How well two classes of walkers can be told apart.
+
+    Parameters
+    ----------
+    contrast : Contrast
+        The trait and who took part.
+    results : tuple of InputResult
+        One for each input.
+
+    """
+
+    contrast: Contrast
+    results: tuple[InputResult, ...]
+
+    def table(self) -> pd.DataFrame:
+        """Return the main table: one row an input.
+
+        Returns
+        -------
+        DataFrame
+            ``features``, ``separated at n`` (fewest components that separate all walkers),
+            ``best n``, ``errors`` and ``error %`` (left out, at the best n of the curve, as the
+            paper reports), ``nested errors`` and ``nested %`` (honest), ``p``.
+
+        """
+        n_walkers = len(self.contrast.rows)
+        rows = [
+            {
+                "input": result.input.title,
+                "separated at n": result.curves.separating_n,
+                "best n": result.curves.best_n,
+                "errors": result.curves.fewest_errors,
+                "error %": 100 * result.curves.fewest_errors / n_walkers,
+                "nested errors": result.nested.errors,
+                "nested %": 100 * result.nested.errors / n_walkers,
+                "p": result.p,
+            }
+            for result in self.results
+        ]
+        return pd.DataFrame(rows).astype({"separated at n": "Int64"})
+
+    def often_missed(self, least: int = 3) -> pd.Series:
+        """Return the walkers that several classifiers miss, with how many of them do (J27).
+
+        Returns
+        -------
+        Series
+            Number of inputs that misclassify each walker at their best n, by its row in the
+            population, most often missed first.
+
+        """
+        missed = sum(
+            result.curves.missed[:, result.curves.best_n - 1].astype(int)
+            for result in self.results[:N_PANELS]
+        )
+        counts = pd.Series(missed, index=self.contrast.rows, name="inputs that miss it")
+        return counts[counts >= least].sort_values(ascending=False, kind="stable")
+
+    @property
+    def chance(self) -> str:
+        """What to hold the errors against, in a sentence."""
+        rarer = int(min((self.contrast.y > 0).sum(), (self.contrast.y < 0).sum()))
+        return f"Always answering the more frequent class makes {rarer} errors."
+
+
+class RegressionResult(NamedTuple):
+    """What a regression makes of one input."""
+
+    input: Input
+    curves: RegressionCurves
+
+
+@dataclass(frozen=True, eq=False)
+class Regression:
+    """How well a trait that is a number can be told.
+
+    Parameters
+    ----------
+    contrast : Contrast
+        The trait and who took part.
+    results : tuple of RegressionResult
+        One for each input.
+
+    """
+
+    contrast: Contrast
+    results: tuple[RegressionResult, ...]
+
+    def table(self) -> pd.DataFrame:
+        """Return the main table: one row an input.
+
+        Returns
+        -------
+        DataFrame
+            ``best n``, and there, over walkers left out, ``correlation`` of trait and prediction,
+            ``R2`` and ``RMSE`` in units of the trait.
+
+        """
+        rows = []
+        for each, curves in self.results:
+            best = curves.best_n - 1
+            rows.append(
+                {
+                    "input": each.title,
+                    "best n": curves.best_n,
+                    "correlation": curves.correlation[best],
+                    "R2": curves.r2[best],
+                    "RMSE": curves.rmse[best],
+                }
+            )
+        return pd.DataFrame(rows)
+
+    @property
+    def chance(self) -> str:
+        """What to hold the errors against, in a sentence."""
+        return f"Always answering the mean has an RMSE of {self.contrast.y.std():.3g}."
+
+
+def classify(
+    population: Population,
+    trait: str,
+    *,
+    inputs: Sequence[Input] = INPUTS,
+    n_permutations: int = 200,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Classification:
+    """Return how well a trait of two classes can be told, from everything and from parts.
+
+    Where the population names persons of whom there are several walks, a person's walks are left
+    out together.
+
+    Parameters
+    ----------
+    population : Population
+        Its flagged walkers are left out.
+    trait : str
+        As `contrast` takes it: ``"sex"``, ``"style=feminine:masculine"``.
+    inputs : sequence of Input
+        What to classify from; parts that the population lacks are passed over.
+    n_permutations : int
+        Random labels to compare with.
+    seed : int
+        Of the permutations.
+    progress : callable, optional
+        Called with the number of inputs done and of all.
+
+    Returns
+    -------
+    Classification
+
+    """
+    asked = contrast(population, trait)
+    if not asked.two_classes:
+        raise ValueError(
+            f"{asked.trait} is a number; regress on it, or choose two of its values, for instance "
+            f"{asked.trait}=1:2."
+        )
+    results = []
+    for each, X in _tables(population, asked, inputs, progress):
+        curves = jackknife_curves(X, asked.y, groups=asked.persons)
+        nested = nested_leave_one_out(X, asked.y, groups=asked.persons)
+        null = permutation_test(
+            X, asked.y, groups=asked.persons, n_permutations=n_permutations, seed=seed
+        )
+        results.append(InputResult(each, curves, nested, null.p))
+    return Classification(asked, tuple(results))
+
+
+def regress(
+    population: Population,
+    trait: str,
+    *,
+    inputs: Sequence[Input] = INPUTS,
+    progress: Progress | None = None,
+) -> Regression:
+    """Return how well a trait that is a number can be told, from everything and from parts (W8).
+
+    Parameters
+    ----------
+    population, trait, inputs, progress
+        As in `classify`.
+
+    Returns
+    -------
+    Regression
+
+    """
+    asked = contrast(population, trait)
+    results = [
+        RegressionResult(each, regression_curves(X, asked.y, groups=asked.persons))
+        for each, X in _tables(population, asked, inputs, progress)
+    ]
+    return Regression(asked, tuple(results))
+
+
+def _tables(
+    population: Population, asked: Contrast, inputs: Sequence[Input], progress: Progress | None
+) -> Iterator[tuple[Input, np.ndarray]]:
+    """Each input that the population has, with the features it stands for."""
+    together = population.select(asked.rows)
+    normalised = together.size_normalised()
+    there = [each for each in inputs if _has(together, each.part)]
+    for done, each in enumerate(there, start=1):
+        yield each, (normalised if each.size_normalised else together).part(each.part)
+        if progress:
+            progress(done, len(there))
+
+
+def _has(population: Population, part: str) -> bool:
+    return set(part.split("+")) <= {*population.layout.blocks, *NAMED_PARTS, "size"}

@@ -1,0 +1,353 @@
+"""The command line: each command a short walk through the package.
+
+Nothing heavy is imported before a command runs, so that ``--help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas as pd
+
+    from eigenwalker.population import Population
+    from eigenwalker.trait_axis import TraitAxis
+
+app = typer.Typer(
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="How people walk: from captures to a model, classifiers, and walkers of any trait.",
+)
+
+SOME_REFUSED = 1
+FAILED = 2
+
+People = Annotated[
+    Path | None,
+    typer.Argument(help="Population file (.nc); left out, the built-in simulated population."),
+]
+Folder = Annotated[Path, typer.Option("-o", "--output", help="Folder to write into.")]
+Kind = Annotated[
+    str, typer.Option(help="'discriminant' tells the trait best, 'mean_difference' shows it best.")
+]
+Part = Annotated[
+    str, typer.Option(help="What the axis may change: all, structure, dynamics, p1, p1+p2, ...")
+]
+
+
+def main() -> None:
+    """Run the command line; what goes wrong is said in a sentence, not in a traceback."""
+    try:
+        app()
+    except (ValueError, OSError) as error:
+        print(f"eigenwalker: {error}", file=sys.stderr)
+        sys.exit(FAILED)
+
+
+@app.callback(invoke_without_command=True)
+def _version(
+    version: Annotated[bool, typer.Option("--version", help="Say the version and end.")] = False,
+) -> None:
+    if version:
+        from eigenwalker import __version__
+
+        print(f"eigenwalker {__version__}")
+        raise typer.Exit
+
+
+@app.command()
+def demo(
+    people: People = None,
+    output: Folder = Path("eigenwalker-demo"),
+    trait: Annotated[str, typer.Option(help="Trait of two classes to tell.")] = "sex",
+    open_page: Annotated[
+        bool, typer.Option("--open/--no-open", help="Open the report if there is a screen.")
+    ] = True,
+) -> None:
+    """Run the main job: tell a trait from gait, and show walkers of either pole."""
+    from eigenwalker.report.main_job import write_main_job
+
+    population = _population(people)
+    with _bar("Classifying and filming") as progress:
+        page, found = write_main_job(output, population, trait, progress=progress)
+    print(_rows(found.table()))
+    print(f"\nReport: {page}")
+    if open_page and _has_screen():
+        typer.launch(str(page))
+
+
+@app.command()
+def info(
+    file: Annotated[Path, typer.Argument(help="A capture, or a population file (.nc).")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Say what is in a file, and what is wrong with it."""
+    from eigenwalker.inspection import inspect_file
+
+    facts = inspect_file(file)
+    if as_json:
+        print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
+        return
+    width = max(len(name) for name in facts)
+    for name, value in facts.items():
+        lines = value if isinstance(value, list) else [value]
+        for number, line in enumerate(lines or ["none"]):
+            print(f"{name if number == 0 else '':<{width}}  {_in_words(line)}")
+
+
+@app.command()
+def fit(
+    folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Population file to write (.nc).")],
+    traits: Annotated[
+        Path | None,
+        typer.Option(help="CSV with a column 'file' (relative to FOLDER) and the traits."),
+    ] = None,
+    trait_from_name: Annotated[
+        str | None,
+        typer.Option(help="Pattern with named groups over names: 'walk_(?P<style>[a-z]+)_'."),
+    ] = None,
+    form: Annotated[
+        str, typer.Option(help="'eigenposture' (J) or 'fourier' (W).")
+    ] = "eigenposture",
+    harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
+    jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
+) -> None:
+    """Make a population of a folder of captures.
+
+    Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
+    """
+    from eigenwalker.study import DECOMPOSE, fit_folder
+
+    _one_of(form, DECOMPOSE, "--form")
+    if output.suffix != ".nc":
+        raise ValueError(
+            f"{output}: a population is written as .nc; name it for instance people.nc."
+        )
+    with _bar("Reading captures") as progress:
+        study = fit_folder(
+            folder,
+            traits=traits,
+            trait_from_name=trait_from_name,
+            form=form,  # pyright: ignore[reportArgumentType] - one of the two by now
+            n_harmonics=harmonics,
+            n_jobs=jobs,
+            progress=progress,
+        )
+    for status in ("flagged", "refused"):
+        chosen = study.files[study.files["status"] == status]
+        if len(chosen):
+            print(f"{len(chosen)} {status}:")
+            print("".join(f"  {row.file}: {row.reason}\n" for row in chosen.itertuples()))
+    if study.population is None:
+        print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
+        raise typer.Exit(FAILED)
+    study.population.save(output)
+    read = study.files[study.files["status"] != "refused"]
+    print(
+        f"{len(read)} of {len(study.files)} captures read, "
+        f"{(read['status'] == 'flagged').sum()} of them flagged; "
+        f"share explained {read['r2'].median():.3f} (median), "
+        f"frequency {read['frequency_hz'].median():.3f} Hz."
+    )
+    print(f"Population: {output}")
+    if len(study.refused):
+        raise typer.Exit(SOME_REFUSED)
+
+
+@app.command()
+def classify(
+    people: People = None,
+    trait: Annotated[
+        str, typer.Option(help="Trait to tell: sex, weight_kg, style=feminine:masculine.")
+    ] = "sex",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
+    ] = None,
+    permutations: Annotated[int, typer.Option(help="Random labels to compare with.")] = 200,
+) -> None:
+    """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
+    from eigenwalker import classification
+    from eigenwalker.contrast import contrast
+    from eigenwalker.report.main_job import write_main_job
+
+    population = _population(people)
+    asked = contrast(population, trait)
+    page = None
+    with _bar("Classifying") as progress:
+        if output is not None:
+            page, found = write_main_job(
+                output, population, trait, n_permutations=permutations, progress=progress
+            )
+        elif asked.two_classes:
+            found = classification.classify(
+                population, trait, n_permutations=permutations, progress=progress
+            )
+        else:
+            found = classification.regress(population, trait, progress=progress)
+    print(f"{asked.trait}: {asked.negative} to {asked.positive}, {len(asked.rows)} walkers")
+    print(_rows(found.table()))
+    print(f"\n{found.chance}")
+    if page is not None:
+        print(f"Report: {page}")
+
+
+@app.command()
+def synthesize(
+    people: People = None,
+    trait: Annotated[
+        list[str] | None,
+        typer.Option(help="Trait and standard deviations: sex=+3, weight=-2; may be repeated."),
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Film to write: .mp4, .webm or .gif.")
+    ] = Path("walker.mp4"),
+    view: Annotated[float, typer.Option(help="Azimuth in degrees: 0 frontal, 90 profile.")] = 30.0,
+    elevation: Annotated[float, typer.Option(help="Degrees above the horizon.")] = 0.0,
+    duration: Annotated[float, typer.Option(help="Seconds.")] = 4.0,
+    style: Annotated[str, typer.Option(help="'dots' or 'sticks'.")] = "dots",
+    kind: Kind = "discriminant",
+    part: Part = "all",
+    components: Annotated[int, typer.Option(help="Eigenwalkers that the axis uses.")] = 10,
+    start: Annotated[
+        str, typer.Option("--from", help="'average', the number of a walker, or a capture file.")
+    ] = "average",
+) -> None:
+    """Film the average walker, or one's own, moved along traits, and say how plausible it is."""
+    import numpy as np
+
+    from eigenwalker.display.films import write_film
+    from eigenwalker.trait_axis import trait_axis
+
+    population = _population(people)
+    vector = _start(population, start)
+    axes: list[TraitAxis] = []
+    for wish in trait or []:
+        name, alpha = _wish(wish)
+        axis = trait_axis(population, name, part=part, n_components=components, kind=kind)  # pyright: ignore[reportArgumentType] - checked there
+        vector = vector + alpha * axis.step
+        axes.append(axis)
+        pole = axis.contrast.positive if alpha >= 0 else axis.contrast.negative
+        print(f"{axis.contrast.trait}: {abs(alpha):g} standard deviations towards {pole}")
+    walker = population.walker(np.asarray(vector))
+    with _bar("Filming") as progress:
+        write_film(
+            walker,
+            output,
+            duration_s=duration,
+            view_deg=view,
+            elevation_deg=elevation,
+            style=style,  # pyright: ignore[reportArgumentType] - checked there
+            progress=progress,
+        )
+    _print_plausibility(population, vector)
+    print(f"Film: {output}")
+
+
+def _population(path: Path | None) -> Population:
+    from eigenwalker.datasets import BUILT_IN, load_population
+
+    if path is None:
+        print(f"Using {BUILT_IN}.", file=sys.stderr)
+    return load_population(path)
+
+
+def _start(population: Population, start: str) -> np.ndarray:
+    if start == "average":
+        return population.average
+    if start.isdigit():
+        if int(start) >= len(population):
+            raise ValueError(
+                f"--from {start}: the population has walkers 0 to {len(population) - 1}."
+            )
+        return population.X[int(start)]
+    from eigenwalker.study import walker_from_file
+
+    first = population.walkers[0]
+    n_harmonics = len(first.harmonics) // 2
+    walker, facts = walker_from_file(start, form=first.form, n_harmonics=n_harmonics)
+    if facts["flag"]:
+        print(f"eigenwalker: {start}: {facts['flag']}", file=sys.stderr)
+    return population.vector(walker)
+
+
+def _wish(wish: str) -> tuple[str, float]:
+    """The trait and the standard deviations of ``sex=+3`` or ``style=feminine:masculine=2``."""
+    name, _, alpha = wish.rpartition("=")
+    try:
+        return name, float(alpha)
+    except ValueError:
+        raise ValueError(
+            f"{wish!r} does not say how far; write a trait and standard deviations: sex=+3."
+        ) from None
+
+
+def _print_plausibility(population: Population, vector: np.ndarray) -> None:
+    from eigenwalker.plausibility import plausibility
+
+    found = plausibility(population, vector)
+    print(
+        f"Distance from the average walker: {found.position.distance:.1f} times the usual "
+        f"({found.position.percentile:.0f} % of the walkers are nearer)."
+    )
+    print(
+        "Limbs: "
+        + ", ".join(f"{name} {100 * change:+.0f} %" for name, change in found.limb_change.items())
+    )
+
+
+def _rows(table: pd.DataFrame) -> str:
+    import pandas as pd
+
+    def number(value: float) -> str:
+        return "-" if pd.isna(value) else f"{value:.3g}"
+
+    return table.to_string(index=False, float_format=number, na_rep="-")
+
+
+def _in_words(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "unknown" if value is None else str(value)
+
+
+def _one_of(value: str, known: object, option: str) -> None:
+    names = list(known)  # pyright: ignore[reportArgumentType] - any collection
+    if value not in names:
+        raise ValueError(f"{option} {value!r} is not known; choose from {names}.")
+
+
+def _has_screen() -> bool:
+    import os
+
+    return sys.platform in ("win32", "darwin") or bool(
+        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+
+
+@contextmanager
+def _bar(title: str) -> Iterator[Callable[[int, int], None]]:
+    """A progress bar on the error stream, and what to call as work proceeds."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(title, total=None)
+
+        def advance(done: int, total: int) -> None:
+            progress.update(task, completed=done, total=total)
+
+        yield advance

@@ -1,0 +1,45 @@
+"""Populations to begin with: the built-in one, and those in files."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from eigenwalker.population import Population
+from eigenwalker.simulation import simulate_population
+
+BUILT_IN = "the built-in population, simulated: 20 women and 20 men who do not exist"
+
+
+def load_population(path: str | Path | None = None) -> Population:
+    """Return the population of a file, or the built-in one.
+
+    Parameters
+    ----------
+    path : str or Path, optional
+        What ``Population.save`` or ``eigenwalker fit`` wrote. Left out, it is the built-in
+        population of 20 women and 20 men, who are simulated: good to learn and test with, no
+        evidence about people.
+
+    Returns
+    -------
+    Population
+
+    Raises
+    ------
+    UnreadableFile
+        If the file holds no population or is damaged.
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> len(people), people.X.shape
+    (40, (40, 229))
+
+    """
+    return _built_in() if path is None else Population.load(path)
+
+
+@cache
+def _built_in() -> Population:
+    return simulate_population(n_women=20, n_men=20, seed=0)

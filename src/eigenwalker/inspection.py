@@ -1,0 +1,113 @@
+"""What is in a file, and what is wrong with it, as plain facts."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from eigenwalker.mocap import read_mocap, virtual_markers
+from eigenwalker.population import Population
+from eigenwalker.quality import assess
+
+Fact = str | float | int | bool | None | list[str]
+POPULATION_SUFFIX = ".nc"
+
+
+def inspect_file(path: str | Path) -> dict[str, Fact]:
+    """Return what is in a capture or a population file, and what is wrong with it.
+
+    Parameters
+    ----------
+    path : str or Path
+        A capture of any format that `read_mocap` reads, or a population (``.nc``).
+
+    Returns
+    -------
+    dict
+        Names and values fit for JSON; lists hold one sentence an entry.
+
+    Raises
+    ------
+    UnreadableFile
+        If the file cannot be read at all.
+
+    """
+    path = Path(path)
+    if path.suffix.lower() == POPULATION_SUFFIX:
+        return _plain(_of_population(Population.load(path)))
+    return _plain(_of_capture(path))
+
+
+def _of_population(population: Population) -> dict[str, object]:
+    traits = population.traits
+    flags = [f"walker {number}: {flag}" for number, flag in enumerate(traits["flag"]) if flag != ""]
+    first = population.walkers[0]
+    return {
+        "kind": "population",
+        "walkers": len(population),
+        "flagged": flags,
+        "form": f"{first.form}, harmonics {', '.join(map(str, first.harmonics))}",
+        "features": len(population.feature_names),
+        "markers": list(first.markers),
+        "traits": [_trait_in_words(name, traits[name]) for name in traits if name != "flag"],
+        "frequency_hz": float(np.mean([walker.frequency_hz for walker in population.walkers])),
+        "provenance": [f"{key}: {value}" for key, value in population.provenance.items()],
+    }
+
+
+def _trait_in_words(name: str, values) -> str:
+    known = values[values.notna() & (values.astype(str) != "")]
+    if known.dtype.kind == "f":
+        return f"{name}: {known.mean():.4g} (SD {known.std():.3g}), {len(known)} known"
+    counts = known.value_counts()
+    shown = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
+    return f"{name}: {shown}{', ...' if len(counts) > 8 else ''}"
+
+
+def _of_capture(path: Path) -> dict[str, object]:
+    problems: list[str] = []
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        capture = read_mocap(path)
+    problems += [str(each.message) for each in said]
+    facts: dict[str, object] = {
+        "kind": "capture",
+        "format": capture.attrs["format"],
+        "markers": capture.marker.values.tolist(),
+    }
+    try:
+        joints = virtual_markers(capture)
+    except ValueError as error:
+        return facts | {"verdict": "do not use", "problems": [*problems, str(error)]}
+    quality = assess(joints)
+    measured = {
+        name: value
+        for name, value in vars(quality).items()
+        if name not in ("reasons", "verdict") and isinstance(value, int | float | str | bool)
+    }
+    return (
+        facts
+        | {"marker_set": joints.attrs.get("marker_set")}
+        | measured
+        | {"verdict": quality.verdict, "problems": [*problems, *quality.reasons]}
+    )
+
+
+def _plain(facts: dict[str, object]) -> dict[str, Fact]:
+    """The same facts in types that JSON has; what is not a number is None."""
+    return {name: _plain_value(value) for name, value in facts.items()}
+
+
+def _plain_value(value: object) -> Fact:
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, list | tuple):
+        return [str(each) for each in value]
+    return None if value is None else str(value)

@@ -1,0 +1,380 @@
+"""The report of the main job: who walked, what tells them apart, and how that looks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import eigenwalker
+from eigenwalker.classification import N_PANELS, Classification, Progress, Regression
+from eigenwalker.classification import classify as classify_inputs
+from eigenwalker.classification import regress as regress_inputs
+from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.display.bodies import figure_joints, figure_walkers
+from eigenwalker.display.components import figure_variance
+from eigenwalker.display.curves import figure_curves
+from eigenwalker.display.eigenpostures import figure_eigenpostures
+from eigenwalker.display.films import write_film
+from eigenwalker.display.populations import figure_space
+from eigenwalker.gait import gait_parameters
+from eigenwalker.plausibility import plausibility
+from eigenwalker.population import Population
+from eigenwalker.report.content import (
+    Block,
+    Code,
+    Figure,
+    Film,
+    Items,
+    Report,
+    Section,
+    Table,
+    Text,
+)
+from eigenwalker.report.page import write_report
+from eigenwalker.space import WalkerSpace
+from eigenwalker.trait_axis import TraitAxis, trait_axis
+from eigenwalker.walker import Walker
+
+ALPHAS = (-6, -3, 0, 3, 6)
+"""Standard deviations along the trait at which walkers are shown, to the paper's extreme (J30)."""
+_CITE = (
+    "Troje, N. F. (2002). Decomposing biological motion: A framework for analysis and synthesis of "
+    "human gait patterns. Journal of Vision, 2(5), 371-387."
+)
+
+
+def write_main_job(
+    folder: str | Path,
+    population: Population,
+    trait: str,
+    *,
+    n_permutations: int = 200,
+    progress: Progress | None = None,
+) -> tuple[Path, Classification | Regression]:
+    """Classify a trait, film it, and write a report page on both.
+
+    Parameters
+    ----------
+    folder : path
+        Made where it does not exist; holds ``report.html`` and the films.
+    population : Population
+        Its flagged walkers are named in the report and left out of everything else.
+    trait : str
+        As `contrast` takes it.
+    n_permutations : int
+        Random labels to compare a classifier with.
+    progress : callable, optional
+        Called with the number of steps done and of all.
+
+    Returns
+    -------
+    page : Path
+    found : Classification or Regression
+
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    asked = contrast(population, trait)
+    if asked.two_classes:
+        found = classify_inputs(population, trait, n_permutations=n_permutations, progress=progress)
+    else:
+        found = regress_inputs(population, trait, progress=progress)
+    axis = trait_axis(population, trait)
+    extremes = {
+        alpha: population.walker(population.average + alpha * axis.step) for alpha in ALPHAS
+    }
+    films = _films(folder, asked, extremes, progress)
+    report = Report(
+        title=f"{_capital(asked.trait)} from gait",
+        lead=_lead(found),
+        sections=[
+            Section("Who walked", _who(population)),
+            Section("How well the model holds", _model(population)),
+            Section("What tells them apart", _classifiers(population, found)),
+            Section("What it looks like", _looks(population, axis, extremes, films)),
+            Section("Mind", [Items(_cautions(population, found))]),
+            Section("Made with", [Code(f"eigenwalker {eigenwalker.__version__}\n{_CITE}")]),
+        ],
+    )
+    return write_report(folder, report), found
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:].replace("_", " ")
+
+
+def _lead(found: Classification | Regression) -> str:
+    asked, table = found.contrast, found.table()
+    n = len(asked.rows)
+    if isinstance(found, Classification):
+        best = table.iloc[0]
+        return (
+            f"Left out one at a time, {best['errors']} of {n} walkers are misclassified from "
+            f"everything that is known of them, with the {best['best n']} components that do best; "
+            f"{best['nested errors']} when that number is chosen without them. {found.chance}"
+        )
+    best = table.iloc[0]
+    return (
+        f"Told from everything, {asked.trait} of {n} walkers left out one at a time correlates "
+        f"with the truth at {best['correlation']:.2f} (R2 {best['R2']:.2f}). {found.chance}"
+    )
+
+
+def _who(population: Population) -> list[Block]:
+    rows = [_trait_row(str(name), population.traits[name]) for name in population.traits]
+    blocks: list[Block] = [
+        Text(
+            f"{len(population)} walkers with {len(population.layout.markers)} points each, "
+            f"{population.flagged.sum()} of them flagged; "
+            f"{len(population.feature_names)} numbers describe a walk."
+        )
+    ]
+    if sources := [f"{key}: {value}" for key, value in population.provenance.items()]:
+        blocks.append(Items(sources))
+    known = [row for row in rows if row is not None]
+    if known:
+        blocks.append(Table("Traits", ["trait", "values", "known of"], known))
+    if population.flagged.any():
+        named = population.traits[population.flagged]
+        names = named["file"] if "file" in named else [f"walker {row}" for row in named.index]
+        flagged = [[str(name), flag] for name, flag in zip(names, named["flag"], strict=True)]
+        blocks.append(Table("Flagged, and left out of all that follows", ["walk", "why"], flagged))
+    return blocks
+
+
+def _trait_row(name: str, values: pd.Series) -> list | None:
+    if name in ("flag", "file"):
+        return None
+    known = values[values.notna() & (values.astype(str) != "")]
+    if known.empty:
+        return None
+    if pd.api.types.is_numeric_dtype(known):
+        said = f"{known.mean():.3g} (SD {known.std():.2g})"
+    else:
+        counts = known.astype(str).value_counts()
+        said = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
+        said += ", ..." if len(counts) > 8 else ""
+    return [name, said, len(known)]
+
+
+def _model(population: Population) -> list[Block]:
+    known = population.unflagged() if not population.flagged.all() else population
+    average = population.walker(population.average)
+    blocks: list[Block] = []
+    fits = [walker.fit for walker in known.walkers if walker.fit is not None]
+    if fits:
+        shares = np.array([fit.variance_share[:4].sum() for fit in fits])
+        blocks += [
+            Text(
+                f"Four principal components hold {100 * shares.mean():.1f} % of the variance of "
+                f"a walk (mean over walkers); as sines they explain "
+                f"{100 * np.mean([fit.r2 for fit in fits]):.1f} %, two Fourier harmonics "
+                f"{100 * np.mean([fit.fourier_r2 for fit in fits]):.1f} %."
+            ),
+            Figure(
+                figure_variance(known.walkers),
+                "Variance of the first components, mean and standard deviation over walkers.",
+                "Bar chart: most variance lies in the first component, little after the fourth.",
+            ),
+        ]
+    if len(known) > 1:
+        alike = known.posture_correlations()
+        rows = [
+            [name, *map(float, row)] for name, row in zip(alike.index, alike.values, strict=True)
+        ]
+        blocks.append(
+            Table(
+                "How alike postures are: mean correlation over all pairs of walkers",
+                ["posture", *alike.columns],
+                rows,
+            )
+        )
+    blocks += [
+        Figure(
+            figure_joints(average),
+            "The joints of the average walker.",
+            "Stick figure of the average walker from three sides, joints named.",
+        ),
+        Figure(
+            figure_eigenpostures(average),
+            "What each eigenposture of the average walker adds to its mean posture.",
+            "Stick figures of the mean posture with each eigenposture added and taken away.",
+        ),
+    ]
+    return blocks
+
+
+def _classifiers(population: Population, found: Classification | Regression) -> list[Block]:
+    table = found.table()
+    columns = [str(column) for column in table]
+    cells = [[None if pd.isna(cell) else cell for cell in row] for row in table.to_numpy(object)]
+    out = "persons" if found.contrast.persons is not None else "walkers"
+    blocks: list[Block] = [Table(f"Told of {out} left out one at a time", columns, cells)]
+    if isinstance(found, Classification):
+        panels = {each.input.title: each.curves for each in found.results[:N_PANELS]}
+        blocks.append(
+            Figure(
+                figure_curves(panels, n_walkers=len(found.contrast.rows)),
+                "Misclassified walkers over the number of components: among those trained on "
+                "(dashed) and among those left out (solid).",
+                "Nine panels of two curves each: training errors fall to zero, errors on walkers "
+                "left out stay above.",
+            )
+        )
+        missed = found.often_missed()
+        if len(missed):
+            traits = population.traits
+            names = traits["file"] if "file" in traits else pd.Series(traits.index.astype(str))
+            rows = [[str(names[row]), int(count)] for row, count in missed.head(10).items()]
+            blocks.append(
+                Table("Walkers that several classifiers miss", ["walk", "inputs missing it"], rows)
+            )
+    return blocks
+
+
+def _looks(
+    population: Population, axis: TraitAxis, extremes: dict[int, Walker], films: list[Film]
+) -> list[Block]:
+    asked = axis.contrast
+    X = population.X[asked.rows]
+    titles = {_title(asked, alpha): walker for alpha, walker in extremes.items()}
+    trait = asked.labels if asked.two_classes else asked.y
+    blocks: list[Block] = [
+        *films,
+        Figure(
+            figure_walkers(titles),
+            f"From {asked.negative} to {asked.positive}, in standard deviations of the walkers "
+            "along the discriminant.",
+            "Stick figures from one pole of the trait to the other, front and side.",
+        ),
+    ]
+    if asked.two_classes:
+        blocks.append(
+            Figure(
+                figure_walkers(_class_averages(population, asked)),
+                "The average of either class, and their difference tripled.",
+                "Stick figures of both classes' averages, and of both exaggerated.",
+            )
+        )
+    blocks += [
+        Figure(
+            figure_space(
+                WalkerSpace().fit(X),
+                X,
+                trait,
+                trait_name=asked.trait,
+                step=axis.step,
+                poles=(asked.negative, asked.positive),
+            ),
+            "Walkers on the first two eigenwalkers, and the axis of the trait.",
+            "Scatter plot of walkers with the axis of the trait drawn through the average.",
+        ),
+        _gait_table(titles),
+        _plausibility_table(population, axis),
+    ]
+    return blocks
+
+
+def _class_averages(population: Population, asked: Contrast) -> dict[str, Walker]:
+    """The average walker of either class, and both with their difference tripled (M5)."""
+    X = population.X[asked.rows]
+    low, high = X[asked.y < 0].mean(axis=0), X[asked.y > 0].mean(axis=0)
+    middle, half = (high + low) / 2, (high - low) / 2
+    return {
+        f"{asked.negative}, average": population.walker(middle - half),
+        f"{asked.positive}, average": population.walker(middle + half),
+        f"{asked.negative}, tripled": population.walker(middle - 3 * half),
+        f"{asked.positive}, tripled": population.walker(middle + 3 * half),
+    }
+
+
+def _title(asked: Contrast, alpha: float) -> str:
+    if alpha == 0:
+        return "average"
+    return f"{asked.positive if alpha > 0 else asked.negative} {abs(alpha):g}"
+
+
+def _gait_table(walkers: dict[str, Walker]) -> Table:
+    columns = {title: gait_parameters(walker) for title, walker in walkers.items()}
+    names = next(iter(columns.values())).index
+    rows = [[str(name), *(float(column[name]) for column in columns.values())] for name in names]
+    return Table("Gait of the walkers shown", ["", *columns], rows)
+
+
+def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
+    rows: list[list] = []
+    limbs: Iterable[str] = ()
+    for alpha in ALPHAS:
+        found = plausibility(population, population.average + alpha * axis.step)
+        limbs = found.limb_change.index
+        changes = [f"{100 * change:+.0f} %" for change in found.limb_change]
+        rows.append([_title(axis.contrast, alpha), found.position.distance, *changes])
+    return Table(
+        "How plausible they are: distance from the average walker, 1 being usual; change of limbs",
+        ["walker", "distance", *limbs],
+        rows,
+    )
+
+
+def _films(
+    folder: Path, asked: Contrast, extremes: dict[int, Walker], progress: Progress | None
+) -> list[Film]:
+    low, middle, high = (extremes[alpha] for alpha in (min(ALPHAS), 0, max(ALPHAS)))
+    slug = "".join(letter if letter.isalnum() else "-" for letter in asked.trait)
+    wishes = [
+        ("average", [middle], "The average walker in points of light."),
+        (f"{slug}-low", [low], f"{_title(asked, min(ALPHAS))} standard deviations."),
+        (f"{slug}-high", [high], f"{_title(asked, max(ALPHAS))} standard deviations."),
+    ]
+    films = []
+    for name, walkers, caption in wishes:
+        path = write_film(walkers, folder / f"{name}.mp4", n_strides=4, view_deg=30, size_px=420)
+        films.append(Film(path, caption, f"Point-light film: {caption}"))
+    titles = [_title(asked, alpha) for alpha in extremes]
+    path = write_film(
+        list(extremes.values()),
+        folder / f"{slug}.mp4",
+        n_strides=4,
+        view_deg=30,
+        size_px=420,
+        style="sticks",
+        titles=titles,
+    )
+    caption = f"From {titles[0]} to {titles[-1]} standard deviations, in one tempo."
+    films.append(Film(path, caption, f"Stick figures side by side. {caption}"))
+    return films
+
+
+def _cautions(population: Population, found: Classification | Regression) -> list[str]:
+    asked = found.contrast
+    cautions = []
+    if "simulated" in population.provenance:
+        cautions.append(
+            f"{_capital(population.provenance['simulated'])}. Differences between the walkers were "
+            "put in, from published figures; they are no evidence about people."
+        )
+    if "style" in asked.trait.lower():
+        cautions.append(
+            "These are styles that few people acted, not traits of the walkers: errors say how "
+            "well the acts can be told apart, not how well people can."
+        )
+    if asked.persons is not None:
+        n_persons = len(set(asked.persons))
+        cautions.append(
+            f"The walks are of {n_persons} persons; all walks of a person are left out together."
+        )
+    elif "person" not in population.traits and "file" in population.traits:
+        cautions.append(
+            "No column tells whose walk each is, so trials, not persons, were left out: if a "
+            "person walked more than once, errors on new people will be higher."
+        )
+    cautions += [
+        "The best number of components is picked on the curve that is reported, as in the paper; "
+        "nested errors are free of that choice.",
+        "Size (eq. 12) and correspondence of eigenpostures use no labels and are fixed once; "
+        "standardisation, components and their order are found anew without each walker left out.",
+    ]
+    return cautions

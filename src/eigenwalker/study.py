@@ -1,0 +1,265 @@
+"""A folder of captures made into a population, one bad file stopping no other."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import joblib
+import numpy as np
+import pandas as pd
+from threadpoolctl import threadpool_limits
+
+from eigenwalker.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.gait import in_place
+from eigenwalker.mocap import FORMATS, read_mocap, virtual_markers
+from eigenwalker.population import FLAG, Population
+from eigenwalker.quality import assess
+from eigenwalker.walker import Form, Walker
+
+DECOMPOSE = {"eigenposture": decompose_pca, "fourier": decompose_fourier}
+SUFFIXES = tuple(form.suffix for form in FORMATS)
+FILE = "file"
+"""Column of a traits table that names the capture, relative to the folder."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """What came of the captures of a folder.
+
+    Parameters
+    ----------
+    population : Population or None
+        None where no capture could be used.
+    files : DataFrame
+        One row a capture: ``file``, ``status`` ("used", "flagged" or "refused"), ``reason``, and
+        for those that were read the rate, duration, strides, frequency, speed and share explained.
+
+    """
+
+    population: Population | None
+    files: pd.DataFrame
+
+    @property
+    def refused(self) -> pd.DataFrame:
+        """The captures that could not be used, with the reason."""
+        return self.files[self.files["status"] == "refused"]
+
+
+def walker_from_file(
+    path: str | Path, *, form: Form = "eigenposture", n_harmonics: int = 2
+) -> tuple[Walker, dict[str, object]]:
+    """Return the walker of one capture, from file to model, and what is to be known of it.
+
+    Parameters
+    ----------
+    path : str or Path
+        A capture of any format that `read_mocap` reads.
+    form : {"eigenposture", "fourier"}
+        How to take the walk apart.
+    n_harmonics : int
+        Multiples of the stride frequency.
+
+    Returns
+    -------
+    walker : Walker
+    facts : dict
+        Rate, duration, strides, share explained, and ``flag``: why the walk is to be kept out of
+        averages, empty if it is not.
+
+    Raises
+    ------
+    UnreadableFile, ValueError
+        If the file cannot be read, is no body or no walk.
+
+    """
+    capture = read_mocap(path)
+    joints = virtual_markers(capture)
+    walk = in_place(joints)
+    walker = DECOMPOSE[form](walk, n_harmonics=n_harmonics)
+    quality = assess(joints)
+    facts: dict[str, object] = {
+        "rate_hz": quality.rate_hz,
+        "duration_s": quality.duration_s,
+        "strides": walk.attrs["n_strides"],
+        "frequency_hz": walker.frequency_hz,
+        "speed_mm_s": walker.speed_mm_s,
+        "r2": walker.fit.fourier_r2 if walker.fit else float("nan"),
+        "marker_set": joints.attrs.get("marker_set", ""),
+        "unit_guessed": bool(capture.attrs.get("unit_guessed", False)),
+        "verdict": quality.verdict,
+        FLAG: "; ".join(quality.reasons) if quality.verdict == "do not use" else "",
+    }
+    return walker, facts
+
+
+def fit_folder(
+    folder: str | Path,
+    *,
+    traits: pd.DataFrame | str | Path | None = None,
+    trait_from_name: str | None = None,
+    form: Form = "eigenposture",
+    n_harmonics: int = 2,
+    n_jobs: int = -1,
+    progress: Callable[[int, int], None] | None = None,
+) -> Study:
+    r"""Return the population of the captures in a folder.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Searched with its subfolders.
+    traits : DataFrame or path of a CSV, optional
+        A column ``file`` (relative to the folder) and whatever is known of each walker; a column
+        ``person`` says whose walk it is. Only the captures it lists are read.
+    trait_from_name : str, optional
+        A regular expression with named groups, searched for in each file's name, such as
+        ``r"walk_(?P<style>[a-z]+)_"``.
+    form, n_harmonics
+        See `walker_from_file`.
+    n_jobs : int
+        Processes to read with; -1 uses all cores.
+    progress : callable, optional
+        Called with the number of captures done and of all.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    ValueError
+        If folder, table or pattern make no sense; never because of a single capture.
+
+    """
+    folder = Path(folder)
+    table = _listed(folder, traits, trait_from_name)
+    tasks = [joblib.delayed(_attempt)(folder, name, form, n_harmonics) for name in table[FILE]]
+    parallel = joblib.Parallel(n_jobs=min(joblib.effective_n_jobs(n_jobs), len(tasks)))
+    parallel.return_generator = True
+    walkers: list[Walker | None] = []
+    facts: list[Mapping[str, object]] = []
+    for walker, found in parallel(tasks):
+        walkers.append(walker)
+        facts.append(found)
+        if progress:
+            progress(len(walkers), len(tasks))
+    return _gathered(table, walkers, pd.DataFrame(facts), form)
+
+
+def _attempt(
+    folder: Path, name: str, form: Form, n_harmonics: int
+) -> tuple[Walker | None, dict[str, object]]:
+    """One capture in a process of its own; whatever goes wrong with it stays with it."""
+    try:
+        path = _within(folder, name)
+        with threadpool_limits(1), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what they say stands in the facts
+            walker, facts = walker_from_file(path, form=form, n_harmonics=n_harmonics)
+        return walker, {
+            "status": "flagged" if facts[FLAG] else "used",
+            "reason": facts[FLAG],
+        } | facts
+    except ValueError as error:
+        return None, {"status": "refused", "reason": str(error)}
+    except Exception as error:  # one capture must not stop the others
+        reason = f"an unexpected {type(error).__name__} ({error}); please report it with the file"
+        return None, {"status": "refused", "reason": reason}
+
+
+def _within(folder: Path, name: str) -> Path:
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(f"{name}: leads out of the folder {folder}; list captures inside it only.")
+    return path
+
+
+def _listed(
+    folder: Path, traits: pd.DataFrame | str | Path | None, pattern: str | None
+) -> pd.DataFrame:
+    """The captures to read with what is known of each: a table with a column ``file``."""
+    if not folder.is_dir():
+        raise ValueError(f"{folder} is no folder; name one that holds captures ({_known()}).")
+    if traits is not None:
+        table = _traits_table(traits)
+    else:
+        names = sorted(
+            path.relative_to(folder).as_posix()
+            for path in folder.rglob("*")
+            if path.suffix.lower() in SUFFIXES and path.is_file()
+        )
+        table = pd.DataFrame({FILE: names})
+    if table.empty:
+        raise ValueError(f"There are no captures ({_known()}) in {folder}.")
+    return table.join(_named_traits(table[FILE], pattern)) if pattern else table
+
+
+def _known() -> str:
+    return ", ".join(f"*{suffix}" for suffix in sorted(SUFFIXES))
+
+
+def _traits_table(traits: pd.DataFrame | str | Path) -> pd.DataFrame:
+    if not isinstance(traits, pd.DataFrame):
+        try:
+            traits = pd.read_csv(traits, dtype={FILE: str, "person": str})
+        except (OSError, ValueError) as error:
+            raise ValueError(f"The traits table {traits} could not be read: {error}") from error
+    if FILE not in traits:
+        raise ValueError(
+            f"The traits table needs a column 'file' (relative to the folder); it has "
+            f"{list(traits.columns)}."
+        )
+    table = traits.reset_index(drop=True)
+    if table[FILE].isna().any():
+        row = int(np.flatnonzero(table[FILE].isna())[0]) + 1
+        raise ValueError(f"Row {row} of the traits table names no file.")
+    table[FILE] = table[FILE].astype(str)
+    if (twice := table[FILE][table[FILE].duplicated()]).any():
+        raise ValueError(f"The traits table lists {sorted(set(twice))[:5]} more than once.")
+    return table
+
+
+def _named_traits(names: pd.Series, pattern: str) -> pd.DataFrame:
+    try:
+        compiled = re.compile(pattern)
+    except re.error as error:
+        raise ValueError(f"{pattern!r} is no regular expression: {error}.") from error
+    if not compiled.groupindex:
+        raise ValueError(
+            f"{pattern!r} has no named group; write for instance 'walk_(?P<style>[a-z]+)_'."
+        )
+    matches = [compiled.search(name) for name in names]
+    if not any(matches):
+        raise ValueError(f"{pattern!r} matches no file name; the first is {names.iloc[0]!r}.")
+    found = pd.DataFrame(
+        [match.groupdict() if match else dict.fromkeys(compiled.groupindex) for match in matches]
+    )
+    return found.apply(_numbers_where_all_are)
+
+
+def _numbers_where_all_are(column: pd.Series) -> pd.Series:
+    numbers = pd.to_numeric(column, errors="coerce")
+    return numbers if numbers.notna().equals(column.notna()) else column
+
+
+def _gathered(
+    table: pd.DataFrame, walkers: list[Walker | None], facts: pd.DataFrame, form: Form
+) -> Study:
+    files = pd.concat([table[[FILE]], facts.drop(columns=FLAG, errors="ignore")], axis=1)
+    kept = [number for number, walker in enumerate(walkers) if walker is not None]
+    if not kept:
+        return Study(None, files)
+    traits = table.iloc[kept].reset_index(drop=True)
+    flags = facts[FLAG].iloc[kept].to_numpy()
+    population = Population(
+        tuple(walker for walker in walkers if walker is not None),
+        traits.assign(**{FLAG: flags}),
+        provenance={"source": f"{len(kept)} captures", "form": form},
+    )
+    said = population.traits[FLAG].to_numpy()
+    files.loc[kept, "reason"] = said
+    files.loc[kept, "status"] = np.where(said != "", "flagged", "used")
+    return Study(population, files)

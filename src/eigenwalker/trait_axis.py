@@ -1,0 +1,96 @@
+"""The line through the space of walkers along which a trait changes (J30, W6 to W8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eigenwalker.caricature import Discriminant, Kind, Units, direction
+from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor, Order
+from eigenwalker.population import Population
+from eigenwalker.space import WalkerSpace
+
+N_EIGENWALKERS = 10
+"""Eigenwalkers that the paper's synthesiser uses (J30)."""
+
+
+@dataclass(frozen=True, eq=False)
+class TraitAxis:
+    """A step that makes any walker more of a trait.
+
+    Parameters
+    ----------
+    contrast : Contrast
+        The trait, its poles and the walkers that show it.
+    step : array of shape (feature,)
+        Add alpha times this to a walker; it leads towards ``contrast.positive``. Zero outside the
+        part of the features that the classifier knows.
+    space : WalkerSpace
+        Fitted on that part of the walkers' features.
+    discriminant : DiscriminantClassifier or DiscriminantRegressor
+        Fitted on their scores.
+
+    """
+
+    contrast: Contrast
+    step: np.ndarray
+    space: WalkerSpace
+    discriminant: Discriminant
+
+
+def trait_axis(
+    population: Population,
+    trait: str,
+    *,
+    part: str = "all",
+    n_components: int = N_EIGENWALKERS,
+    kind: Kind = "discriminant",
+    order: Order = "standardised",
+    units: Units = "sd",
+) -> TraitAxis:
+    """Return the axis of a trait in a population.
+
+    Eq. 13 of Troje (2002): ``w = w_0 + alpha V c'``.
+
+    Parameters
+    ----------
+    population : Population
+        Its flagged walkers are left out.
+    trait : str
+        As `contrast` takes it: ``"sex"``, ``"weight"``, ``"style=feminine:masculine"``.
+    part : str
+        What the classifier knows: ``"all"``, ``"structure"``, ``"dynamics"``, ``"p1+p2"`` (J31).
+    n_components : int
+        Components of the discriminant to keep; fewer where the walkers span fewer.
+    kind : {"discriminant", "mean_difference"}
+        What tells the trait best, or what shows it best (A13).
+    order : {"standardised", "raw", "variance"}
+        Which components come first.
+    units : {"sd", "raw", "classmean"}
+        What alpha = 1 is: one standard deviation of the walkers along the axis (A12), eq. 13 as
+        printed, or half the distance of the classes' means.
+
+    Returns
+    -------
+    TraitAxis
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> sex = trait_axis(people, "sex")
+    >>> caricature = people.walker(people.average + 6 * sex.step)  # very much a man
+
+    """
+    asked = contrast(population, trait)
+    columns = population.layout.columns(part)
+    walkers = population.X[np.ix_(asked.rows, columns)]
+    space = WalkerSpace().fit(walkers)
+    n_kept = min(n_components, len(space.eigenwalkers_))
+    estimator = DiscriminantClassifier if asked.two_classes else DiscriminantRegressor
+    discriminant = estimator(n_components=n_kept, order=order)
+    discriminant.fit(space.transform(walkers), asked.y)
+    step = np.zeros(population.X.shape[1])
+    step[columns] = direction(space, discriminant, kind=kind, units=units)
+    return TraitAxis(asked, step, space, discriminant)
