@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import re
 from html.parser import HTMLParser
 
 import numpy as np
@@ -103,10 +102,8 @@ def test_hostile_names_stay_words(film):
 def test_any_words_come_out_as_they_went_in(words):
     page = render_report(Report("Title", words, [Section("One", [Text(words)])]))
     page.encode("utf-8")
-    told = re.sub(r"\s+", " ", words)
-    found = [re.sub(r"\s+", " ", found) for found in Page(page).words["p"]]
-    if told.isprintable():
-        assert found == [told, told]
+    if words.isprintable():
+        assert Page(page).words["p"] == [words, words]
 
 
 def test_nothing_is_asked_of_anybody(film):
@@ -137,7 +134,7 @@ def test_the_figure_in_the_page_is_a_drawing_with_a_size_and_words(film):
     kind, content = image["src"].split(";base64,")
     assert kind == "data:image/svg+xml"
     assert b"<svg" in base64.b64decode(content)
-    assert (image["width"], image["height"]) == ("288", "192")
+    assert (image["width"], image["height"]) == ("375", "250")
     assert image["alt"] == "as usual"
 
 

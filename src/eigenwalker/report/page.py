@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import math
 import os
 import re
@@ -12,6 +13,7 @@ from importlib.resources import files
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+import av
 import matplotlib as mpl
 import matplotlib.figure
 
@@ -30,6 +32,8 @@ from eigenwalker.report.content import (
 FILMS = {".mp4": "video/mp4", ".webm": "video/webm", ".gif": "image/gif"}
 ALLOWED = "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'"
 """What a browser may load for the page: what the page itself holds."""
+SCREEN_DPI = 125
+"""CSS pixels an inch of a figure takes: letters of 8 points are as large as a footnote."""
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -108,8 +112,11 @@ def _fill(body: Element, report: Report) -> None:
     for number, section in enumerate(report.sections, start=1):
         part = SubElement(main, "section", id=f"section-{number}")
         _put(part, "h2", section.title)
-        for block in section.blocks:
-            part.append(_element(block))
+        for films, blocks in itertools.groupby(
+            section.blocks, lambda block: isinstance(block, Film)
+        ):
+            row = SubElement(part, "div", {"class": "films"}) if films else part
+            row.extend([_element(block) for block in blocks])
 
 
 @singledispatch
@@ -173,13 +180,15 @@ def _(block: Film) -> Element:
     if kind is None:
         raise ValueError(f"{block.path.name!r} is no film; a report takes {sorted(FILMS)}.")
     source = _embedded(block.path.read_bytes(), kind)
-    figure = Element("figure")
+    width, height = _film_size(block.path)
+    figure = Element("figure", style=f"flex-basis: {width}px")
     screen = SubElement(figure, "div", {"class": "screen"})
+    shape = {"width": str(width), "height": str(height)}
     if kind.startswith("image"):
-        SubElement(screen, "img", src=source, alt=_clean(block.alt))
+        SubElement(screen, "img", shape | {"src": source, "alt": _clean(block.alt)})
     else:
         how = dict.fromkeys(("controls", "loop", "muted", "playsinline", "autoplay"), "")
-        SubElement(screen, "video", how | {"src": source, "aria-label": _clean(block.alt)})
+        SubElement(screen, "video", how | shape | {"src": source, "aria-label": _clean(block.alt)})
     _put(figure, "figcaption", block.caption)
     return figure
 
@@ -225,8 +234,14 @@ def _picture(figure: matplotlib.figure.Figure) -> tuple[str, int, int]:
     with mpl.rc_context({"svg.hashsalt": "eigenwalker", "svg.fonttype": "path"}):
         about = {"Date": None, "Creator": None}
         figure.savefig(drawn, format="svg", transparent=True, metadata=about)
-    width, height = figure.get_size_inches() * 96
+    width, height = figure.get_size_inches() * SCREEN_DPI
     return _embedded(drawn.getvalue(), "image/svg+xml"), round(width), round(height)
+
+
+def _film_size(path: Path) -> tuple[int, int]:
+    with av.open(str(path)) as film:
+        picture = film.streams.video[0]
+        return picture.width, picture.height
 
 
 def _embedded(content: bytes, kind: str) -> str:
