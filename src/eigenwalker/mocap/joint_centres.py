@@ -113,9 +113,9 @@ def chord(
 ) -> np.ndarray:
     """Return a joint centre by the chord function.
 
-    It lies `offset_mm` from the marker on the skin, in the plane of the proximal joint, the marker and
-    the direction `outward`, inwards of the marker, so that the segment stands at a right angle on
-    the line from centre to marker.
+    It lies `offset_mm` from the marker on the skin, in the plane of the proximal joint, the marker
+    and the direction `outward`, inwards of the marker, so that the segment stands at a right angle
+    on the line from centre to marker.
 
     Parameters
     ----------

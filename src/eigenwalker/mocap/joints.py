@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from eigenwalker.mocap.joint_centres import HIP_REGRESSIONS
-from eigenwalker.mocap.marker_names import MarkerNames, MarkerSet, known_sets, subjects
-from eigenwalker.mocap.skin import Body, joints_from_skin
+from eigenwalker.mocap.marker_names import SIDES, MarkerNames, MarkerSet, known_sets, subjects
+from eigenwalker.mocap.skin import WIDTH_OF_LEG, Measures, Points, joints_from_skin, midpoint
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import check_trajectories, trajectories_at
 
+MOST_WIDTH_MM = 300
 _SHOWN = 60
+
+
+class _Joints(NamedTuple):
+    """Joints, which of them are approximate, and the marker set that gave them."""
+
+    joints: Points
+    approximate: set[str]
+    name: str
 
 
 def virtual_markers(
@@ -23,13 +32,14 @@ def virtual_markers(
     joints: Literal["walker", "full"] = "walker",
     mapping: Mapping[str, str | Sequence[str]] | None = None,
     marker_set: str | None = None,
-    hip_regression: str = "harrington",
+    hip_regression: str = "davis",
     widths_mm: Mapping[str, float] | None = None,
 ) -> xr.DataArray:
     """Return the 15 joints of a walker (J3, J4), from markers on the skin or another skeleton.
 
-    Known are Plug-in Gait and its kin, the 41 markers of the CMU collection, landmarks after van Sint
-    Jan, OptiTrack's sets, and the common skeletons of BVH files: see ``mocap/marker_sets.toml``.
+    Known are Plug-in Gait and its kin, the 41 markers of the CMU collection, landmarks after van
+    Sint Jan, OptiTrack's sets, and the usual skeletons of BVH files: see
+    ``mocap/marker_sets.toml``.
 
     Parameters
     ----------
@@ -42,8 +52,9 @@ def virtual_markers(
         midpoint it is. Joints left out are looked for in the known sets.
     marker_set : str, optional
         Name of the set to take; the first that gives all joints if left out.
-    hip_regression : {"harrington", "bell", "davis"}
-        Where hip centres are in the pelvis, for markers on the skin.
+    hip_regression : {"davis", "harrington", "bell"}
+        Where hip centres are in the pelvis, for markers on the skin. Plug-in Gait takes Davis', so
+        walkers agree with what laboratories see; Harrington's is nearer to images of hips.
     widths_mm : mapping of str to float, optional
         Widths ``"knee"``, ``"ankle"``, ``"elbow"`` as measured on the person, for sets
         without inner markers. If left out, those in the file count, or else shares of the leg.
@@ -52,8 +63,9 @@ def virtual_markers(
     -------
     DataArray of shape (time, marker, axis)
         Joints in the order of ``JOINTS.markers``, then the extra points. NaN where markers were
-        missing and nothing rigid beside them tells where they were. ``attrs["marker_set"]`` names the
-        set, ``attrs["approximate"]`` the joints that rest on a regression, an assumed width or a stand-in.
+        missing and nothing rigid beside them tells where they were. Attributes of the capture
+        stay; ``attrs["marker_set"]`` names the set, and ``attrs["approximate"]`` the joints that
+        rest on a regression, an assumed width or a stand-in.
 
     Raises
     ------
@@ -79,22 +91,18 @@ def virtual_markers(
         )
     seen = _seen(walk)
     own = _mapped(walk, mapping or {})
-    body = Body(
-        points={str(name): walk.sel(marker=name).values for name in seen},
-        names=MarkerNames(seen),
-        hip_regression=hip_regression,
-        widths_mm=_widths(walk, widths_mm),
+    measures = Measures(hip_regression, _lengths(walk, widths_mm or {}))
+    found = _best_set(
+        {name: walk.sel(marker=name).values for name in seen}, own, measures, marker_set
     )
-    found, approximate, name = _best_set(body, own, marker_set, seen)
     order = [*JOINTS.markers]
     if joints == "full":
-        order += [extra for extra in found if extra not in order]
-    result = trajectories_at(
-        walk.time.values, np.stack([found[joint] for joint in order], axis=1), order
-    )
+        order += [extra for extra in found.joints if extra not in order]
+    values = np.stack([found.joints[joint] for joint in order], axis=1)
+    result = trajectories_at(walk.time.values, values, order)
     result.attrs = walk.attrs | {
-        "marker_set": name,
-        "approximate": [joint for joint in order if joint in approximate],
+        "marker_set": found.name,
+        "approximate": [joint for joint in order if joint in found.approximate],
     }
     return result
 
@@ -134,59 +142,68 @@ def _mapped(
     return {joint: walk.sel(marker=names).values.mean(axis=1) for joint, names in wanted.items()}
 
 
-def _widths(walk: xr.DataArray, widths_mm: Mapping[str, float] | None) -> dict[str, float]:
-    """Return widths by ``left_knee`` and so on: those given, else those that the file holds."""
-    widths: dict[str, float] = {}
-    for part in ("knee", "ankle", "elbow"):
-        for side in ("left", "right"):
-            held = walk.attrs.get(f"{side}_{part}_width_mm")
-            if held is not None:
-                widths[f"{side}_{part}"] = float(held)
-    for part, width in (widths_mm or {}).items():
-        if part.rpartition("_")[2] not in ("knee", "ankle", "elbow") or not 0 < width < 300:
+def _lengths(walk: xr.DataArray, widths_mm: Mapping[str, float]) -> dict[str, float]:
+    """Return measured lengths by ``left_knee_width`` and so on: those given, else the file's."""
+    lengths = {
+        str(key).removesuffix("_mm"): float(value)
+        for key, value in walk.attrs.items()
+        if str(key).endswith(("_width_mm", "_leg_length_mm", "_shoulder_offset_mm"))
+    }
+    for part, width in widths_mm.items():
+        if part not in WIDTH_OF_LEG or not 0 < width < MOST_WIDTH_MM:
             raise ValueError(
-                f"widths_mm has {part!r}: {width}; give millimetres for 'knee', 'ankle' or 'elbow'."
+                f"widths_mm has {part!r}: {width}; give millimetres for some of "
+                f"{list(WIDTH_OF_LEG)}, up to {MOST_WIDTH_MM}."
             )
-        sides = [part] if "_" in part else [f"left_{part}", f"right_{part}"]
-        widths.update(dict.fromkeys(sides, float(width)))
-    return widths
+        lengths |= {f"{side}_{part}_width": float(width) for side in SIDES}
+    return lengths
 
 
-def _best_set(
-    body: Body, own: Mapping[str, np.ndarray], marker_set: str | None, seen: Sequence[str]
-) -> tuple[dict[str, np.ndarray], set[str], str]:
-    """Return joints, which of them are approximate, and the set that gives all of them."""
-    if not set(JOINTS.markers) - set(own):
-        return dict(own), set(), "own mapping"
+def _best_set(points: Points, own: Points, measures: Measures, marker_set: str | None) -> _Joints:
+    """Return the joints by the first set that gives all; refuse if none does."""
+    if set(JOINTS.markers) <= set(own):
+        return _Joints(own, set(), "own mapping")
     sets = [known for known in known_sets() if marker_set in (None, known.name)]
     if not sets:
         raise ValueError(
             f"marker_set={marker_set!r} is not known; give one of "
             f"{[known.name for known in known_sets()]}."
         )
-    best: list[str] | None = None
-    best_name = ""
+    names = MarkerNames(list(points))
+    missing: dict[str, list[str]] = {}
     for known in sets:
-        found, approximate = _joints_of(body, known)
-        found |= own
-        missing = [joint for joint in JOINTS.markers if joint not in found]
-        if not missing:
+        found = _joints_of(points, names, known, measures)
+        joints = found.joints | own
+        missing[known.name] = [joint for joint in JOINTS.markers if joint not in joints]
+        if not missing[known.name]:
             name = f"{known.name}, with own mapping" if own else known.name
-            return found, approximate - set(own), name
-        if best is None or len(missing) < len(best):
-            best, best_name = missing, known.name
+            return _Joints(joints, found.approximate - set(own), name)
+    nearest = min(missing, key=lambda name: len(missing[name]))
     raise ValueError(
-        f"No known marker set gives the joints {best} (the nearest is {best_name!r}). Tell which "
-        f"markers they are: virtual_markers(..., mapping={{{best[0]!r}: ['marker', 'marker'], ...}}), "
-        f"one marker or several whose midpoint is the joint. The capture has {_shortened(seen)}."
+        f"No known marker set gives the joints {missing[nearest]} (the nearest is {nearest!r}). "
+        "Tell which markers they are: virtual_markers(..., mapping="
+        f"{{{missing[nearest][0]!r}: ['marker', 'marker'], ...}}), one marker, or several whose "
+        f"midpoint is the joint. The capture has {_shortened(list(points))}."
     )
 
 
-def _joints_of(body: Body, known: MarkerSet) -> tuple[dict[str, np.ndarray], set[str]]:
-    found, approximate = joints_from_skin(body, known.landmarks)
-    direct = {joint: body.midpoint(entry) for joint, entry in (known.joints | known.extras).items()}
-    found |= {joint: point for joint, point in direct.items() if point is not None}
-    return found, approximate
+def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: Measures) -> _Joints:
+    """Return what one marker set makes of the capture: joints as they are, others from the skin."""
+    direct: Points = {}
+    stand_ins: set[str] = set()
+    for joint, entry in (*known.joints.items(), *known.extras.items()):
+        if hit := names.find(entry):
+            direct[joint] = midpoint([points[marker] for marker in hit.markers])
+            stand_ins |= {joint} if hit.stand_in else set()
+    skin = {
+        landmark: midpoint([points[marker] for marker in hit.markers])
+        for landmark, entry in known.landmarks.items()
+        if (hit := names.find(entry))
+    }
+    if not skin:
+        return _Joints(direct, stand_ins, known.name)
+    joints, approximate = joints_from_skin(skin | direct, measures)
+    return _Joints(joints | direct, approximate | stand_ins, known.name)
 
 
 def _shortened(names: Sequence[str]) -> str:

@@ -9,10 +9,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
-SIDES = {"left": "right", "right": "left"}
+SIDES = ("left", "right")
 COMMON = 0.6
 """Share of the names that must begin alike for the beginning to be the name of a subject."""
+
+_SIDE_AND_PART = (
+    re.compile(r"(?P<side>left|right)[ _.-]*(?P<part>.+)", re.IGNORECASE),
+    re.compile(r"(?P<part>.+?)[ _.-]*(?P<side>left|right)", re.IGNORECASE),
+    re.compile(r"(?P<side>[lr])[ _.-]+(?P<part>.+)", re.IGNORECASE),
+    re.compile(r"(?P<part>.+?)[ _.-]+(?P<side>[lr])", re.IGNORECASE),
+    re.compile(r"(?P<side>[lrLR])(?P<part>[A-Z].*)"),
+    re.compile(r"(?P<part>.*[a-z])(?P<side>[LR])"),
+)
+"""LeftThigh, ThighLeft, L_Thigh, thigh.L, lThigh, ThighL."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +59,7 @@ def known_sets() -> tuple[MarkerSet, ...]:
 
 
 def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
-    """Return an entry with {L} twice, for the left and the right; others as they are."""
+    """Return an entry that is about one side twice, for the left and the right."""
     expanded: dict[str, str] = {}
     for name, entry in entries.items():
         if "{L}" in entry and "{R}" not in entry:
@@ -57,6 +68,13 @@ def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
         else:
             expanded[name] = entry.replace("{L}", "{left}").replace("{R}", "{right}")
     return expanded
+
+
+class Found(NamedTuple):
+    """Markers of a capture whose midpoint is what was asked for, and whether as a stand-in."""
+
+    markers: tuple[str, ...]
+    stand_in: bool
 
 
 class MarkerNames:
@@ -70,30 +88,29 @@ class MarkerNames:
     Examples
     --------
     >>> names = MarkerNames(["Anna:LKNE", "Anna:LWRA", "Anna:LWRB"])
-    >>> names.find("{left}KNEE | {left}KNE")
-    ['Anna:LKNE']
-    >>> names.find("{left}WRA + {left}WRB")
-    ['Anna:LWRA', 'Anna:LWRB']
-    >>> MarkerNames(["mixamorig:LeftUpLeg"]).find("{left}UpLeg")
-    ['mixamorig:LeftUpLeg']
-    >>> MarkerNames(["UpperLeg_L"]).find("{left}UpperLeg")
-    ['UpperLeg_L']
+    >>> names.find("{left}KNEE | {left}KNE").markers
+    ('Anna:LKNE',)
+    >>> names.find("{left}WRA + {left}WRB").markers
+    ('Anna:LWRA', 'Anna:LWRB')
+    >>> MarkerNames(["mixamorig:LeftUpLeg", "thigh.R"]).find("{right}UpLeg | ~ {right}Thigh")
+    Found(markers=('thigh.R',), stand_in=True)
 
     """
 
     def __init__(self, names: Sequence[str]) -> None:
         self._known: dict[str, str] = {}
-        for name, own in zip(names, _without_common_prefix(names), strict=True):
+        for name, own in zip(names, _without_common_start(names), strict=True):
             for key in (_plain(own), *_side_first(own)):
                 self._known.setdefault(key, name)
 
-    def find(self, entry: str) -> list[str]:
-        """Return the names of the first alternative of an entry that the capture has in full."""
+    def find(self, entry: str) -> Found | None:
+        """Return the markers of the first alternative of an entry that the capture has in full."""
         for alternative in entry.split("|"):
-            found = [self._find_one(word.strip()) for word in alternative.split("+")]
-            if None not in found:
-                return [name for name in found if name is not None]
-        return []
+            words = alternative.strip().removeprefix("~").split("+")
+            markers = [marker for word in words if (marker := self._find_one(word.strip()))]
+            if len(markers) == len(words):
+                return Found(tuple(markers), stand_in=alternative.strip().startswith("~"))
+        return None
 
     def _find_one(self, word: str) -> str | None:
         side = next((side for side in SIDES if f"{{{side}}}" in word), None)
@@ -123,29 +140,20 @@ def _plain(name: str) -> str:
 
 
 def _side_first(name: str) -> list[str]:
-    """Return ``left|thigh`` for lThigh, L_Thigh, thigh.L, ThighLeft and other ways to say so."""
-    patterns = (
-        r"(?P<side>left|right)[ _.-]*(?P<part>.+)",
-        r"(?P<part>.+?)[ _.-]*(?P<side>left|right)",
-        r"(?P<side>[lr])[ _.-]+(?P<part>.+)",
-        r"(?P<part>.+?)[ _.-]+(?P<side>[lr])",
-    )
-    in_camel_case = (r"(?P<side>[lrLR])(?P<part>[A-Z].*)", r"(?P<part>.*[a-z])(?P<side>[LR])")
-    hits = [re.fullmatch(pattern, name.strip(), re.IGNORECASE) for pattern in patterns]
-    hits += [re.fullmatch(pattern, name.strip()) for pattern in in_camel_case]
-    sides = {"l": "left", "r": "right"}
+    """Return ``left|thigh`` for all ways to say so."""
+    hits = [pattern.fullmatch(name.strip()) for pattern in _SIDE_AND_PART]
+    sides = {side[0]: side for side in SIDES}
     return [f"{sides[hit['side'][0].lower()]}|{_plain(hit['part'])}" for hit in hits if hit]
 
 
-def _without_common_prefix(names: Sequence[str]) -> list[str]:
+def _without_common_start(names: Sequence[str]) -> list[str]:
     """Return the names without the subject or character that stands before most of them."""
-    names = [re.split(r"[:|]", name)[-1] for name in names]
-    starts = Counter(
-        hit[0] for name in names if (hit := re.match(r"[^ _.-]{2,}[ _.-]", name)) is not None
-    )
+    names = [re.split(r"[:|]", name)[-1].strip() for name in names]
+    starts = Counter(hit[0] for name in names if (hit := re.match(r"[^ _.-]+[ _.-]+(?=.)", name)))
     if not starts:
         return names
     start, count = starts.most_common(1)[0]
-    if count < COMMON * len(names) or start[:-1].lower() in SIDES:
+    sides = {"l", "r", *SIDES}
+    if count < COMMON * len(names) or start.rstrip(" _.-").lower() in sides:
         return names
     return [name.removeprefix(start) for name in names]

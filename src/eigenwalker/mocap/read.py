@@ -52,8 +52,8 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
         Positions in millimetres, z up; NaN where a marker was not seen. ``attrs`` tell ``source``
         (name of the file), ``format``, ``up_axis`` (the one of the file) and whether that is known
         (``up_axis_known``), ``unit`` (of the file), whether it is guessed (``unit_guessed``) and
-        why it was taken (``unit_reason``). Where joints have orientations, they are in the coordinate
-        ``rotation`` (time, marker, axis), as rotation vectors in radians.
+        why it was taken (``unit_reason``). Where joints have orientations, they are in the
+        coordinate ``rotation`` (time, marker, axis), as rotation vectors in radians.
 
     Raises
     ------

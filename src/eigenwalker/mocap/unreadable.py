@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-class UnreadableFile(ValueError):
+class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
     """A file does not hold what a reader needs.
 
     Whatever is wrong with a file, readers raise this and nothing else, so that one bad file among
