@@ -105,6 +105,7 @@ class LeaveOut:
         varying = ~constant_features(X)
         scale_of_all = divisors(X, scale)[varying]
         Y = (X - X.mean(axis=0))[:, varying] / scale_of_all
+        Y -= Y.mean(axis=0)  # the mean of a feature far from 0 is rounded
         rounding = 10 * np.finfo(float).eps * np.abs(X).max() / scale_of_all
         return cls(
             Y=Y,
@@ -192,13 +193,14 @@ class LeaveOut:
     def _by_svd(self, out: np.ndarray, total: np.ndarray, weights: np.ndarray) -> FoldComponents:
         """Decompose the walkers themselves: slower, and exact to the last component."""
         kept = self._kept(out)
-        if not weights.any():
+        standardised = (self.Y + total / len(kept)) * weights
+        found = _by_svd(standardised[kept], self.R[kept], standardised[out])
+        if not found.lengths.size:
             raise ValueError(
                 f"Without the walkers of rows {out.tolist()} all others are the same; "
                 "there is nothing to tell them apart by."
             )
-        standardised = (self.Y + total / len(kept)) * weights
-        return _by_svd(standardised[kept], self.R[kept], standardised[out])
+        return found
 
     def _kept(self, out: np.ndarray) -> np.ndarray:
         kept = np.ones(len(self.Y), dtype=bool)

@@ -88,8 +88,12 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         self.average_walker_ = W.mean(axis=0)
         self.scale_ = divisors(W, self.scale)
         standardised = (W - self.average_walker_) / self.scale_
-        standardised[:, constant_features(W)] = 0
+        constant = constant_features(W)
+        standardised[:, constant] = 0
+        # Once more, as the mean of a feature far from 0 is rounded: else that looks like variance.
+        standardised -= standardised.mean(axis=0)
         singular_values, axes = _principal_axes(standardised)
+        axes[:, constant] = 0
         kept = self._kept(len(axes), W.shape)
         variances = singular_values**2 / (len(W) - 1)
         self.eigenwalkers_ = axes[:kept] * self.scale_
