@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.caricature import direction, plausibility
+from eigenwalker.caricature import direction
 from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor
 from eigenwalker.space import WalkerSpace
 
@@ -136,14 +136,14 @@ def test_what_gives_no_direction_is_refused_with_the_reason():
 
 
 def test_usual_walkers_lie_at_a_distance_of_one():
-    distances = [plausibility(SPACE, walker).distance for walker in WALKERS]
+    distances = [position_in_space(SPACE, walker).distance for walker in WALKERS]
     assert np.sqrt(np.mean(np.square(distances))) == pytest.approx(np.sqrt(39 / 40))
 
 
 def test_plausibility_counts_standard_deviations_on_each_eigenwalker():
     space = WalkerSpace(n_components=5).fit(WALKERS)
     sd = np.sqrt(space.explained_variance_)
-    report = plausibility(space, space.inverse_transform([[3 * sd[0], 0, 0, -4 * sd[3], 0]])[0])
+    report = position_in_space(space, space.inverse_transform([[3 * sd[0], 0, 0, -4 * sd[3], 0]])[0])
     np.testing.assert_allclose(report.z_scores, [3, 0, 0, -4, 0], atol=1e-9)
     assert report.mahalanobis == pytest.approx(5)
     assert report.outside == pytest.approx(0, abs=1e-12)
@@ -153,24 +153,24 @@ def test_a_way_of_differing_that_walkers_never_showed_lies_outside():
     unseen = np.random.default_rng(9).normal(size=50)
     axes = SPACE.eigenwalkers_ / SPACE.scale_
     unseen -= axes.T @ (axes @ unseen)
-    assert plausibility(SPACE, SPACE.average_walker_ + unseen * SPACE.scale_).outside == (
+    assert position_in_space(SPACE, SPACE.average_walker_ + unseen * SPACE.scale_).outside == (
         pytest.approx(1)
     )
-    assert plausibility(SPACE, SPACE.average_walker_).outside == 0
+    assert position_in_space(SPACE, SPACE.average_walker_).outside == 0
 
 
 def test_caricatures_grow_less_plausible_with_alpha():
     step = direction(SPACE, SEXES)
     reports = [
-        plausibility(SPACE, SPACE.average_walker_ + alpha * step, walkers=WALKERS)
+        position_in_space(SPACE, SPACE.average_walker_ + alpha * step, walkers=WALKERS)
         for alpha in (0, 2, 6, 12)
     ]
     assert reports[0].percentile == 0
     assert reports[-1].percentile == 100
     assert np.all(np.diff([report.distance for report in reports]) > 0)
-    assert np.isnan(plausibility(SPACE, WALKERS[0]).percentile)
+    assert np.isnan(position_in_space(SPACE, WALKERS[0]).percentile)
 
 
 def test_a_vector_of_another_length_is_refused():
     with pytest.raises(ValueError, match="a vector of 50 features"):
-        plausibility(SPACE, np.zeros(49))
+        position_in_space(SPACE, np.zeros(49))

@@ -107,7 +107,7 @@ def _length(discriminant: Discriminant, units: Units) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Plausibility:
+class SpacePosition:
     """How far a walker lies from those a space was made from.
 
     Parameters
@@ -135,9 +135,9 @@ class Plausibility:
     percentile: float
 
 
-def plausibility(
+def position_in_space(
     space: WalkerSpace, vector: ArrayLike, *, walkers: ArrayLike | None = None
-) -> Plausibility:
+) -> SpacePosition:
     """Return how far a walker lies from those a space was made from.
 
     Parameters
@@ -151,13 +151,13 @@ def plausibility(
 
     Returns
     -------
-    Plausibility
+    SpacePosition
 
     Examples
     --------
     >>> walkers = np.array([[1.0, 5], [2, 4], [6, 4], [7, 5]])
     >>> space = WalkerSpace(n_components=1).fit(walkers)
-    >>> report = plausibility(space, [14, 4.5], walkers=walkers)
+    >>> report = position_in_space(space, [14, 4.5], walkers=walkers)
     >>> report.z_scores.round(2).tolist(), report.percentile
     ([3.4], 100.0)
 
@@ -176,7 +176,7 @@ def plausibility(
         percentile = 100 * float(nearer.mean())
     total_variance = space.explained_variance_[0] / space.explained_variance_ratio_[0]
     residual = _squared_distances(space, vector - space.inverse_transform(scores), about_mean=False)
-    return Plausibility(
+    return SpacePosition(
         distance=float(np.sqrt(squared / total_variance)),
         mahalanobis=float(np.linalg.norm(z_scores)),
         z_scores=z_scores,
