@@ -140,10 +140,12 @@ def test_usual_walkers_lie_at_a_distance_of_one():
     assert np.sqrt(np.mean(np.square(distances))) == pytest.approx(np.sqrt(39 / 40))
 
 
-def test_plausibility_counts_standard_deviations_on_each_eigenwalker():
+def test_position_counts_standard_deviations_on_each_eigenwalker():
     space = WalkerSpace(n_components=5).fit(WALKERS)
     sd = np.sqrt(space.explained_variance_)
-    report = position_in_space(space, space.inverse_transform([[3 * sd[0], 0, 0, -4 * sd[3], 0]])[0])
+    report = position_in_space(
+        space, space.inverse_transform([[3 * sd[0], 0, 0, -4 * sd[3], 0]])[0]
+    )
     np.testing.assert_allclose(report.z_scores, [3, 0, 0, -4, 0], atol=1e-9)
     assert report.mahalanobis == pytest.approx(5)
     assert report.outside == pytest.approx(0, abs=1e-12)
