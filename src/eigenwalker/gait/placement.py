@@ -47,11 +47,11 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
     -------
     DataArray of shape (time, marker, axis)
         In millimetres, on the clock of the capture. A coordinate ``rotation`` is turned too.
-        ``attrs`` tell ``speed_mm_s`` (NaN if it cannot be known; one that the attributes of a walk in
-        place already state is kept), ``heading_deg`` (direction of walking in the capture, from +x
-        towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
-        ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``,
-        ``frequency_hz``, ``climb_mm`` (how far the body rose) and ``filled_samples``.
+        ``attrs`` tell ``speed_mm_s`` (NaN if it cannot be known; what the attributes of a walk in
+        place already state is kept), ``heading_deg`` (direction of walking in the capture, from
+        +x towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
+        ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``,
+        ``climb_mm`` (how far the body rose) and ``filled_samples``.
 
     Raises
     ------
