@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.caricature import direction
+from eigenwalker.caricature import direction, position_in_space
 from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor
 from eigenwalker.space import WalkerSpace
 
