@@ -42,9 +42,10 @@ class Body:
 def body_of(person: Mapping[str, float]) -> Body:
     """Return the body that a person's parameters describe.
 
-    Shares of height are ANSUR's (see `traits.PARAMETERS`). Recalled, not looked up: the pelvis
-    point lies 0.035 of height above the hips, the sternum 0.03 ahead of the shoulders, the ankle
-    0.042 ahead of the heel's point of contact.
+    Shares of height are ANSUR's (see `traits.PARAMETERS`). The hips lie where Harrington et al.
+    (2007, J Biomech 40:595) find them in a pelvis 240 mm wide and 150 mm deep, seen from its
+    centre. Recalled, not looked up: the sternum point, amid clavicles and seventh neck vertebra,
+    lies 0.038 of height above the shoulders, the ankle 0.042 ahead of the heel's contact.
     """
     height = person["height_mm"]
 
@@ -52,7 +53,8 @@ def body_of(person: Mapping[str, float]) -> Body:
         return height * person[share]
 
     legs = of("thigh_share") + of("shank_share") + of("ankle_share")
-    pelvis = legs + 0.035 * height
+    pelvis = legs + 0.049 * height
+    neck = 0.045 * height + of("trunk_share") - pelvis
     return Body(
         height=height,
         thigh=of("thigh_share"),
@@ -63,11 +65,11 @@ def body_of(person: Mapping[str, float]) -> Body:
             toe=0.24 * of("foot_share"),
             height=of("ankle_share"),
         ),
-        hip=np.array([0.0, of("hip_share") / 2, -0.035 * height]),
-        shoulder=np.array([-0.01 * height, of("shoulder_share") / 2, of("trunk_share") - pelvis]),
-        sternum=np.array([0.02 * height, 0.0, of("trunk_share") + 0.018 * height - pelvis]),
-        neck=np.array([-0.02 * height, 0.0, of("trunk_share") + 0.033 * height - pelvis]),
-        head=np.array([0.02 * height, 0.0, of("head_share") - of("trunk_share") - 0.033 * height]),
+        hip=np.array([0.017 * height, of("hip_share") / 2, -0.049 * height]),
+        shoulder=np.array([0.0, of("shoulder_share") / 2, of("trunk_share") - pelvis]),
+        sternum=np.array([-0.005 * height, 0.0, 0.038 * height + of("trunk_share") - pelvis]),
+        neck=np.array([-0.015 * height, 0.0, neck]),
+        head=np.array([0.035 * height, 0.0, of("head_share") - pelvis - neck]),
         upper_arm=of("upper_arm_share"),
         forearm=of("forearm_share"),
     )

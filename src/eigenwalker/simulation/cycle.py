@@ -23,8 +23,8 @@ PELVIS_HARMONICS = 6
 _CONTACT_MM = 0.5
 _LEAST_KNEE = np.radians(3.0)
 _FRAMES = 120
+_MOST_STEPS = 30
 _ENOUGH = 1.0
-_LONGER = 0.02
 _LEG = 2 * LEG_HARMONICS + 1
 _PELVIS = 2 * PELVIS_HARMONICS + 1
 
@@ -64,7 +64,7 @@ def pace_of(person: Mapping[str, float], body: Body) -> Pace:
         frequency=person["frequency_hz"],
         effort=effort,
         stance=person["stance_share"] - 0.1 * (dimensionless - 0.38),
-        step_width=max(person["step_width_mm"], 20.0),
+        step_width=max(person["step_width_mm"], 45.0),
         vertical_range=max(27 + 21 * faster + person["vertical_mm"], 12.0),
         lateral_range=max(70 - 31 * faster + person["lateral_mm"], 10.0),
     )
@@ -132,15 +132,14 @@ def solve_cycle(person: Mapping[str, float]) -> Cycle:
     pace = pace_of(person, body)
     own = _Problem(person, body, pace)
     best = _least_change(own, own.prior)
-    longer = _Problem(person, body, replace(pace, stride=pace.stride * (1 + _LONGER)))
-    slope = (_least_change(longer, best, most=3) - best) / _LONGER
+    slope = _change_with_stride(own, _Problem(person, body, replace(pace, stride=2 * pace.stride)), best)
     legs, _, pelvis = own.split(best)
     legs_slope, _, pelvis_slope = own.split(slope)
     sway = np.array([np.zeros(_PELVIS), own.sway, np.zeros(_PELVIS)])
     return Cycle(legs, pelvis + sway, legs_slope, pelvis_slope, own.onsets)
 
 
-def _least_change(problem: _Problem, unknown: np.ndarray, *, most: int = 30) -> np.ndarray:
+def _least_change(problem: _Problem, unknown: np.ndarray) -> np.ndarray:
     """Return the most probable cycle: Gauss-Newton, with shorter steps where a full one is worse."""
 
     def cost(residual: np.ndarray, unknown: np.ndarray) -> float:
@@ -148,7 +147,7 @@ def _least_change(problem: _Problem, unknown: np.ndarray, *, most: int = 30) -> 
 
     residual, slopes = problem.linearised(unknown)
     now = cost(residual, unknown)
-    for _ in range(most):
+    for _ in range(_MOST_STEPS):
         pull = problem.precision * (problem.prior - unknown) - slopes.T @ residual
         step = np.linalg.solve(slopes.T @ slopes + np.diag(problem.precision), pull)
         for _ in range(6):
@@ -163,6 +162,17 @@ def _least_change(problem: _Problem, unknown: np.ndarray, *, most: int = 30) -> 
         if gain < _ENOUGH:
             break
     return unknown
+
+
+def _change_with_stride(own: _Problem, doubled: _Problem, best: np.ndarray) -> np.ndarray:
+    """Return how the solution moves for each unit by which the stride is longer.
+
+    Residuals are linear in the stride, so one solution of the linearised problem tells.
+    """
+    residual, slopes = own.linearised(best)
+    missed, _ = doubled.linearised(best)
+    normal = slopes.T @ slopes + np.diag(own.precision)
+    return np.linalg.solve(normal, slopes.T @ (residual - missed))
 
 
 class _Problem:
@@ -199,7 +209,8 @@ class _Problem:
         rise[0] = height - self.body.hip[2]
         top = 4 * np.pi * (0.30 + person["bob_lag"])  # highest at 30 and 80 per cent (Orendurff et al. 2004)
         rise[3:5] = self.pace.vertical_range / 2 * np.array([np.cos(top), np.sin(top)])
-        rise_sd = np.concatenate([[30.0], 2.0 / pelvis_harmonic])
+        rise_sd = np.concatenate([[30.0], 1.2 / pelvis_harmonic])
+        rise_sd[3:5] = 0.5
         ahead_sd = 4.0 / pelvis_harmonic
         prior = np.concatenate([legs, rise, np.zeros(_PELVIS - 1)])
         return prior, np.concatenate([leg_sds, rise_sd, ahead_sd]) ** -2.0
@@ -314,9 +325,9 @@ def ankle_to_the_side(
 
 
 def _clearance(own: np.ndarray, stance: float) -> np.ndarray:
-    """Least height of the sole in swing: 14 mm but just after toe-off and before heel strike."""
+    """Least height of the sole in swing: 16 mm but just after toe-off and before heel strike."""
     swing = (own - stance) / (1 - stance)
-    return 14.0 * np.clip(np.minimum(swing / 0.15, (1 - swing) / 0.12), 0.0, 1.0)
+    return 16.0 * np.clip(np.minimum(swing / 0.15, (1 - swing) / 0.12), 0.0, 1.0)
 
 
 def _sway(pace: Pace) -> np.ndarray:

@@ -33,12 +33,6 @@ CURVES_DEG = MappingProxyType(
         # The same source, trunk on pelvis.
         "trunk_obliquity": _series(0, (-4.3, -3.3), (0, 0), (1.4, -0.2)),
         "trunk_rotation": _series(0, (-4.0, 0.5), (0, 0), (-0.5, 0.2)),
-        # The arm is furthest back at the heel strike of its side (Perry: an arc of about 30
-        # degrees; Murray 1967: 24 back, 8 forward), and the elbow bends as the arm swings
-        # forward (range 29.7 in 15 adults, Clin Shoulder Elb 2023;26:126). One unit each:
-        # the person gives mean and amplitude.
-        "arm_swing": _series(0, (-1.0, 0.0)),
-        "elbow_swing": _series(0, (-1.0, 0.0), (0.18, 0.0)),
     }
 )
 

@@ -15,11 +15,12 @@ from eigenwalker.simulation.cycle import (
     ankle_to_the_side,
     trunk_curves,
 )
-from eigenwalker.simulation.norms import CURVES_DEG, basis, later
+from eigenwalker.simulation.norms import basis
 from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
 from eigenwalker.simulation.strides import Strides
 
 Angles = dict[str, np.ndarray]
+_LEAST_ELBOW_DEG = 5.0
 
 
 def play(
@@ -49,15 +50,28 @@ def play(
     angles |= _legs(person, body, pace, cycle, strides, angles, pelvis)
     for name in SIDES:
         angles |= _arm(person, name, strides, cycle)
-    moods = np.radians(strides.moods)
-    angles["trunk_tilt"] = angles["trunk_tilt"] + 0.7 * moods[0]
-    angles["trunk_obliquity"] = angles["trunk_obliquity"] + 0.5 * moods[1]
-    angles["trunk_rotation"] = angles["trunk_rotation"] + 1.0 * moods[2]
-    # The head keeps level and looks ahead: it follows the trunk by a part only.
-    angles["head_tilt"] = np.radians(person["head_tilt_deg"]) + 1.0 * moods[3]
-    angles["head_obliquity"] = 0.2 * angles["trunk_obliquity"]
-    angles["head_rotation"] = 0.3 * angles["trunk_rotation"]
+    angles |= _upright(person, strides, angles)
     return angles, pelvis
+
+
+def _upright(person: Mapping[str, float], strides: Strides, angles: Angles) -> Angles:
+    """Trunk and head: the trunk nods twice a stride, the head keeps level and looks ahead."""
+
+    def nod(part: str) -> np.ndarray:
+        late = strides.phase - person[f"{part}_nod_lag"]
+        return np.radians(person[f"{part}_nod_deg"]) * np.cos(4 * np.pi * late)
+
+    moods = np.radians(strides.moods)
+    lean = angles["trunk_obliquity"] + 0.5 * moods[1]
+    turning = angles["trunk_rotation"] + moods[2]
+    return {
+        "trunk_tilt": angles["trunk_tilt"] + nod("trunk") + 0.7 * moods[0],
+        "trunk_obliquity": lean,
+        "trunk_rotation": turning,
+        "head_tilt": np.radians(person["head_tilt_deg"]) - nod("head") + moods[3],
+        "head_obliquity": 0.2 * lean,
+        "head_rotation": 0.3 * turning,
+    }
 
 
 def _legs(
@@ -86,25 +100,34 @@ def _legs(
 
 
 def _arm(person: Mapping[str, float], name: str, strides: Strides, cycle: Cycle) -> Angles:
-    left = name == "left"
-    own = strides.phase - cycle.onsets[0 if left else 1]
-    uneven = 1 + SIDES[name] * person["arm_asymmetry"] / 2
-    share = uneven * (1 + 0.08 * strides.moods[4 if left else 5])
-    curves = {}
-    for part, lag in (("arm_swing", 0.0), ("elbow_swing", person["elbow_lag"])):
-        series = later(CURVES_DEG[part], person["arm_lag"] + lag)
-        curves[part] = basis(own, len(series) // 2) @ series * share
-    swing, elbow = curves["arm_swing"], curves["elbow_swing"]
-    bent = person["elbow_mean_deg"] + person["elbow_swing_deg"] * elbow
-    out = person["arm_out_deg"] + person["arm_out_swing_deg"] * swing
-    bent = bent + strides.moods[6 if left else 7]
-    return {
-        f"{name}_shoulder_flexion": np.radians(
-            person["arm_mean_deg"] + person["arm_swing_deg"] * swing
-        ),
-        f"{name}_shoulder_abduction": np.radians(out),
-        f"{name}_shoulder_rotation": np.full(
-            len(own), np.radians(person["arm_in_rotation_deg"])
-        ),
-        f"{name}_elbow_flexion": np.radians(np.maximum(bent, 3.0)),
+    """An arm is furthest back at the heel strike of its side, and bends as it swings forward.
+
+    Perry: an arc of about 30 degrees; Murray 1967: 24 back, 8 forward; elbow: a range of 29.7
+    degrees in 15 adults (Clin Shoulder Elb 2023;26:126).
+    """
+    leg, side = list(SIDES).index(name), SIDES[name]
+    own = strides.phase - cycle.onsets[leg] - person["arm_lag"]
+    share = (1 + side * person["arm_asymmetry"] / 2) * (1 + 0.08 * strides.moods[4 + leg])
+    swing = -share * np.cos(2 * np.pi * own)
+    late = own - person["elbow_lag"]
+    bend = -share * np.cos(2 * np.pi * late) + person["elbow_second_share"] * np.cos(
+        4 * np.pi * (late - person["elbow_second_lag"])
+    )
+
+    def sided(parameter: str) -> float:
+        return person[f"{parameter}_deg"] + side * person[f"{parameter}_asymmetry_deg"] / 2
+
+    second = person["arm_second_deg"] * np.cos(4 * np.pi * own)
+    bent = sided("elbow_mean") + person["elbow_swing_deg"] * bend + strides.moods[6 + leg]
+    curves = {
+        "shoulder_flexion": sided("arm_mean") + person["arm_swing_deg"] * swing + second,
+        "shoulder_abduction": sided("arm_out") + person["arm_out_swing_deg"] * swing,
+        "shoulder_rotation": np.full(len(own), person["arm_in_rotation_deg"]),
+        "elbow_flexion": _LEAST_ELBOW_DEG + _softened(bent - _LEAST_ELBOW_DEG),
     }
+    return {f"{name}_{joint}": np.radians(curve) for joint, curve in curves.items()}
+
+
+def _softened(bend: np.ndarray) -> np.ndarray:
+    """Keep a bend above 0 without a kink: as it is where large, flattening out below 5 degrees."""
+    return 0.5 * (bend + np.sqrt(bend**2 + 5.0**2))
