@@ -74,7 +74,7 @@ def test_dots_are_within_half_a_pixel_of_where_the_walker_is(tmp_path, suffix, v
     )
     frames, _ = decode(path)
     scene = stage(
-        [positions_at(walker, np.arange(25) / 25)],
+        [positions_at(walker, walker.time_origin_s + np.arange(25) / 25)],
         view_deg=view_deg,
         elevation_deg=0,
         distance_mm=np.inf,
@@ -191,6 +191,14 @@ def test_a_capture_plays_on_its_own_clock_and_gaps_are_not_drawn(tmp_path):
     right_half = frames[..., frames.shape[2] // 2 :].max(axis=(1, 2))
     assert (right_half[:8] > 200).all()
     assert (right_half[10:] < 20).all()
+
+
+def test_a_walker_beside_a_capture_plays_on_the_clock_of_the_capture(tmp_path):
+    walker = three_dots()
+    capture = walker.trajectories(7.3 + np.arange(61) / 60)
+    path = write_film([capture, walker], tmp_path / "w.gif", duration_s=0.9, size_px=(400, 300))
+    frames, _ = decode(path)
+    assert np.abs(frames[:, :, :200].astype(int) - frames[:, :, 200:]).max() <= 12
 
 
 def test_a_film_longer_than_the_capture_is_refused(tmp_path):

@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from eigenwalker.display.links import LINKS
 from eigenwalker.display.projection import project
 from eigenwalker.display.style import GREY, INK, PALE, SMALL, USUAL, bare, new_figure, panels
-from eigenwalker.skeleton import JOINTS, Skeleton
+from eigenwalker.skeleton import Skeleton
 from eigenwalker.walker import Walker
 
 HEAD_MM = 95.0
@@ -80,7 +81,7 @@ def _mixed(color: str, share: float) -> tuple[float, ...]:
 
 
 def figure_joints(
-    walker: Walker, *, views_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = JOINTS
+    walker: Walker, *, views_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
     """Return the joints and links of a walker's mean posture from several sides (J fig. 1).
 
@@ -177,7 +178,7 @@ def figure_walkers(
     *,
     views_deg: Sequence[float] = (0, 90),
     phase: float = 0.25,
-    skeleton: Skeleton = JOINTS,
+    skeleton: Skeleton = LINKS,
 ) -> Figure:
     """Return walkers side by side at one scale, each over the paths of its joints.
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 from eigenwalker.display.bodies import HEAD_MM, INCH_MM, draw_body
+from eigenwalker.display.links import LINKS
 from eigenwalker.display.projection import project
 from eigenwalker.display.style import (
     BLUE,
@@ -24,7 +25,7 @@ from eigenwalker.display.style import (
     new_figure,
     panels,
 )
-from eigenwalker.skeleton import JOINTS, Skeleton
+from eigenwalker.skeleton import Skeleton
 from eigenwalker.walker import Walker
 
 MOLER = ("stride", "sway", "hop", "bounce")
@@ -43,7 +44,7 @@ REACH_MM = 300.0
 
 
 def figure_eigenpostures(
-    walker: Walker, *, views_deg: Sequence[float] = (0, 90), skeleton: Skeleton = JOINTS
+    walker: Walker, *, views_deg: Sequence[float] = (0, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
     """Return the eigenpostures of a walker one by one, over its mean posture (M4).
 

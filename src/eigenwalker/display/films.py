@@ -16,8 +16,9 @@ import numpy as np
 import xarray as xr
 from av.video.stream import VideoStream
 
+from eigenwalker.display.links import LINKS
 from eigenwalker.display.staging import STYLES, Scene, Style, positions_at, stage
-from eigenwalker.skeleton import JOINTS, Skeleton
+from eigenwalker.skeleton import Skeleton
 from eigenwalker.trajectories import check_trajectories
 from eigenwalker.walker import Walker
 
@@ -70,7 +71,7 @@ def write_film(
     rate_hz: float | None = None,
     background: Background = "dark",
     titles: Sequence[str] = (),
-    skeleton: Skeleton = JOINTS,
+    skeleton: Skeleton = LINKS,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
     """Write a film of one walker, or of several side by side, and return its path.
@@ -81,8 +82,9 @@ def write_film(
     Parameters
     ----------
     walks : Walker, trajectories, or a sequence of them
-        Walkers begin where their first phase is 0, captures with their first frame. Markers of a
-        capture that are missing at a moment are not drawn.
+        Walkers begin where their first phase is 0, captures with their first frame, and walkers
+        beside a capture at the moment of its first frame, on its clock. Markers of a capture that
+        are missing at a moment are not drawn.
     path : path
         The suffix decides: ``.mp4``, ``.webm`` or ``.gif``. The file appears when it is whole.
     duration_s : float, optional
@@ -138,7 +140,10 @@ def write_film(
     _check(shown, duration_s, n_strides, style, background, titles)
     delays, seconds = _moments(shown, duration_s, n_strides, rate_hz or form.rate_hz, form)
     scene = stage(
-        [positions_at(walk, moments) for walk, moments in zip(shown, seconds, strict=True)],
+        [
+            positions_at(walk, _start(walk, shown) + moments)
+            for walk, moments in zip(shown, seconds, strict=True)
+        ],
         view_deg=view_deg,
         elevation_deg=elevation_deg,
         distance_mm=distance_mm,
@@ -223,6 +228,14 @@ def _moments(
     starts = np.concatenate([[0.0], np.cumsum([float(delay) for delay in delays[:-1]])])
     length = float(sum(delays)) if n_strides is not None else duration_s
     return delays, [starts * (last / length) for last in lasts]
+
+
+def _start(walk: Walker | xr.DataArray, shown: list[Walker | xr.DataArray]) -> float:
+    """The moment at which a walk begins, on its own clock."""
+    if not isinstance(walk, Walker):
+        return float(walk.time.values[0])
+    beside = [float(other.time.values[0]) for other in shown if not isinstance(other, Walker)]
+    return beside[0] if beside else walk.time_origin_s
 
 
 def _delays(duration_s: float, rate_hz: float, form: FilmFormat, *, whole: bool) -> list[Fraction]:

@@ -10,10 +10,11 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from eigenwalker.display.links import LINKS
 from eigenwalker.display.projection import project
 from eigenwalker.display.raster import draw_discs, draw_lines, lettering
-from eigenwalker.skeleton import JOINTS, Skeleton
-from eigenwalker.trajectories import check_trajectories
+from eigenwalker.skeleton import Skeleton
+from eigenwalker.trajectories import check_trajectories, trajectories_at
 from eigenwalker.walker import Walker
 
 Style = Literal["dots", "sticks"]
@@ -111,7 +112,7 @@ def stage(
     style: Style,
     size_px: int | tuple[int, int],
     titles: Sequence[str],
-    skeleton: Skeleton = JOINTS,
+    skeleton: Skeleton = LINKS,
 ) -> Scene:
     """Return walks set side by side in a picture that holds all of them all the time.
 
@@ -190,11 +191,10 @@ def _picture_size(
     return 2 * math.ceil(width / 2), 2 * math.ceil(height / 2)
 
 
-def positions_at(walk: Walker | xr.DataArray, seconds: np.ndarray) -> xr.DataArray:
-    """Return a walker, or a capture of one, at seconds from its beginning.
+def positions_at(walk: Walker | xr.DataArray, time: np.ndarray) -> xr.DataArray:
+    """Return a walker, or a capture of one, at moments of its own clock.
 
-    A walker begins where its first phase is 0, a capture with its first frame; between the frames
-    of a capture lies a straight line.
+    Between the frames of a capture lies a straight line.
 
     Raises
     ------
@@ -203,18 +203,15 @@ def positions_at(walk: Walker | xr.DataArray, seconds: np.ndarray) -> xr.DataArr
 
     """
     if isinstance(walk, Walker):
-        return walk.trajectories(walk.time_origin_s + seconds)
+        return walk.trajectories(time)
     walk = check_trajectories(walk)
-    clock = walk.time.values - walk.time.values[0]
-    if len(clock) == 0 or seconds[-1] > clock[-1] + 1e-6:
+    clock = walk.time.values
+    if time[-1] > clock[-1] + 1e-6:
         raise ValueError(
-            f"The capture lasts {clock[-1] if len(clock) else 0:.3f} s, and the film asks for "
-            f"{seconds[-1]:.3f} s; ask for a shorter one, or decompose the capture and film the "
-            "walker, which goes on for ever."
+            f"The capture lasts {np.ptp(clock):.3f} s, and the film asks for "
+            f"{time[-1] - clock[0]:.3f} s; ask for a shorter one, or decompose the capture and "
+            "film the walker, which goes on for ever."
         )
-    flat = walk.values.reshape(len(clock), -1)
-    columns = [np.interp(seconds, clock, column) for column in flat.T]
-    values = np.stack(columns, axis=1).reshape(len(seconds), *walk.shape[1:])
-    return xr.DataArray(
-        values, dims=walk.dims, coords={"marker": walk.marker.values, "axis": walk.axis.values}
-    )
+    columns = [np.interp(time, clock, column) for column in walk.values.reshape(len(clock), -1).T]
+    values = np.stack(columns, axis=1).reshape(len(time), *walk.shape[1:])
+    return trajectories_at(time, values, walk.marker.values.tolist())
