@@ -78,7 +78,7 @@ def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
         core, irregularity = _most_regular(coarse, rate)
         tolerated = max(TOLERATED_SHARE, TOLERANCE_BESIDE_CORE * irregularity)
         grown = [_settle(coarse, rate, start, tolerated) for start in (whole, core)]
-        window = max(grown, key=lambda w: w[1] - w[0])
+        window = max(core, *grown, key=lambda window: window[1] - window[0])
     start, stop = window[0] * block, window[1] * block
     if window[1] == n_blocks:
         stop = len(movement)
@@ -88,7 +88,7 @@ def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
 def _settle(
     movement: np.ndarray, rate_hz: float, window: tuple[int, int], tolerated: float
 ) -> tuple[int, int]:
-    """Return the window that taking in and giving up half-strides ends at."""
+    """Return the window that taking in and giving up half-strides ends at; empty if none is."""
     seen = {window}
     for _ in range(_MAX_ROUNDS):
         departure, frequency = _departure(movement, rate_hz, window)
@@ -96,7 +96,9 @@ def _settle(
         smooth = _smoothed(departure, max(1, round(stride / 2)))
         broken = smooth > max(BROKEN_SHARE, 2 * tolerated)
         run = _best_run(np.where(broken, -np.inf, tolerated - smooth))
-        if run in seen or run[1] - run[0] < stride:
+        if run[1] - run[0] < stride:
+            return (0, 0)
+        if run in seen:
             break
         seen.add(run)
         window = run
