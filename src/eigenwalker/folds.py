@@ -9,11 +9,14 @@ all; and since scores are orthogonal, ``c K = r`` is solved by ``c_i = (u_i . r)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import cache
 from typing import Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from threadpoolctl import ThreadpoolController
 
 from eigenwalker.discriminant import Order, order_of_components, refuse_missing, two_classes
 from eigenwalker.space import Scale, constant_features, divisors, spanned_dimensions
@@ -128,10 +131,24 @@ class LeaveOut:
         total = gone.sum(axis=0)
         weights = self._weights_without(out, gone, total)
         if self.moments is not None and n_kept > len(weights):
-            found = self._by_features(out, total, weights)
-        else:
-            found = self._by_walkers(out, total, weights)
-        return found or self._by_svd(out, total, weights)
+            found = self._by_features(out, gone, total, weights)
+            if found is not None:
+                return found
+        kept = np.ones(len(self.Y), dtype=bool)
+        kept[out] = False
+        rows = kept.nonzero()[0]
+        standardised = self.Y.take(rows, axis=0)
+        standardised += total / n_kept
+        standardised *= weights
+        R, left_out = self.R.take(rows, axis=0), (gone + total / n_kept) * weights
+        found = _by_walkers(standardised, R, left_out) if n_kept <= len(weights) else None
+        found = found or _by_svd(standardised, R, left_out)
+        if not found.lengths.size:
+            raise ValueError(
+                f"Without the walkers of rows {out.tolist()} all others are the same; "
+                "there is nothing to tell them apart by."
+            )
+        return found
 
     def _weights_without(self, out: np.ndarray, gone: np.ndarray, total: np.ndarray) -> np.ndarray:
         """One over the standard deviations of the walkers kept; 0 where they do not vary."""
@@ -147,76 +164,61 @@ class LeaveOut:
             variance[cancelled] = np.where(varies, kept.var(axis=0, ddof=1), np.inf)
         return 1 / np.sqrt(variance)
 
-    def _by_walkers(
-        self, out: np.ndarray, total: np.ndarray, weights: np.ndarray
-    ) -> FoldComponents | None:
-        """Decompose the walkers x walkers side, or None where that would be inexact."""
-        weighted = self.Y * weights
-        mean = total * weights / (len(out) - len(weighted))
-        along_mean = weighted @ mean
-        gram = weighted @ weighted.T
-        gram -= along_mean
-        gram -= along_mean[:, None]
-        gram += mean @ mean
-        kept = self._kept(out)
-        eigenvalues, vectors = np.linalg.eigh(gram.take(kept, axis=0).take(kept, axis=1))
-        # The smallest one belongs to the mean, which is out.
-        eigenvalues, vectors = eigenvalues[:0:-1], vectors[:, :0:-1].T
-        if not _clear(eigenvalues):
-            return None
-        lengths = np.sqrt(eigenvalues)
-        vectors /= lengths[:, None]
-        return FoldComponents(
-            lengths, vectors @ self.R[kept], vectors @ gram[out].take(kept, axis=1).T
-        )
-
     def _by_features(
-        self, out: np.ndarray, total: np.ndarray, weights: np.ndarray
+        self, out: np.ndarray, gone: np.ndarray, total: np.ndarray, weights: np.ndarray
     ) -> FoldComponents | None:
         """Decompose the features x features side, or None where that would be inexact."""
-        n_kept = len(self.Y) - len(out)
-        gone = np.vstack([self.Y[out], total / np.sqrt(n_kept)])
-        moments = self.moments - gone.T @ gone
+        n_kept = len(self.Y) - len(gone)
+        taken = np.vstack([gone, total / np.sqrt(n_kept)])
+        moments = self.moments - taken.T @ taken
         moments *= weights
         moments *= weights[:, None]
         eigenvalues, vectors = np.linalg.eigh(moments)
-        eigenvalues, vectors = eigenvalues[::-1], vectors[:, ::-1].T
         if not _clear(eigenvalues):
             return None
-        lengths = np.sqrt(eigenvalues)
         level = (self.R.sum(axis=0) - self.R[out].sum(axis=0)) / n_kept
-        agreements = self.agreements - self.Y[out].T @ self.R[out] + np.outer(total, level)
-        c = vectors @ (agreements * weights[:, None]) / eigenvalues[:, None]
-        left_out = (self.Y[out] + total / n_kept) * weights
-        return FoldComponents(lengths, c, vectors @ left_out.T)
+        agreements = self.agreements - gone.T @ self.R[out] + np.outer(total, level)
+        c = vectors.T @ (agreements * weights[:, None]) / eigenvalues[:, None]
+        scores = vectors.T @ ((gone + total / n_kept) * weights).T
+        return FoldComponents(np.sqrt(eigenvalues)[::-1], c[::-1], scores[::-1])
 
-    def _by_svd(self, out: np.ndarray, total: np.ndarray, weights: np.ndarray) -> FoldComponents:
-        """Decompose the walkers themselves: slower, and exact to the last component."""
-        kept = self._kept(out)
-        standardised = (self.Y + total / len(kept)) * weights
-        found = _by_svd(standardised[kept], self.R[kept], standardised[out])
-        if not found.lengths.size:
-            raise ValueError(
-                f"Without the walkers of rows {out.tolist()} all others are the same; "
-                "there is nothing to tell them apart by."
-            )
-        return found
 
-    def _kept(self, out: np.ndarray) -> np.ndarray:
-        kept = np.ones(len(self.Y), dtype=bool)
-        kept[out] = False
-        return kept.nonzero()[0]
+def _by_walkers(
+    standardised: np.ndarray, R: np.ndarray, left_out: np.ndarray
+) -> FoldComponents | None:
+    """Decompose the walkers x walkers side, or None where that would be inexact."""
+    eigenvalues, vectors = np.linalg.eigh(standardised @ standardised.T)
+    # The smallest one belongs to the mean, which is out.
+    eigenvalues, vectors = eigenvalues[1:], vectors[:, 1:]
+    if not _clear(eigenvalues):
+        return None
+    lengths = np.sqrt(eigenvalues)
+    c = vectors.T @ R / lengths[:, None]
+    scores = vectors.T @ (standardised @ left_out.T) / lengths[:, None]
+    return FoldComponents(lengths[::-1], c[::-1], scores[::-1])
 
 
 def _clear(eigenvalues: np.ndarray) -> bool:
-    return eigenvalues.size > 0 and eigenvalues[-1] > _CLEAR * eigenvalues[0]
+    """Whether eigenvalues in ascending order are all well above rounding."""
+    return eigenvalues.size > 0 and eigenvalues[0] > _CLEAR * eigenvalues[-1]
 
 
 def _by_svd(kept: np.ndarray, R: np.ndarray, left_out: np.ndarray) -> FoldComponents:
+    """Decompose the walkers themselves: slower, and exact to the last component."""
     left, lengths, axes = np.linalg.svd(kept, full_matrices=False)
     n_spanned = spanned_dimensions(lengths, kept.shape)
     left, lengths, axes = left[:, :n_spanned], lengths[:n_spanned], axes[:n_spanned]
     return FoldComponents(lengths, left.T @ R / lengths[:, None], axes @ left_out.T)
+
+
+def one_blas_thread() -> AbstractContextManager[object]:
+    """Return a context in which BLAS uses one thread: more would slow such small matrices down."""
+    return _thread_pools().limit(limits=1, user_api="blas")
+
+
+@cache
+def _thread_pools() -> ThreadpoolController:
+    return ThreadpoolController()  # looks through all loaded libraries, which takes 2 ms
 
 
 def ticked(steps: Sequence[_Step], progress: Progress | None) -> Iterator[_Step]:

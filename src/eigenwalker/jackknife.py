@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from eigenwalker.discriminant import Order, refuse_missing
 from eigenwalker.folds import (
@@ -16,6 +15,7 @@ from eigenwalker.folds import (
     checked_classes,
     checked_walkers,
     discriminant_sums,
+    one_blas_thread,
     ticked,
 )
 from eigenwalker.space import Scale
@@ -149,7 +149,7 @@ def jackknife_curves(
 
     """
     walkers, r, folds = checked_classes(X, y, groups)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         trained = _trained_sums(table, order)
         held_out = _held_out_sums(table, folds, order, progress)
@@ -286,7 +286,7 @@ def regression_curves(
     if np.ptp(trait) == 0:
         raise ValueError(f"The trait is {trait[0]:g} for all {len(trait)} walkers; it must vary.")
     r = trait - trait.mean()
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         fitted = _trained_sums(table, order)
         predicted = _held_out_sums(table, folds, order, progress)

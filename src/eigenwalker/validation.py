@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from eigenwalker.discriminant import Order
 from eigenwalker.folds import (
@@ -16,6 +15,7 @@ from eigenwalker.folds import (
     checked_classes,
     discriminant_sums,
     members,
+    one_blas_thread,
     ticked,
 )
 from eigenwalker.space import Scale
@@ -82,7 +82,7 @@ def nested_leave_one_out(
     inner_errors = np.zeros((len(folds), min(walkers.shape)))
     missed, chosen_n = np.zeros(len(r), dtype=bool), np.zeros(len(r), dtype=int)
     pairs = list(combinations(range(len(folds)), 2))
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         for first, second in ticked(pairs, progress):
             out = np.concatenate([folds[first], folds[second]])
@@ -170,7 +170,7 @@ def permutation_test(
     deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(seed))
     traits = np.column_stack([r, deals])
     errors = np.zeros((min(walkers.shape), traits.shape[1]), dtype=int)
-    with threadpool_limits(1, user_api="blas"):
+    with one_blas_thread():
         table = LeaveOut.of(walkers, traits, scale=scale, scale_in_fold=scale_in_fold)
         for out in ticked(folds, progress):
             fold = table.without(out)
