@@ -70,7 +70,7 @@ def figure_curves(
     for axis in axes[len(curves) :]:
         axis.set_visible(False)
     most = max(np.max([curve.separation, curve.generalisation]) for curve in curves.values())
-    axes[0].set_ylim(0, 1.1 * max(most, 1))
+    axes[0].set_ylim(0, 1.25 * max(most, 1))  # the words at the top stay clear of the curves
     axes[0].yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
     figure.supxlabel("Number of components", fontsize=USUAL, color=INK)
     figure.supylabel("Misclassified walkers", fontsize=USUAL, color=INK)

@@ -1,0 +1,14 @@
+"""What a walk is made of.
+
+The first eigenposture is the stride itself; the second, a quarter of a stride later, shifts the
+body from leg to leg; the third and fourth ride on twice the frequency, as both steps of a stride
+do the same to them. Blue is the mean posture plus the eigenposture, red minus.
+"""
+
+import eigenwalker as ew
+from eigenwalker.display.eigenpostures import figure_eigenpostures
+
+walk = ew.simulate_walk(seed=1)
+walker = ew.decompose_pca(walk)
+figure = figure_eigenpostures(walker)
+figure.savefig("eigenpostures.png")
