@@ -225,11 +225,11 @@ def _sines(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarr
     frames = np.arange(n_frames) - (n_frames - 1) / 2
     turn = np.exp(2j * np.pi * cycles_per_frame * frames)
     columns = np.empty((n_frames, 2 * n_harmonics))
-    power = np.ones_like(turn)
+    power = turn
     for harmonic in range(n_harmonics):
+        columns[:, 2 * harmonic] = np.imag(power)
+        columns[:, 2 * harmonic + 1] = np.real(power)
         power = power * turn
-        columns[:, 2 * harmonic] = power.imag
-        columns[:, 2 * harmonic + 1] = power.real
     return columns
 
 

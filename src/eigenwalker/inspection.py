@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.population import Population
@@ -52,13 +53,13 @@ def _of_population(population: Population) -> dict[str, object]:
         "form": f"{first.form}, harmonics {', '.join(map(str, first.harmonics))}",
         "features": len(population.feature_names),
         "markers": list(first.markers),
-        "traits": [_trait_in_words(name, traits[name]) for name in traits if name != "flag"],
+        "traits": [_trait_in_words(str(name), traits[name]) for name in traits if name != "flag"],
         "frequency_hz": float(np.mean([walker.frequency_hz for walker in population.walkers])),
         "provenance": [f"{key}: {value}" for key, value in population.provenance.items()],
     }
 
 
-def _trait_in_words(name: str, values) -> str:
+def _trait_in_words(name: str, values: pd.Series) -> str:
     known = values[values.notna() & (values.astype(str) != "")]
     if known.dtype.kind == "f":
         return f"{name}: {known.mean():.4g} (SD {known.std():.3g}), {len(known)} known"

@@ -61,7 +61,7 @@ class Population:
 
     """
 
-    walkers: tuple[Walker, ...]
+    walkers: Sequence[Walker]
     traits: pd.DataFrame
     correspondence: Correspondence | None = None
     provenance: Mapping[str, str] = field(default_factory=dict)
@@ -272,7 +272,7 @@ class Population:
             only sign and order made to agree (as the paper's), and in correspondence.
 
         """
-        walkers = [self.walkers[number] for number in np.flatnonzero(self._trusted)]
+        walkers = [w for w, kept in zip(self.walkers, self._trusted, strict=True) if kept]
         mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
         as_found = posture_correlations(matched_by_sign_and_order(walkers))
         together = posture_correlations(np.stack([walker.p for walker in walkers]))

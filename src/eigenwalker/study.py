@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +24,9 @@ DECOMPOSE = {"eigenposture": decompose_pca, "fourier": decompose_fourier}
 SUFFIXES = tuple(form.suffix for form in FORMATS)
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
+
+
+_Attempt = tuple[Walker | None, dict[str, object]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,11 +141,11 @@ def fit_folder(
     folder = Path(folder)
     table = _listed(folder, traits, trait_from_name)
     tasks = [joblib.delayed(_attempt)(folder, name, form, n_harmonics) for name in table[FILE]]
-    parallel = joblib.Parallel(n_jobs=min(joblib.effective_n_jobs(n_jobs), len(tasks)))
-    parallel.return_generator = True
+    n_processes = min(joblib.effective_n_jobs(n_jobs), len(tasks))
+    attempts: Iterable[_Attempt] = joblib.Parallel(n_processes, return_as="generator")(tasks)  # pyright: ignore[reportAssignmentType] - typed as a list or None
     walkers: list[Walker | None] = []
     facts: list[Mapping[str, object]] = []
-    for walker, found in parallel(tasks):
+    for walker, found in attempts:
         walkers.append(walker)
         facts.append(found)
         if progress:
@@ -150,9 +153,7 @@ def fit_folder(
     return _gathered(table, walkers, pd.DataFrame(facts), form)
 
 
-def _attempt(
-    folder: Path, name: str, form: Form, n_harmonics: int
-) -> tuple[Walker | None, dict[str, object]]:
+def _attempt(folder: Path, name: str, form: Form, n_harmonics: int) -> _Attempt:
     """One capture in a process of its own; whatever goes wrong with it stays with it."""
     try:
         path = _within(folder, name)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 import eigenwalker
+from eigenwalker.caricature import Kind
 from eigenwalker.classification import N_PANELS, Classification, Progress, Regression
 from eigenwalker.classification import classify as classify_inputs
 from eigenwalker.classification import regress as regress_inputs
@@ -38,6 +39,12 @@ from eigenwalker.space import WalkerSpace
 from eigenwalker.trait_axis import TraitAxis, trait_axis
 from eigenwalker.walker import Walker
 
+_KINDS: dict[Kind, str] = {
+    "discriminant": "Along the discriminant: what tells the walkers apart best, as in the paper. "
+    "It weighs features that vary little, so a step need not look like much.",
+    "mean_difference": "Along the mean difference: what goes along with the trait, and shows it "
+    "best, within the same eigenwalkers.",
+}
 ALPHAS = (-6, -3, 0, 3, 6)
 """Standard deviations along the trait at which walkers are shown, to the paper's extreme (J30)."""
 _CITE = (
@@ -82,11 +89,9 @@ def write_main_job(
         found = classify_inputs(population, trait, n_permutations=n_permutations, progress=progress)
     else:
         found = regress_inputs(population, trait, progress=progress)
-    axis = trait_axis(population, trait)
-    extremes = {
-        alpha: population.walker(population.average + alpha * axis.step) for alpha in ALPHAS
+    axes: dict[Kind, TraitAxis] = {
+        kind: trait_axis(population, trait, kind=kind) for kind in _KINDS
     }
-    films = _films(folder, asked, extremes, progress)
     report = Report(
         title=f"{_capital(asked.trait)} from gait",
         lead=_lead(found),
@@ -94,7 +99,7 @@ def write_main_job(
             Section("Who walked", _who(population)),
             Section("How well the model holds", _model(population)),
             Section("What tells them apart", _classifiers(population, found)),
-            Section("What it looks like", _looks(population, axis, extremes, films)),
+            Section("What it looks like", _looks(folder, population, axes)),
             Section("Mind", [Items(_cautions(population, found))]),
             Section("Made with", [Code(f"eigenwalker {eigenwalker.__version__}\n{_CITE}")]),
         ],
@@ -224,33 +229,35 @@ def _classifiers(population: Population, found: Classification | Regression) -> 
                 "left out stay above.",
             )
         )
-        missed = found.often_missed()
+        missed = found.often_missed().head(10)
         if len(missed):
             traits = population.traits
-            names = traits["file"] if "file" in traits else pd.Series(traits.index.astype(str))
-            rows = [[str(names[row]), int(count)] for row, count in missed.head(10).items()]
+            names = traits.get("file", traits.index.to_series()).loc[missed.index]
+            rows = [[str(name), int(count)] for name, count in zip(names, missed, strict=True)]
             blocks.append(
                 Table("Walkers that several classifiers miss", ["walk", "inputs missing it"], rows)
             )
     return blocks
 
 
-def _looks(
-    population: Population, axis: TraitAxis, extremes: dict[int, Walker], films: list[Film]
-) -> list[Block]:
-    asked = axis.contrast
-    X = population.X[asked.rows]
-    titles = {_title(asked, alpha): walker for alpha, walker in extremes.items()}
-    trait = asked.labels if asked.two_classes else asked.y
-    blocks: list[Block] = [
-        *films,
-        Figure(
-            figure_walkers(titles),
-            f"From {asked.negative} to {asked.positive}, in standard deviations of the walkers "
-            "along the discriminant.",
-            "Stick figures from one pole of the trait to the other, front and side.",
-        ),
-    ]
+def _looks(folder: Path, population: Population, axes: Mapping[Kind, TraitAxis]) -> list[Block]:
+    asked = axes["discriminant"].contrast
+    slug = "".join(letter if letter.isalnum() else "-" for letter in asked.trait)
+    blocks: list[Block] = []
+    for kind, axis in axes.items():
+        walkers = _along(population, axis)
+        blocks += [
+            Text(_KINDS[kind]),
+            *_films(folder, f"{slug}-{kind.replace('_', '-')}", walkers),
+            Figure(
+                figure_walkers(walkers),
+                f"From {asked.negative} to {asked.positive}: standard deviations of the walkers "
+                "along the axis.",
+                "Stick figures from one pole of the trait to the other, front and side.",
+            ),
+            _gait_table(walkers),
+            _plausibility_table(population, axis),
+        ]
     if asked.two_classes:
         blocks.append(
             Figure(
@@ -259,23 +266,30 @@ def _looks(
                 "Stick figures of both classes' averages, and of both exaggerated.",
             )
         )
-    blocks += [
+    X = population.X[asked.rows]
+    blocks.append(
         Figure(
             figure_space(
                 WalkerSpace().fit(X),
                 X,
-                trait,
+                asked.labels,
                 trait_name=asked.trait,
-                step=axis.step,
+                step=axes["discriminant"].step,
                 poles=(asked.negative, asked.positive),
             ),
-            "Walkers on the first two eigenwalkers, and the axis of the trait.",
+            "Walkers on the first two eigenwalkers, and the axis of the discriminant.",
             "Scatter plot of walkers with the axis of the trait drawn through the average.",
-        ),
-        _gait_table(titles),
-        _plausibility_table(population, axis),
-    ]
+        )
+    )
     return blocks
+
+
+def _along(population: Population, axis: TraitAxis) -> dict[str, Walker]:
+    """Walkers from one pole of a trait to the other, by title."""
+    return {
+        _title(axis.contrast, alpha): population.walker(population.average + alpha * axis.step)
+        for alpha in ALPHAS
+    }
 
 
 def _class_averages(population: Population, asked: Contrast) -> dict[str, Walker]:
@@ -294,24 +308,33 @@ def _class_averages(population: Population, asked: Contrast) -> dict[str, Walker
 def _title(asked: Contrast, alpha: float) -> str:
     if alpha == 0:
         return "average"
-    return f"{asked.positive if alpha > 0 else asked.negative} {abs(alpha):g}"
+    return f"{asked.positive if alpha > 0 else asked.negative} {abs(alpha):g} SD"
 
 
-def _gait_table(walkers: dict[str, Walker]) -> Table:
+def _gait_table(walkers: Mapping[str, Walker]) -> Table:
     columns = {title: gait_parameters(walker) for title, walker in walkers.items()}
-    names = next(iter(columns.values())).index
-    rows = [[str(name), *(float(column[name]) for column in columns.values())] for name in names]
+    names = next(iter(columns.values())).dropna().index
+    rows = [
+        [str(name), *(_figures(float(column[name])) for column in columns.values())]
+        for name in names
+    ]
     return Table("Gait of the walkers shown", ["", *columns], rows)
+
+
+def _figures(number: float) -> str:
+    """Three figures, and no powers of ten."""
+    return f"{number:.0f}" if abs(number) >= 100 else f"{number:.3g}"
 
 
 def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
     rows: list[list] = []
     limbs: Iterable[str] = ()
     for alpha in ALPHAS:
+        title = _title(axis.contrast, alpha)
         found = plausibility(population, population.average + alpha * axis.step)
         limbs = found.limb_change.index
         changes = [f"{100 * change:+.0f} %" for change in found.limb_change]
-        rows.append([_title(axis.contrast, alpha), found.position.distance, *changes])
+        rows.append([title, _figures(found.position.distance), *changes])
     return Table(
         "How plausible they are: distance from the average walker, 1 being usual; change of limbs",
         ["walker", "distance", *limbs],
@@ -319,31 +342,26 @@ def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
     )
 
 
-def _films(
-    folder: Path, asked: Contrast, extremes: dict[int, Walker], progress: Progress | None
-) -> list[Film]:
-    low, middle, high = (extremes[alpha] for alpha in (min(ALPHAS), 0, max(ALPHAS)))
-    slug = "".join(letter if letter.isalnum() else "-" for letter in asked.trait)
-    wishes = [
-        ("average", [middle], "The average walker in points of light."),
-        (f"{slug}-low", [low], f"{_title(asked, min(ALPHAS))} standard deviations."),
-        (f"{slug}-high", [high], f"{_title(asked, max(ALPHAS))} standard deviations."),
-    ]
+def _films(folder: Path, name: str, walkers: Mapping[str, Walker]) -> list[Film]:
+    """Points of light one by one, then sticks side by side; four strides each."""
+    titles = list(walkers)
+    shown = {"low": titles[0], "average": titles[len(titles) // 2], "high": titles[-1]}
     films = []
-    for name, walkers, caption in wishes:
-        path = write_film(walkers, folder / f"{name}.mp4", n_strides=4, view_deg=30, size_px=420)
+    for which, title in shown.items():
+        path = folder / f"{name}-{which}.mp4"
+        write_film(walkers[title], path, n_strides=4, view_deg=30, size_px=420)
+        caption = f"{_capital(title)}, in points of light."
         films.append(Film(path, caption, f"Point-light film: {caption}"))
-    titles = [_title(asked, alpha) for alpha in extremes]
     path = write_film(
-        list(extremes.values()),
-        folder / f"{slug}.mp4",
+        list(walkers.values()),
+        folder / f"{name}.mp4",
         n_strides=4,
         view_deg=30,
         size_px=420,
         style="sticks",
         titles=titles,
     )
-    caption = f"From {titles[0]} to {titles[-1]} standard deviations, in one tempo."
+    caption = f"From {titles[0]} to {titles[-1]}, in one tempo."
     films.append(Film(path, caption, f"Stick figures side by side. {caption}"))
     return films
 
