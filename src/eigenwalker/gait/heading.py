@@ -19,6 +19,10 @@ STANDING_BEYOND = 0.7
 """A low ankle stands while it goes with the ground at this share of the usual speed or more; before
 heel strike it is low as well, but slower."""
 
+STRAIGHT_KNEE_MM = 15.0
+"""Knees that are less behind hips and ankles than this are straight; walkers' are 50 mm or more in
+front."""
+
 LEAST_PROGRESS_MM = 150.0
 """Way a stride below which a walker whose feet are not known counts as walking in place: more than
 the wander on a treadmill, less than the stride of a slow patient."""
@@ -152,14 +156,24 @@ def stance_speed(walk: xr.DataArray) -> float:
     return float("nan") if ground is None else -float(ground[0])
 
 
+def sides_swapped(positions: np.ndarray, markers: Sequence[str]) -> bool:
+    """Return whether knees bend backwards, going by which hip and shoulder are called left."""
+    facing, bend = _facing_by_names(positions, markers), _knee_bend(positions, markers)
+    return facing is not None and bend is not None and bool(facing @ bend < -STRAIGHT_KNEE_MM)
+
+
 def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
     """Return the unit vector forward of the body on the whole, or None if names do not tell.
 
-    Square to the lines through both hips and both shoulders. Knees bend forwards: if they
-    do not, left and right have changed names.
+    Knees bend forwards, whatever is called left and right.
     """
+    facing = _facing_by_names(positions, markers)
+    return -facing if facing is not None and sides_swapped(positions, markers) else facing
+
+
+def _facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
+    """Return the unit vector square to the lines through both hips and both shoulders."""
     place = {name: index for index, name in enumerate(markers)}
-    posture = positions.mean(axis=0)[:, :2]
     pairs = [
         (place[f"left_{part}"], place[f"right_{part}"])
         for part in ("hip", "shoulder")
@@ -167,12 +181,22 @@ def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
     ]
     if not pairs:
         return None
+    posture = positions.mean(axis=0)[:, :2]
     to_left = np.sum([posture[left] - posture[right] for left, right in pairs], axis=0)
-    facing = np.array([to_left[1], -to_left[0]]) / max(_length(to_left), 1e-9)
+    return np.array([to_left[1], -to_left[0]]) / max(_length(to_left), 1e-9)
+
+
+def _knee_bend(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
+    """Return how far knees are from the middle between hips and ankles, horizontally, in the mean."""
+    place = {name: index for index, name in enumerate(markers)}
     legs = [
         [place[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle")]
         for side in SIDES
         if all(f"{side}_{joint}" in place for joint in ("hip", "knee", "ankle"))
     ]
-    bends = [posture[knee] - (posture[hip] + posture[ankle]) / 2 for hip, knee, ankle in legs]
-    return -facing if legs and facing @ np.sum(bends, axis=0) < 0 else facing
+    if not legs:
+        return None
+    posture = positions.mean(axis=0)[:, :2]
+    return np.mean(
+        [posture[knee] - (posture[hip] + posture[ankle]) / 2 for hip, knee, ankle in legs], axis=0
+    )

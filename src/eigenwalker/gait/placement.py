@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.gait.drift import mean_velocity, slow_drift
 from eigenwalker.gait.gaps import MAX_GAP_S, Gap, fill_short_gaps, runs_of
+from eigenwalker.gait.harmonics import regress
 from eigenwalker.gait.heading import find_heading
 from eigenwalker.gait.origin import find_origin
 from eigenwalker.gait.steady import SteadyPart, steady_part
@@ -51,7 +52,8 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
         place already state is kept), ``heading_deg`` (direction of walking in the capture, from
         +x towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
         ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``,
-        ``climb_mm`` (how far the body rose) and ``filled_samples``.
+        ``climb_mm`` (how far the body rose), ``wander_mm`` (how far it was, on the whole, from a
+        straight line at constant speed) and ``filled_samples``.
 
     Raises
     ------
@@ -202,6 +204,7 @@ class _Placed(NamedTuple):
     speed_mm_s: float
     treadmill: bool
     climb_mm: float
+    wander_mm: float
 
 
 def _placed(
@@ -233,7 +236,15 @@ def _placed(
         speed_mm_s=heading.speed_mm_s,
         treadmill=heading.treadmill,
         climb_mm=float(way[2] * cycles[-1]),
+        wander_mm=_wander(drift[:, :2], cycles),
     )
+
+
+def _wander(drift: np.ndarray, cycles: np.ndarray) -> float:
+    """Return the root mean square of the way from a straight line walked at constant speed."""
+    line = np.column_stack([np.ones(len(cycles)), cycles])
+    aside = drift - line @ regress(line, drift)
+    return float(np.sqrt(np.einsum("ta,ta->t", aside, aside).mean()))
 
 
 def _about_z(angle: float) -> Rotation:
@@ -266,6 +277,7 @@ def _facts(
         "n_strides": round(part.strides(rate_hz)),
         "frequency_hz": part.frequency_hz,
         "climb_mm": placed.climb_mm + float(before.get("climb_mm", 0.0)),
+        "wander_mm": float(np.hypot(placed.wander_mm, before.get("wander_mm", 0.0))),
     }
 
 

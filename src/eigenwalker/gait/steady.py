@@ -26,6 +26,9 @@ tolerated, so that something is kept; quality then says what it is worth."""
 CORE_STRIDES = 2.0
 """Length of the piece from which a steady part is grown."""
 
+MOST_CORES = 60
+"""Pieces among which the most regular is looked for, however long the capture is."""
+
 SEARCH_RATE_HZ = 30.0
 """Enough for the harmonics above, three times over."""
 
@@ -145,7 +148,7 @@ def _most_regular(movement: np.ndarray, rate_hz: float) -> tuple[tuple[int, int]
     n_frames = len(movement)
     length = round(CORE_STRIDES * rate_hz / frequency_of_scores(movement, rate_hz))
     length = min(length, n_frames)
-    n_starts = min(n_frames - length, 4 * (n_frames - length) // length + 1) + 1
+    n_starts = min(n_frames - length, 4 * (n_frames - length) // length + 1, MOST_CORES - 1) + 1
     starts = np.linspace(0, n_frames - length, n_starts).astype(int).tolist()
     windows = [(start, start + length) for start in starts]
     variances = [float(movement[slice(*window)].var(axis=0).sum()) for window in windows]
