@@ -17,6 +17,7 @@ import xarray as xr
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.kinematics import forward_kinematics
+from eigenwalker.mocap.marker_names import numbered
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import Unit, guess_unit, turn_upright, up_axis
 from eigenwalker.trajectories import label_trajectories
@@ -24,6 +25,8 @@ from eigenwalker.trajectories import label_trajectories
 MOST_JOINTS = 2000
 MOST_POSITIONS = 100_000_000
 """More joints, or joints times frames, are no capture of a person but a damaged file."""
+MOST_DISTANT = 1e9
+"""No length, angle or time in a sound file is larger than this."""
 USUAL_RATES_HZ = (
     *(24, 25, 30, 48, 50, 60, 72, 75, 80, 90, 96, 100, 120, 125, 128, 144, 150, 160, 180, 192),
     *(200, 240, 250, 256, 300, 360, 400, 480, 500, 512, 600, 960, 1000),
@@ -90,7 +93,7 @@ def read_bvh(content: bytes, *, source: str, unit: Unit | None = None) -> xr.Dat
             "cut it into shorter files",
         )
     positions, orientations = _pose(joints, motion.values, source)
-    names = [joint.name for joint in joints]
+    names = numbered([joint.name for joint in joints])
     up = up_axis(positions, names)
     turn = turn_upright(up or "y")
     positions = positions @ turn.T
@@ -98,12 +101,7 @@ def read_bvh(content: bytes, *, source: str, unit: Unit | None = None) -> xr.Dat
     unit = unit or guess_unit(positions, names, source=source)
     walk = label_trajectories(
         positions * unit.millimetres, markers=names, rate_hz=motion.rate_hz
-    ).assign_coords(
-        rotation=(
-            ("time", "marker", "axis"),
-            _turned(orientations, turn),
-        )
-    )
+    ).assign_coords(rotation=(("time", "marker", "axis"), _turned(orientations, turn)))
     walk.attrs.update(
         source=source,
         format="BVH",
@@ -137,10 +135,10 @@ def _hierarchy(text: str, source: str) -> list[Joint]:
         match word.upper():
             case "ROOT" | "JOINT" | "END":
                 parent = open_joints[-1] if open_joints else -1
-                name = " ".join(_until_brace(words))
-                if word.upper() == "END":
-                    name = f"{joints[parent].name if joints else 'root'}_end"
-                joints.append(Joint(_unlike(name or "joint", joints), parent))
+                name = " ".join(_until_brace(words)) or "joint"
+                if word.upper() == "END" and parent >= 0:
+                    name = f"{joints[parent].name}_end"
+                joints.append(Joint(name, parent))
                 open_joints.append(len(joints) - 1)
             case "OFFSET" if open_joints:
                 x, y, z = (_number(next(words, ""), "an OFFSET", source) for _ in range(3))
@@ -171,17 +169,6 @@ def _until_brace(words: Iterator[str]) -> Iterator[str]:
         yield word
 
 
-def _unlike(name: str, joints: Sequence[Joint]) -> str:
-    """Return the name, numbered where another joint bears it already."""
-    taken = {joint.name for joint in joints}
-    number = 2
-    unlike = name
-    while unlike in taken:
-        unlike = f"{name}_{number}"
-        number += 1
-    return unlike
-
-
 def _channels(words: Iterator[str], source: str) -> tuple[str, ...]:
     count = next(words, "")
     if not re.fullmatch(r"\d", count):
@@ -198,7 +185,7 @@ def _channels(words: Iterator[str], source: str) -> tuple[str, ...]:
 
 def _number(word: str, where: str, source: str) -> float:
     number = float(word) if _NUMBER.fullmatch(word) else np.nan
-    if not np.isfinite(number):
+    if not abs(number) < MOST_DISTANT:
         advice = "write numbers with a decimal point" if "," in word else _AGAIN
         raise UnreadableFile(source, f"a finite number in {where}", repr(word[:40]), advice)
     return number
@@ -247,7 +234,9 @@ def _table(rows: list[list[str]], source: str) -> np.ndarray:
         table = np.array(rows, dtype=float)
     except ValueError:
         table = None
-    if table is None or not np.isfinite(table).all():
+    if any("_" in word for row in rows for word in row):
+        table = None  # numpy takes 1_0 for 10, where it is more likely a damaged 1.0
+    if table is None or not (np.abs(table) < MOST_DISTANT).all():
         for row, words in enumerate(rows, 1):
             for word in words:
                 _number(word, f"frame {row}", source)

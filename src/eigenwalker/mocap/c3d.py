@@ -8,6 +8,7 @@ that holds fewer frames than it declares.
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from collections.abc import Sequence
@@ -17,12 +18,16 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.mocap.marker_names import numbered
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import Unit, guess_unit, turn_upright, up_axis
 from eigenwalker.trajectories import MILLIMETRES, label_trajectories
 
 BLOCK = 512
 MAGIC = 0x50
+MOST_PARAMETER_BLOCKS = 255
+MOST_DISTANT = 1e9
+"""No marker is further off than this, in whatever unit."""
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
 _AGAIN = "export or copy the file again"
 _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named).*|no[ _]?name.*", re.IGNORECASE)
@@ -207,23 +212,25 @@ def _floats(raw: bytes, processor: str) -> np.ndarray:
 def _parameters(content: bytes, header: _Header, source: str) -> Parameters:
     """Return the parameters by ``GROUP:NAME``; of one given twice, the first."""
     at = (header.parameter_block - 1) * BLOCK + 4
-    end = (header.data_block - 1) * BLOCK if header.data_block > 1 else len(content)
+    end = min(len(content), at + MOST_PARAMETER_BLOCKS * BLOCK)
+    if header.data_block > header.parameter_block:
+        end = min(end, (header.data_block - 1) * BLOCK)
     order = ">" if header.processor == "MIPS" else "<"
     groups: dict[int, str] = {}
     found: dict[tuple[int, str], Parameter] = {}
     try:
-        while at + 2 <= min(end, len(content)):
+        while at + 2 <= end:
             length, group = struct.unpack_from("bb", content, at)
-            at += 2
             if not length or not group:
                 break
-            name = _text(content[at : at + abs(length)]).upper()
-            at += abs(length)
+            name = _text(content[at + 2 : at + 2 + abs(length)]).upper()
+            at += 2 + abs(length)
             (step,) = struct.unpack_from(order + "H", content, at)
+            record = content[at + 2 : at + step if step else end]
             if group < 0:
                 groups.setdefault(-group, name)
             else:
-                found.setdefault((group, name), _parameter(content, at + 2, header.processor))
+                found.setdefault((group, name), _parameter(record, header.processor))
             if not step:
                 break
             at += step
@@ -234,14 +241,11 @@ def _parameters(content: bytes, header: _Header, source: str) -> Parameters:
     return {f"{groups.get(group, group)}:{name}": p for (group, name), p in found.items()}
 
 
-def _parameter(content: bytes, at: int, processor: str) -> Parameter:
-    kind, n_dimensions = struct.unpack_from("bB", content, at)
-    dimensions = struct.unpack_from(f"{n_dimensions}B", content, at + 2)
-    at += 2 + n_dimensions
-    length = abs(kind)
-    for dimension in dimensions:
-        length *= dimension
-    return Parameter(kind, dimensions, content[at : at + length], processor)
+def _parameter(record: bytes, processor: str) -> Parameter:
+    kind, n_dimensions = struct.unpack_from("bB", record)
+    dimensions = struct.unpack_from(f"{n_dimensions}B", record, 2)
+    length = math.prod((abs(kind), *dimensions))
+    return Parameter(kind, dimensions, record[2 + n_dimensions :][:length], processor)
 
 
 def _text(raw: bytes) -> str:
@@ -282,8 +286,8 @@ def _samples(content: bytes, header: _Header, parameters: Parameters, source: st
     points = table.reshape(n_frames, words)[:, : 4 * header.n_points]
     points = points.reshape(n_frames, header.n_points, 4)
     positions = points[..., :3] * (1.0 if scale < 0 else scale)
-    if np.isinf(positions).any():
-        raise UnreadableFile(source, "finite positions", "infinite ones", _AGAIN)
+    if (np.abs(positions) > MOST_DISTANT).any():
+        raise UnreadableFile(source, "finite positions", "infinite or absurd ones", _AGAIN)
     positions[(points[..., 3] < 0) | np.isnan(positions).any(axis=2)] = np.nan
     return _without_zeros(positions)
 
@@ -397,7 +401,7 @@ def _markers(
             f"{len(labels)} points, all unlabelled or no positions",
             "label them first in the program that captured them",
         )
-    return samples[:, kept], _unlike(names), left_out
+    return samples[:, kept], numbered(names), left_out
 
 
 def _texts(parameters: Parameters, name: str) -> list[str]:
@@ -407,19 +411,6 @@ def _texts(parameters: Parameters, name: str) -> list[str]:
         if f"{name}{number}" in parameters:
             texts += parameters[f"{name}{number}"].texts()
     return texts
-
-
-def _unlike(names: Sequence[str]) -> list[str]:
-    """Return the names, numbered from the second of the same name on."""
-    unlike: list[str] = []
-    for name in names:
-        number = 2
-        new = name
-        while new in unlike:
-            new = f"{name}_{number}"
-            number += 1
-        unlike.append(new)
-    return unlike
 
 
 def _without_subject(names: list[str]) -> tuple[list[str], str]:

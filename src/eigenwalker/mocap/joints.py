@@ -92,9 +92,9 @@ def virtual_markers(
     seen = _seen(walk)
     own = _mapped(walk, mapping or {})
     measures = Measures(hip_regression, _lengths(walk, widths_mm or {}))
-    found = _best_set(
-        {name: walk.sel(marker=name).values for name in seen}, own, measures, marker_set
-    )
+    place = {str(name): index for index, name in enumerate(walk.marker.values)}
+    points = {name: walk.values[:, place[name]] for name in seen}
+    found = _best_set(points, own, measures, marker_set)
     order = [*JOINTS.markers]
     if joints == "full":
         order += [extra for extra in found.joints if extra not in order]

@@ -135,6 +135,27 @@ def subjects(names: Sequence[str]) -> list[str]:
     return sorted({name.rpartition(":")[0] for name in names} - {""})
 
 
+def numbered(names: Sequence[str]) -> list[str]:
+    """Return the names, numbered from the second of the same name on.
+
+    Examples
+    --------
+    >>> numbered(["head", "hand", "hand"])
+    ['head', 'hand', 'hand_2']
+
+    """
+    taken: dict[str, int] = {}
+    unlike: list[str] = []
+    for name in names:
+        new = name
+        while new in taken:
+            taken[name] += 1
+            new = f"{name}_{taken[name]}"
+        taken[new] = 1
+        unlike.append(new)
+    return unlike
+
+
 def _plain(name: str) -> str:
     return re.sub(r"[^a-z0-9*]", "", name.lower())
 

@@ -22,7 +22,7 @@ UNITS = {"mm": 1.0, "cm": 10.0, "in": 25.4, "asf": 25.4 / 0.45, "m": 1000.0}
 
 _HIGH = re.compile(r"head|hd$|skull|nose|vertex|glabella|^sgl$")
 _NEXT_HIGH = re.compile(r"neck|^c7$|cv7|clav")
-_LOW = re.compile(r"foot|toe|heel|hee$|ankle|ank$|mt\d$|meta|malle|^[lr]f(al|cc)$")
+_LOW = re.compile(r"foot|toe|heel|hee$|ankle|ank$|mt\d$|metatars|malle|^[lr]f(al|cc)$")
 
 
 class UnitGuessed(UserWarning):
