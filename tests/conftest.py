@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
+import c3d
 import numpy as np
 import pytest
+import xarray as xr
 
 from eigenwalker.skeleton import JOINTS
+from eigenwalker.trajectories import sampling_rate
 from eigenwalker.walker import Form, Walker
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -52,3 +56,27 @@ def _orthogonal_walker(
 def orthogonal_walker() -> Callable[..., Walker]:
     """Maker of walkers for whom both decompositions must agree, one a seed."""
     return _orthogonal_walker
+
+
+def _write_c3d(path: Path, walk: xr.DataArray) -> Path:
+    """Write trajectories as a C3D file, by a program that is not ours."""
+    writer = c3d.Writer(point_rate=round(sampling_rate(walk)))
+    writer.set_point_labels(walk.marker.values.tolist())
+    empty = np.zeros((0, 0))
+    frames = []
+    for posture in walk.values:
+        points = np.zeros((len(posture), 5), dtype=np.float32)
+        points[:, :3] = np.nan_to_num(posture)
+        points[np.isnan(posture).any(axis=1), 3] = -1
+        frames.append((points, empty))
+    writer.add_frames(frames)
+    with path.open("wb") as file, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "No analog data")
+        writer.write(file)
+    return path
+
+
+@pytest.fixture(scope="session")
+def write_c3d() -> Callable[[Path, xr.DataArray], Path]:
+    """Writer of C3D files."""
+    return _write_c3d

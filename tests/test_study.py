@@ -1,0 +1,129 @@
+"""From a folder of captures to a population, with bad files among good ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from eigenwalker.classification import classify
+from eigenwalker.simulation import simulate_captures
+from eigenwalker.study import fit_folder, walker_from_file
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, write_c3d) -> Path:
+    """Six walks, one of them cut short, one of them no walk; and a file of another kind."""
+    folder = tmp_path_factory.mktemp("captures")
+    (folder / "men").mkdir()
+    for number, (walk, person) in enumerate(simulate_captures(3, 3, seed=4)):
+        where = folder / "men" if person["sex"] == "male" else folder
+        write_c3d(where / f"{person['sex']}_{number}.c3d", walk)
+    whole = (folder / "female_1.c3d").read_bytes()
+    (folder / "female_1.c3d").write_bytes(whole[: len(whole) // 2])
+    still = walk - walk + walk.isel(time=0)
+    write_c3d(folder / "female_2.c3d", still.transpose("time", "marker", "axis"))
+    (folder / "notes.txt").write_text("not a capture")
+    return folder
+
+
+def test_bad_files_stop_no_others_and_are_named_with_the_reason(folder) -> None:
+    study = fit_folder(folder, n_jobs=1)
+    assert study.population is not None
+    assert len(study.population) == 4
+    assert study.files["file"].tolist() == [
+        "female_0.c3d", "female_1.c3d", "female_2.c3d",
+        "men/male_3.c3d", "men/male_4.c3d", "men/male_5.c3d",
+    ]  # fmt: skip
+    refused = study.refused.set_index("file")["reason"]
+    assert set(refused.index) == {"female_1.c3d", "female_2.c3d"}
+    assert "frames" in refused["female_1.c3d"]
+    used = study.files[study.files["status"] == "used"]
+    assert (used["r2"] > 0.9).all()
+    assert used["strides"].between(7, 12).all()
+
+
+def test_a_table_says_who_is_who_and_which_files_count(folder, tmp_path) -> None:
+    table = pd.DataFrame(
+        {
+            "file": ["men/male_3.c3d", "female_0.c3d", "men/nobody.c3d"],
+            "sex": ["male", "female", "male"],
+            "weight_kg": [80, 60, np.nan],
+        }
+    )
+    table.to_csv(tmp_path / "people.csv", index=False)
+    study = fit_folder(folder, traits=tmp_path / "people.csv", n_jobs=1)
+    assert study.population is not None
+    assert study.population.traits["sex"].tolist() == ["male", "female"]
+    assert study.population.traits["weight_kg"].tolist() == [80, 60]
+    assert "nothing of that name" in study.refused["reason"].item()
+
+
+def test_a_pattern_takes_traits_from_names(folder) -> None:
+    study = fit_folder(folder, trait_from_name=r"(?P<sex>female|male)_(?P<number>\d)", n_jobs=1)
+    assert study.population is not None
+    assert study.population.traits["sex"].tolist() == ["female", "male", "male", "male"]
+    assert study.population.traits["number"].tolist() == [0, 3, 4, 5]
+
+
+def test_processes_and_progress_change_nothing(folder) -> None:
+    steps = []
+    alone = fit_folder(folder, n_jobs=1, progress=lambda done, total: steps.append((done, total)))
+    together = fit_folder(folder, n_jobs=2)
+    assert steps == [(done, 6) for done in range(1, 7)]
+    assert alone.population is not None
+    assert together.population is not None
+    np.testing.assert_array_equal(alone.population.X, together.population.X)
+    pd.testing.assert_frame_equal(alone.files, together.files)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"traits": pd.DataFrame({"name": ["a"]})}, "needs a column 'file'"),
+        ({"traits": pd.DataFrame({"file": ["a", "a"]})}, "more than once"),
+        ({"traits": pd.DataFrame({"file": ["a", None]})}, "Row 2 of the traits table"),
+        ({"traits": "nowhere.csv"}, r"nowhere\.csv could not be read"),
+        ({"trait_from_name": "("}, "no regular expression"),
+        ({"trait_from_name": "walk"}, "no named group"),
+        ({"trait_from_name": "(?P<x>zebra)"}, "matches no file name"),
+    ],
+)
+def test_tables_and_patterns_that_make_no_sense_are_refused(folder, wrong, said) -> None:
+    with pytest.raises(ValueError, match=said):
+        fit_folder(folder, **wrong)
+
+
+def test_no_path_leads_out_of_the_folder(folder) -> None:
+    table = pd.DataFrame({"file": ["../../etc/passwd", "/etc/passwd", "men/../female_0.c3d"]})
+    study = fit_folder(folder, traits=table, n_jobs=1)
+    assert study.files["status"].tolist() == ["refused", "refused", "used"]
+    assert "leads out of the folder" in study.files["reason"][0]
+
+
+def test_an_empty_folder_and_no_folder_are_refused(tmp_path) -> None:
+    with pytest.raises(ValueError, match=r"no captures \(\*\.bvh, \*\.c3d\)"):
+        fit_folder(tmp_path)
+    with pytest.raises(ValueError, match="is no folder"):
+        fit_folder(tmp_path / "none")
+
+
+def test_acted_styles_of_bandai_namco_are_told_apart(captures) -> None:
+    """The issue's own check: all 175 read, steady strides found, acted styles told apart."""
+    study = fit_folder(captures / "bandai-namco", trait_from_name="walk_(?P<style>[a-z]+)_")
+    assert study.population is not None
+    assert len(study.population) == 175
+    assert len(study.refused) == 0
+    assert study.files["r2"].median() >= 0.96
+    found = classify(study.population, "style=feminine:masculine", n_permutations=0)
+    assert found.results[0].curves.fewest_errors == 0
+
+
+@pytest.mark.filterwarnings("ignore::eigenwalker.mocap.UnitGuessed")
+@pytest.mark.parametrize(("name", "r2"), [("02_01.c3d", 0.97), ("12_01.bvh", 0.94)])
+def test_real_captures_reach_the_share_explained_of_the_prototype(captures, name, r2) -> None:
+    walker, facts = walker_from_file(captures / "cmu" / name, form="fourier")
+    assert walker.fit is not None
+    assert facts["r2"] == walker.fit.r2 >= r2
