@@ -1,0 +1,187 @@
+"""The command line, as a person types it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import av
+import pytest
+
+from eigenwalker import cli
+from eigenwalker.population import Population
+from eigenwalker.simulation import simulate_captures, simulate_population
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Type a command; get its exit code, what it printed, and what it said on the error stream."""
+
+    def typed(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return typed
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, write_c3d) -> Path:
+    folder = tmp_path_factory.mktemp("captures")
+    for number, (walk, person) in enumerate(simulate_captures(4, 4, seed=4)):
+        write_c3d(folder / f"{person['sex']}_{number}.c3d", walk)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def people(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("people") / "people.nc"
+    simulate_population(6, 6, seed=4).save(path)
+    return path
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from eigenwalker import cli; sys.argv = ['eigenwalker', '--help']\n"
+        "try: cli.main()\n"
+        "except SystemExit: pass\n"
+        "print([name for name in ('numpy', 'pandas', 'xarray', 'scipy', 'rich') "
+        "if name in sys.modules])"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.splitlines()[-1] == "[]"
+    for command in ("demo", "info", "fit", "classify", "synthesize"):
+        assert command in said.stdout
+
+
+def test_fit_reads_a_folder_and_ends_with_0(run, folder, tmp_path) -> None:
+    output = tmp_path / "people.nc"
+    code, said, _ = run("fit", folder, "-o", output, "--trait-from-name", "(?P<sex>female|male)_")
+    assert code == 0
+    assert "8 of 8 captures read, 0 of them flagged" in said
+    people = Population.load(output)
+    assert people.traits["sex"].value_counts().to_dict() == {"female": 4, "male": 4}
+
+
+def test_fit_ends_with_1_when_some_were_refused_and_2_when_all_were(run, folder, tmp_path) -> None:
+    for name in ("female_0.c3d", "male_4.c3d"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    (tmp_path / "broken.c3d").write_bytes(b"\x02\x50" + bytes(5000))
+    code, said, _ = run("fit", tmp_path, "-o", tmp_path / "some.nc")
+    assert code == 1
+    assert "1 refused:\n  broken.c3d: " in said
+    assert len(Population.load(tmp_path / "some.nc")) == 2
+    for name in ("female_0.c3d", "male_4.c3d"):
+        (tmp_path / name).unlink()
+    code, said, errors = run("fit", tmp_path, "-o", tmp_path / "none.nc")
+    assert code == 2
+    assert "No capture of 1 could be used." in errors
+    assert not (tmp_path / "none.nc").exists()
+
+
+def test_info_says_what_is_in_a_capture(run, folder) -> None:
+    code, said, _ = run("info", folder / "male_5.c3d")
+    assert code == 0
+    assert "left_ankle" in said
+    code, said, _ = run("info", folder / "male_5.c3d", "--json")
+    facts = json.loads(said)
+    assert facts["format"] == "C3D"
+    assert facts["verdict"] == "use"
+    assert facts["rate_hz"] == 120
+
+
+def test_info_says_what_is_in_a_population(run, people) -> None:
+    code, said, _ = run("info", people, "--json")
+    assert code == 0
+    facts = json.loads(said)
+    assert facts["walkers"] == 12
+    assert facts["features"] == 229
+    assert any("sex: female 6, male 6" in line for line in facts["traits"])
+
+
+def test_demo_writes_a_report_and_films_and_ends(run, people, tmp_path) -> None:
+    code, said, _ = run("demo", people, "-o", tmp_path / "new" / "out", "--no-open")
+    assert code == 0
+    assert "everything, with size" in said
+    page = tmp_path / "new" / "out" / "report.html"
+    assert str(page) in said
+    assert "Sex from gait" in page.read_text()
+    films = sorted((tmp_path / "new" / "out").glob("*.mp4"))
+    assert "sex-discriminant.mp4" in [film.name for film in films]
+
+
+def test_classify_prints_the_table(run, people) -> None:
+    code, said, _ = run("classify", people, "--trait", "sex", "--permutations", "20")
+    assert code == 0
+    assert "sex: female to male, 12 walkers" in said
+    assert "first three eigenpostures" in said
+    code, said, _ = run("classify", people, "--trait", "weight")
+    assert code == 0
+    assert "weight_kg: light to heavy" in said
+    assert "RMSE" in said
+
+
+def test_synthesize_films_a_walker_and_says_how_plausible_it_is(run, people, tmp_path) -> None:
+    film = tmp_path / "walker.mp4"
+    code, said, _ = run(
+        "synthesize", people, "--trait", "sex=+3", "--trait", "weight=-1",
+        "--duration", "1", "-o", film,
+    )  # fmt: skip
+    assert code == 0
+    assert "sex: 3 standard deviations towards male" in said
+    assert "weight_kg: 1 standard deviations towards light" in said
+    assert "Limbs: upper arms" in said
+    with av.open(str(film)) as opened:
+        assert float(opened.streams.video[0].duration * opened.streams.video[0].time_base) == 1
+
+
+def test_synthesize_starts_from_a_walker_or_a_capture(run, people, folder, tmp_path) -> None:
+    film = tmp_path / "walker.gif"
+    for start in ("3", str(folder / "male_5.c3d")):
+        code, said, _ = run(
+            "synthesize",
+            people,
+            "--from",
+            start,
+            "--trait",
+            "sex=-1",
+            "--duration",
+            "0.4",
+            "-o",
+            film,
+        )
+        assert code == 0, said
+        assert film.stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("info", "nowhere.c3d"), "nothing of that name"),
+        (("info", "nowhere.nc"), "nothing of that name"),
+        (("classify", "--trait", "beauty"), "no trait 'beauty'"),
+        (("classify", "nowhere.nc"), "nothing of that name"),
+        (("synthesize", "--trait", "sex"), "sex=+3"),
+        (("synthesize", "--trait", "sex=much"), "sex=+3"),
+        (("synthesize", "--from", "99"), "walkers 0 to 39"),
+        (("synthesize", "-o", "walker.xyz"), "must end in one of"),
+        (("synthesize", "--part", "p9"), "no part 'p9'"),
+        (("fit", ".", "-o", "people.csv"), "written as .nc"),
+        (("fit", ".", "-o", "people.nc", "--form", "wavelet"), "eigenposture"),
+    ],
+)
+def test_mistakes_are_answered_in_a_sentence(run, words, said, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    if "--part" in words:
+        words = (*words, "--trait", "sex=1")
+    code, _, errors = run(*words)
+    assert code == 2
+    assert said in errors
+    assert "Traceback" not in errors
