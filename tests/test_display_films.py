@@ -276,22 +276,22 @@ def test_a_folder_that_does_not_exist_is_named(tmp_path):
 
 @given(st.floats(8, 24), st.floats(8, 24), st.floats(2, 6))
 def test_a_disc_has_its_place_and_its_area(column, row, radius):
-    canvas = np.zeros((33, 33), np.float32)
+    canvas = np.zeros((33, 33), np.uint8)
     draw_discs(canvas, np.array([[column, row]]), radius=radius)
     rows, columns = np.mgrid[:33, :33]
     place = [(canvas * grid).sum() / canvas.sum() for grid in (columns, rows)]
     np.testing.assert_allclose(place, [column, row], atol=0.06)
-    assert canvas.sum() == pytest.approx(np.pi * radius**2, rel=0.1)
+    assert canvas.sum() / 255 == pytest.approx(np.pi * radius**2, rel=0.1)
 
 
 @given(st.floats(-20, 50), st.floats(-20, 50), st.floats(-20, 50), st.floats(-20, 50))
 def test_what_reaches_over_the_border_is_cut(x0, y0, x1, y1):
-    small, large = np.zeros((30, 30), np.float32), np.zeros((130, 130), np.float32)
+    small, large = np.zeros((30, 30), np.uint8), np.zeros((130, 130), np.uint8)
     draw_lines(small, np.array([[x0, y0]]), np.array([[x1, y1]]), width=3)
     draw_lines(large, np.array([[x0 + 50, y0 + 50]]), np.array([[x1 + 50, y1 + 50]]), width=3)
     draw_discs(small, np.array([[x0, y0]]), radius=4)
     draw_discs(large, np.array([[x0 + 50, y0 + 50]]), radius=4)
-    np.testing.assert_allclose(small, large[50:80, 50:80], atol=2e-3)
+    assert np.abs(small.astype(int) - large[50:80, 50:80]).max() <= 1
 
 
 def test_long_words_are_set_smaller_until_they_fit():
@@ -299,7 +299,7 @@ def test_long_words_are_set_smaller_until_they_fit():
     assert canvas.shape == (20, 120)
     assert canvas[:, :2].max() == 0
     assert canvas[:, -2:].max() == 0
-    assert canvas.max() > 0.5
+    assert canvas.max() > 128
 
 
 def test_all_joints_are_drawn_as_a_stick_figure(tmp_path):

@@ -152,6 +152,21 @@ def test_tables_name_rows_and_columns_and_set_numbers_at_the_right(film):
     assert len(page.words["caption"]) == 1
 
 
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (1049.4, "1049"),
+        (-0.0166, "\N{MINUS SIGN}0.0166"),
+        (9e-16, "0"),
+        (0.25, "0.25"),
+        (1440, "1440"),
+    ],
+)
+def test_numbers_read_as_one_would_write_them(number, words):
+    table = Table("Gait", ["of", "value"], [["a walker", number]])
+    assert Page(render_report(Report("T", "L", [Section("S", [table])]))).words["td"] == [words]
+
+
 def test_a_table_with_a_short_row_is_refused():
     with pytest.raises(ValueError, match=r"2 columns .* a row of 1 cells"):
         Table("Errors", ["input", "errors"], [["structure"]])

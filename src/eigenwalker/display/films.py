@@ -46,7 +46,7 @@ class FilmFormat:
 FORMATS = {
     ".mp4": FilmFormat(
         *("mp4", "libx264", "yuv420p", 60),
-        options={"crf": "20", "preset": "veryfast"},
+        options={"crf": "24", "preset": "veryfast"},
         container_options={"movflags": "+faststart"},
     ),
     ".webm": FilmFormat(
@@ -258,8 +258,8 @@ def _encode(
     greys: tuple[int, int],
     progress: Callable[[int, int], object] | None,
 ) -> None:
-    ground, ink = greys
     n_rows, n_columns = scene.shape
+    shades, planes, picture = _canvas(form, scene.shape, greys)
     tick = delays[0] if form.codec != "gif" else Fraction(1, 100)
     options = dict(form.container_options)
     if form.codec == "gif":  # the last frame has no next one to tell how long it stays
@@ -270,8 +270,8 @@ def _encode(
         stream.codec_context.time_base = tick
         start = Fraction(0)
         for done, (cover, delay) in enumerate(zip(scene.frames(), delays, strict=True), start=1):
-            grey = ground + (ink - ground) * cover
-            frame = av.VideoFrame.from_ndarray(_pixels(grey, form), format=form.pixels)
+            np.take(shades, cover, out=picture, mode="clip")  # else it would be buffered
+            frame = av.VideoFrame.from_ndarray(planes, format=form.pixels)
             frame.time_base, frame.pts = tick, round(start / tick)
             frame.duration = round(delay / tick)
             film.mux(stream.encode(frame))
@@ -281,11 +281,17 @@ def _encode(
         film.mux(stream.encode())
 
 
-def _pixels(grey: np.ndarray, form: FilmFormat) -> np.ndarray:
-    """Grey as the encoder takes it: as it is, or as luma of 16 to 235 above empty colour planes."""
+def _canvas(
+    form: FilmFormat, shape: tuple[int, int], greys: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The shade of each cover, what the encoder takes, and that part of it which is the picture.
+
+    Greys as they are, or as luma of 16 to 235 above empty planes of colour.
+    """
+    shades = np.linspace(*greys, 256)
     if form.pixels == "gray":
-        return np.rint(grey).astype(np.uint8)
-    n_rows, n_columns = grey.shape
+        planes = np.zeros(shape, np.uint8)
+        return np.rint(shades).astype(np.uint8), planes, planes
+    n_rows, n_columns = shape
     planes = np.full((n_rows * 3 // 2, n_columns), 128, np.uint8)
-    planes[:n_rows] = np.rint(16 + grey * (219 / 255))
-    return planes
+    return np.rint(16 + shades * (219 / 255)).astype(np.uint8), planes, planes[:n_rows]

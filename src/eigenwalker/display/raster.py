@@ -1,7 +1,8 @@
 """Dots, lines and words as pixels, with soft edges and places between pixels.
 
-A canvas is an array (row, column) of how much each pixel is covered, 0 to 1. Places are (column,
-row), counted in pixels from the centre of the pixel at the upper left.
+A canvas is an array of uint8 (row, column) of how much each pixel is covered, 0 to 255. Places are
+(column, row), counted in pixels from the centre of the pixel at the upper left. Levels are shares
+of full cover.
 """
 
 from __future__ import annotations
@@ -24,21 +25,21 @@ def draw_discs(
 
     Parameters
     ----------
-    canvas : array of float32 of shape (row, column)
+    canvas : array of uint8 of shape (row, column)
         What is drawn on; where things overlap, the fuller cover stays.
     centres : array of shape (disc, 2)
         Columns and rows; a disc at NaN is left out, one that reaches over the border is cut.
     radius : float or array of shape (disc,)
         Pixels.
     level : float or array of shape (disc,)
-        Cover of a pixel that lies within a disc.
+        Share of cover of a pixel that lies within a disc.
 
     Examples
     --------
-    >>> canvas = np.zeros((5, 5), np.float32)
+    >>> canvas = np.zeros((5, 5), np.uint8)
     >>> draw_discs(canvas, np.array([[2, 2]]), radius=1)
     >>> canvas[2].tolist()
-    [0.0, 0.5, 1.0, 0.5, 0.0]
+    [0, 128, 255, 128, 0]
 
     """
     centres = np.asarray(centres, dtype=np.float32)
@@ -68,14 +69,14 @@ def draw_lines(
 
     Parameters
     ----------
-    canvas : array of float32 of shape (row, column)
+    canvas : array of uint8 of shape (row, column)
         As for `draw_discs`.
     starts, ends : array of shape (line, 2)
         Columns and rows; a line with an end at NaN is left out.
     width : float
         Pixels.
     level : float or array of shape (line,)
-        Cover of a pixel that lies within a line.
+        Share of cover of a pixel that lies within a line.
 
     """
     levels = np.broadcast_to(np.float32(level), len(starts))
@@ -101,7 +102,7 @@ def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
     inside = canvas[rows, columns]
     if inside.size:
         cut = patch[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
-        np.maximum(inside, cut, out=inside)
+        np.maximum(inside, np.rint(255 * cut).astype(np.uint8), out=inside)
 
 
 def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.ndarray:
@@ -114,11 +115,11 @@ def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.
     width, height : int
         Of the canvas, in pixels.
     level : float
-        Cover within the strokes.
+        Share of cover within the strokes.
 
     Returns
     -------
-    array of float32 of shape (height, width)
+    array of uint8 of shape (height, width)
 
     """
     dots_an_inch = 72
@@ -131,4 +132,4 @@ def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.
     if breadth > 0.94 * width:
         text.set_fontsize(height * 0.55 * 0.94 * width / breadth)
     canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[..., 0].astype(np.float32) * (level / 255)
+    return np.rint(level * np.asarray(canvas.buffer_rgba())[..., 0]).astype(np.uint8)

@@ -64,7 +64,7 @@ class Scene:
         return len(self.places[0])
 
     def frames(self) -> Iterator[np.ndarray]:
-        """Draw frame after frame: arrays of float32 (row, column), how much a pixel is covered."""
+        """Draw frame after frame: arrays of uint8 (row, column), how much a pixel is covered."""
         backdrop = self._backdrop()
         for moment in range(len(self)):
             canvas = backdrop.copy()
@@ -73,7 +73,7 @@ class Scene:
             yield canvas
 
     def _backdrop(self) -> np.ndarray:
-        canvas = np.zeros(self.shape, np.float32)
+        canvas = np.zeros(self.shape, np.uint8)
         n_rows, n_columns = self.shape
         height = round(TITLE * n_rows)
         edges = np.linspace(0, n_columns, len(self.places) + 1).astype(int)

@@ -37,7 +37,7 @@ Cell = str | int | float | None
 class Table:
     """A table whose first column names the rows.
 
-    Numbers are set with three figures and at the right; None and NaN are dashes.
+    Numbers are set at the right, fractions with three figures; None and NaN are dashes.
 
     Parameters
     ----------

@@ -223,9 +223,14 @@ def _aligned(numeric: bool) -> dict[str, str]:
 
 
 def _in_words(cell: Cell) -> str:
+    """Three figures of a number, more only before the point; rounding errors are 0."""
     if cell is None or (isinstance(cell, float) and math.isnan(cell)):
         return "\N{EN DASH}"
-    return f"{cell:.3g}" if isinstance(cell, float) else str(cell)
+    if isinstance(cell, str):
+        return cell
+    words = f"{cell:.3g}" if abs(cell) < 1000 and isinstance(cell, float) else f"{cell:.0f}"
+    words = "0" if abs(cell) < 1e-9 else words
+    return words.replace("-", "\N{MINUS SIGN}")
 
 
 def _picture(figure: matplotlib.figure.Figure) -> tuple[str, int, int]:
