@@ -13,12 +13,12 @@ BOUNDS_HZ = (0.3, 2.0)
 _COARSE_RATE_HZ = 12.0
 """Enough for the second harmonic of the fastest stride, three times over."""
 
-_OCTAVE = 0.98
+_OCTAVE = 0.99
 """When twice a frequency explains this share of what the frequency explains, the lower one lives
 on its second harmonic alone: it is half the stride frequency."""
 
 _CONVERGED = 1e-11
-"""Relative size of the last step; steps shrink by a hundred or more, so the error is far below."""
+"""Relative size of the step to come, if steps go on to shrink as the last one did."""
 _MAX_STEPS = 50
 
 
@@ -136,8 +136,8 @@ def _coarse_frequency(scores: np.ndarray, rate_hz: float, bounds_hz: tuple[float
     block = max(1, int(rate_hz / _COARSE_RATE_HZ))
     n_frames = len(scores) // block * block
     sums = np.add.reduceat(scores[:n_frames], np.arange(0, n_frames, block), axis=0)
-    velocity = np.diff(sums, axis=0)
-    velocity -= velocity.mean(axis=0)
+    velocity = sums[1:] - sums[:-1]
+    velocity -= (sums[-1] - sums[0]) / len(velocity)
     size = 1 << (4 * len(velocity) - 1).bit_length()
     spacing_hz = rate_hz / block / size
     grid = np.arange(
@@ -179,7 +179,7 @@ def _explained(
     g11: np.ndarray, g12: np.ndarray, g22: np.ndarray, b1: np.ndarray, b2: np.ndarray
 ) -> np.ndarray:
     """Return b' inv(G) b for 2 x 2 normal matrices G, summed over columns."""
-    b11, b12, b22 = ((b * c).sum(axis=1) for b, c in ((b1, b1), (b1, b2), (b2, b2)))
+    b11, b12, b22 = (np.einsum("fc,fc->f", b, c) for b, c in ((b1, b1), (b1, b2), (b2, b2)))
     return (g22 * b11 - 2 * g12 * b12 + g11 * b22) / (g11 * g22 - g12**2)
 
 
@@ -201,12 +201,14 @@ def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool)
     n = len(scores)
     reach = np.pi / n
     lowest, highest = angle - reach, angle + reach
+    previous = reach
     for _ in range(_MAX_STEPS):
         step = _gauss_newton_step(scores, angle, n_harmonics, trend=trend)
         step = min(max(step, -reach / 2), reach / 2)
         angle = min(max(angle + step, lowest), highest)
-        if abs(step) < _CONVERGED * angle:
+        if abs(step) * min(abs(step / previous), 1) < _CONVERGED * angle:
             break
+        previous = step
     return angle
 
 
@@ -223,7 +225,7 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
     rows = np.empty((n_basis + 2 * n_harmonics, n))
     rows[0] = 1
     rows[1] = frames / n
-    turning = power = _rotations(angle, n)
+    turning = power = rotations(angle, n)
     for h in range(1, n_harmonics + 1):
         cos, sin = n_fixed + 2 * h - 2, n_fixed + 2 * h - 1
         rows[cos], rows[sin] = np.real(power), np.imag(power)
@@ -231,17 +233,17 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
         np.multiply(rows[cos], h * frames, out=rows[sin + 2 * n_harmonics])
         power = power * turning
     products, with_data = rows @ rows.T, rows @ scores
-    gram = products[:n_basis, :n_basis]
-    weights = np.linalg.solve(gram, with_data[:n_basis])
+    inverse = np.linalg.inv(products[:n_basis, :n_basis])
+    weights = inverse @ with_data[:n_basis]
     amplitudes = weights[n_fixed:]
     cross = products[:n_basis, n_basis:] @ amplitudes
     gradient = np.vdot(amplitudes, with_data[n_basis:]) - np.vdot(weights, cross)
     curvature = np.vdot(amplitudes, products[n_basis:, n_basis:] @ amplitudes)
-    curvature -= np.vdot(cross, np.linalg.solve(gram, cross))
+    curvature -= np.vdot(cross, inverse @ cross)
     return float(gradient / curvature) if curvature > 0 else 0.0
 
 
-def _rotations(angle: float, n: int) -> np.ndarray:
+def rotations(angle: float, n: int) -> np.ndarray:
     """Return exp(i angle t) for n frames t about their middle; few exponentials, many products."""
     within = int(np.sqrt(n)) + 1
     fine = np.exp(1j * angle * np.arange(within))

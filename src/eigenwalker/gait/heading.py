@@ -187,7 +187,7 @@ def _facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarra
 
 
 def _knee_bend(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return how far knees are from the middle between hips and ankles, horizontally, in the mean."""
+    """Return the mean way of the knees from the middle between hips and ankles, horizontally."""
     place = {name: index for index, name in enumerate(markers)}
     legs = [
         [place[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle")]
