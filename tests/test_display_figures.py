@@ -215,11 +215,11 @@ def test_more_classes_than_can_be_told_apart_are_refused():
 
 
 def test_views_have_names():
-    assert [view_name(view) for view in (0, 30, 90, 22.5)] == [
+    assert [view_name(view) for view in (0, 30, 90.0, 90.5)] == [
         "front",
         "three-quarter",
         "side",
-        "22.5°",
+        "90.5°",
     ]
 
 

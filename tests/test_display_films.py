@@ -235,6 +235,17 @@ def test_the_hook_hears_of_every_frame(tmp_path):
     assert heard == [(frame, 10) for frame in range(1, 11)]
 
 
+def test_titles_may_be_in_any_script(tmp_path):
+    path = write_film(three_dots(), tmp_path / "t.gif", duration_s=0.1, titles=["\u6b69\u304f"])
+    assert (decode(path)[0][0, :40] > 90).sum() > 20
+
+
+def test_a_capture_of_which_nothing_was_seen_is_refused(tmp_path):
+    walk = label_trajectories(np.full((11, 1, 3), np.nan), markers=["a"], rate_hz=10)
+    with pytest.raises(ValueError, match="no samples at all"):
+        write_film(walk, tmp_path / "w.mp4")
+
+
 def test_a_film_that_breaks_off_leaves_what_was_there_and_nothing_else(tmp_path):
     path = tmp_path / "w.mp4"
     path.write_bytes(b"before")
@@ -261,6 +272,8 @@ def test_a_film_that_breaks_off_leaves_what_was_there_and_nothing_else(tmp_path)
         ("w.mp4", {"style": "cartoon"}, "style='cartoon' is none of"),
         ("w.mp4", {"background": "pink"}, "background='pink' is none of"),
         ("w.mp4", {"titles": ["a", "b"]}, "2 titles for 1 walkers"),
+        ("w.mp4", {"size_px": 8}, "too small"),
+        ("w.mp4", {"size_px": (8, 400)}, "too small"),
     ],
 )
 def test_choices_that_make_no_film_are_refused_in_words(tmp_path, name, choices, words):

@@ -138,6 +138,12 @@ def test_the_figure_in_the_page_is_a_drawing_with_a_size_and_words(film):
     assert image["alt"] == "as usual"
 
 
+def test_figures_may_have_letters_that_the_font_lacks():
+    figure = drawing()
+    figure.axes[0].set_title("\u6b69\u304f")
+    assert "<img" in render_report(Report("T", "L", [Section("S", [Figure(figure, "c", "a")])]))
+
+
 def test_a_report_is_the_same_every_time(film):
     assert render_report(whole_report(film)) == render_report(whole_report(film))
 

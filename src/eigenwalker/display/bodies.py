@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
@@ -76,8 +77,7 @@ def draw_body(
 
 def _mixed(color: str, share: float) -> tuple[float, ...]:
     """A colour on white, as if it covered a share of it."""
-    strong = np.array([int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)])
-    return tuple(1 - share * (1 - strong))
+    return tuple(1 - share * (1 - np.array(to_rgb(color))))
 
 
 def figure_joints(
@@ -134,7 +134,8 @@ def view_name(view_deg: float) -> str:
     ('side', '45°')
 
     """
-    return {0: "front", 30: "three-quarter", 90: "side"}.get(int(view_deg), f"{view_deg:g}°")
+    names: dict[float, str] = {0: "front", 30: "three-quarter", 90: "side"}
+    return names.get(view_deg, f"{view_deg:g}°")
 
 
 def _name_joints(axes: Axes, seen: np.ndarray, body: Skeleton, reach: float) -> None:

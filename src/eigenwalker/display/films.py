@@ -195,8 +195,6 @@ def _check(
     captures = [check_trajectories(walk) for walk in shown if not isinstance(walk, Walker)]
     if n_strides is not None and (captures or n_strides < 1):
         amiss.append("n_strides must be 1 or more, and is for walkers; a capture takes duration_s")
-    if any(not np.isfinite(capture.values).any() for capture in captures):
-        amiss.append("a capture has no samples at all")
     if style not in STYLES:
         amiss.append(f"style={style!r} is none of {STYLES}")
     if background not in GREYS:

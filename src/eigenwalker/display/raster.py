@@ -8,6 +8,7 @@ of full cover.
 from __future__ import annotations
 
 import math
+import warnings
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -128,8 +129,11 @@ def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.
     canvas = FigureCanvasAgg(figure)
     text = figure.text(0.5, 0.5, words, color="white", ha="center", va="center", parse_math=False)
     text.set_fontsize(height * 0.55)
-    breadth = text.get_window_extent(canvas.get_renderer()).width
-    if breadth > 0.94 * width:
-        text.set_fontsize(height * 0.55 * 0.94 * width / breadth)
-    canvas.draw()
+    with warnings.catch_warnings():
+        # A letter that the font lacks is drawn as a box, which says enough.
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        breadth = text.get_window_extent(canvas.get_renderer()).width
+        if breadth > 0.94 * width:
+            text.set_fontsize(height * 0.55 * 0.94 * width / breadth)
+        canvas.draw()
     return np.rint(level * np.asarray(canvas.buffer_rgba())[..., 0]).astype(np.uint8)

@@ -26,6 +26,7 @@ HEAD_MM = 170.0
 """Diameter of a stick figure's head, drawn about the marker of that name."""
 MARGIN = 0.06
 """Share of the picture's height that stays empty on each side."""
+SMALLEST_PX = 16
 TITLE = 0.08
 """Share of the picture's height that titles take, where there are any."""
 FAR_SIDE = 0.55
@@ -139,6 +140,8 @@ def stage(
     Scene
 
     """
+    if any(np.isnan(walk.values).all() for walk in walks):
+        raise ValueError("A capture has no samples at all during the film; nothing can be drawn.")
     views = [
         project(walk, view_deg=view_deg, elevation_deg=elevation_deg, distance_mm=distance_mm)
         for walk in walks
@@ -151,10 +154,10 @@ def stage(
     bottom, top = lows[:, 1].min(), highs[:, 1].max()
     width, height = _picture_size(size_px, len(walks), breadth, top - bottom, bool(titles))
     panel = width / len(walks)
-    head_room = (TITLE if titles else MARGIN) * height
-    tall = height - head_room - MARGIN * height
-    scale = min((panel - MARGIN * height) / breadth, tall / (top - bottom))
-    floor = height - MARGIN * height - (tall - scale * (top - bottom)) / 2
+    margin = MARGIN * min(height, panel)
+    tall = height - margin - (TITLE * height if titles else margin)
+    scale = min((panel - margin) / breadth, tall / (top - bottom))
+    floor = height - margin - (tall - scale * (top - bottom)) / 2
     places = tuple(
         np.stack(
             [
@@ -181,6 +184,11 @@ def _picture_size(
     size_px: int | tuple[int, int], n_panels: int, breadth: float, tall: float, titled: bool
 ) -> tuple[int, int]:
     """Width and height, both even; a panel is at least half as wide as the picture is tall."""
+    smallest = (SMALLEST_PX * n_panels, SMALLEST_PX) if isinstance(size_px, tuple) else SMALLEST_PX
+    if np.less(size_px, smallest).any():
+        raise ValueError(
+            f"size_px={size_px} is too small for {n_panels} walkers; give {smallest} or more."
+        )
     if isinstance(size_px, tuple):
         width, height = size_px
     else:

@@ -8,6 +8,7 @@ import itertools
 import math
 import os
 import re
+import warnings
 from functools import singledispatch
 from importlib.resources import files
 from pathlib import Path
@@ -236,7 +237,10 @@ def _in_words(cell: Cell) -> str:
 def _picture(figure: matplotlib.figure.Figure) -> tuple[str, int, int]:
     """A figure as the address of the data themselves, with its size in CSS pixels."""
     drawn = io.BytesIO()
-    with mpl.rc_context({"svg.hashsalt": "eigenwalker", "svg.fonttype": "path"}):
+    same_everywhere = mpl.rc_context({"svg.hashsalt": "eigenwalker", "svg.fonttype": "path"})
+    with same_everywhere, warnings.catch_warnings():
+        # A letter that the font lacks is drawn as a box; the caption below has the letter itself.
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
         about = {"Date": None, "Creator": None}
         figure.savefig(drawn, format="svg", transparent=True, metadata=about)
     width, height = figure.get_size_inches() * SCREEN_DPI
