@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.gait import frequency_of_scores
+from eigenwalker.gait.frequency import rotations
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 from eigenwalker.walker import CaptureFit, Form, Walker, shift_origin
 
@@ -188,21 +189,23 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     n_components = min(2 * n_harmonics, n_features)
     # Shifted by the first frame, the Gram matrix keeps all digits however far the origin is.
     shifted = postures - postures[0]
-    offset = shifted.mean(axis=0)
-    covariance = shifted.T @ shifted - n_frames * np.outer(offset, offset)
-    variance, axes = np.linalg.eigh(covariance)
+    offset = np.full(n_frames, 1 / n_frames) @ shifted
+    moments = shifted.T @ shifted
+    variance, axes = np.linalg.eigh(moments - n_frames * np.outer(offset, offset))
     variance = np.clip(variance[::-1], 0, None)
     components = axes[:, ::-1].T[:n_components]
-    scores = (shifted - offset) @ components.T
+    scores = shifted @ components.T - components @ offset
     frequency_hz = frequency_of_scores(scores, rate_hz, n_harmonics=n_harmonics)
 
-    sines = _sines(n_frames, frequency_hz / rate_hz, n_harmonics)
-    harmonics, amplitudes, phases, sine_r2 = _fit_sines(scores, sines)
-    design = np.column_stack([np.ones(n_frames), sines])
-    products = design.T @ shifted
-    fourier = np.linalg.solve(design.T @ design, products)
-    residual = np.vdot(shifted, shifted) - np.vdot(fourier, products)
+    design = _sines(n_frames, frequency_hz / rate_hz, n_harmonics)
+    products, gram = design @ shifted, design @ design.T
+    fourier = np.linalg.solve(gram, products)
+    residual = np.trace(moments) - np.vdot(fourier, products)
     fourier[0] += postures[0]
+    with_scores = (products - np.outer(gram[0], offset)) @ components.T
+    harmonics, amplitudes, phases, sine_r2 = _fit_sines(
+        with_scores[1:], gram[1:, 1:], variance[:n_components]
+    )
     total = float(variance.sum())
     return Eigenpostures(
         mean=postures[0] + offset,
@@ -221,34 +224,34 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
 
 
 def _sines(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
-    """Columns sin 1, cos 1, sin 2, cos 2 ... on a clock with its zero in the middle."""
-    frames = np.arange(n_frames) - (n_frames - 1) / 2
-    turn = np.exp(2j * np.pi * cycles_per_frame * frames)
-    columns = np.empty((n_frames, 2 * n_harmonics))
+    """Rows 1, sin 1, cos 1, sin 2, cos 2 ... on a clock with its zero in the middle."""
+    turn = rotations(2 * np.pi * cycles_per_frame, n_frames)
+    rows = np.empty((1 + 2 * n_harmonics, n_frames))
+    rows[0] = 1
     power = turn
     for harmonic in range(n_harmonics):
-        columns[:, 2 * harmonic] = np.imag(power)
-        columns[:, 2 * harmonic + 1] = np.real(power)
+        rows[2 * harmonic + 1] = np.imag(power)
+        rows[2 * harmonic + 2] = np.real(power)
         power = power * turn
-    return columns
+    return rows
 
 
 def _fit_sines(
-    scores: np.ndarray, sines: np.ndarray
+    products: np.ndarray, gram: np.ndarray, power: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fit each score's dominant harmonic, c_i(t) = a_i sin(h_i w t + psi_i) with a_i > 0 (J8)."""
-    products = sines.T @ scores
-    gram = sines.T @ sines
-    power = np.einsum("tc,tc->c", scores, scores)
-    n_harmonics = sines.shape[1] // 2
-    weights = np.empty((n_harmonics, 2, scores.shape[1]))
-    explained = np.empty((n_harmonics, scores.shape[1]))
+    """Fit each score's dominant harmonic, c_i(t) = a_i sin(h_i w t + psi_i) with a_i > 0 (J8).
+
+    From the products of the sines with the scores and with one another, and the scores' squares.
+    """
+    n_harmonics = len(gram) // 2
+    weights = np.empty((n_harmonics, 2, products.shape[1]))
+    explained = np.empty((n_harmonics, products.shape[1]))
     for harmonic in range(n_harmonics):
         pair = slice(2 * harmonic, 2 * harmonic + 2)
         weights[harmonic] = np.linalg.solve(gram[pair, pair], products[pair])
         explained[harmonic] = (weights[harmonic] * products[pair]).sum(axis=0)
     best = explained.argmax(axis=0)
-    each = np.arange(scores.shape[1])
+    each = np.arange(products.shape[1])
     sine, cosine = weights[best, 0, each], weights[best, 1, each]
     r2 = explained[best, each] / np.where(power > 0, power, 1)
     return best + 1, np.hypot(sine, cosine), np.arctan2(cosine, sine), r2
