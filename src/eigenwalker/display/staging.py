@@ -156,7 +156,7 @@ def stage(
     panel = width / len(walks)
     margin = MARGIN * min(height, panel)
     tall = height - margin - (TITLE * height if titles else margin)
-    scale = min((panel - margin) / breadth, tall / (top - bottom))
+    scale = min((panel - 2 * margin) / breadth, tall / (top - bottom))
     floor = height - margin - (tall - scale * (top - bottom)) / 2
     places = tuple(
         np.stack(
@@ -194,7 +194,7 @@ def _picture_size(
     else:
         height = size_px
         filled = 1 - MARGIN - (TITLE if titled else MARGIN)
-        panel = max(filled * breadth / tall + MARGIN, 0.5) * height
+        panel = max(filled * breadth / tall / (1 - 2 * MARGIN), 0.5) * height
         width = math.ceil(panel * n_panels)
     return 2 * math.ceil(width / 2), 2 * math.ceil(height / 2)
 
