@@ -14,8 +14,8 @@ _COARSE_RATE_HZ = 12.0
 """Enough for the second harmonic of the fastest stride, three times over."""
 
 _OCTAVE = 0.99
-"""When twice a frequency explains this share of what the frequency explains, the lower one lives
-on its second harmonic alone: it is half the stride frequency."""
+"""When about twice a frequency explains this share of what the frequency explains, the lower one
+lives on its second harmonic alone: it is half the stride frequency."""
 
 _CONVERGED = 1e-11
 """Relative size of the step to come, if steps go on to shrink as the last one did."""
@@ -146,11 +146,12 @@ def _coarse_frequency(scores: np.ndarray, rate_hz: float, bounds_hz: tuple[float
     )
     explained = _explained_by_two_harmonics(velocity, grid, size)
     best = int(explained.argmax())
-    if (double := 2 * grid[best] - grid[0]) < len(grid):
-        around = slice(double - 1, double + 2)
-        if explained[around].max() >= _OCTAVE * explained[best]:
-            best = double - 1 + int(explained[around].argmax())
-    return float(grid[best] + _peak_offset(explained, best)) * spacing_hz
+    about_double = (grid > 1.6 * grid[best]) & (grid < 2.4 * grid[best])
+    higher = int(np.where(about_double, explained, 0.0).argmax())
+    (offset, top), (higher_offset, higher_top) = (_peak(explained, at) for at in (best, higher))
+    if about_double[higher] and higher_top >= _OCTAVE * top:
+        best, offset = higher, higher_offset
+    return float(grid[best] + offset) * spacing_hz
 
 
 def _explained_by_two_harmonics(values: np.ndarray, grid: np.ndarray, size: int) -> np.ndarray:
@@ -183,13 +184,16 @@ def _explained(
     return (g22 * b11 - 2 * g12 * b12 + g11 * b22) / (g11 * g22 - g12**2)
 
 
-def _peak_offset(values: np.ndarray, peak: int) -> float:
-    """Return how far the top of a parabola through three values lies from the middle one."""
+def _peak(values: np.ndarray, peak: int) -> tuple[float, float]:
+    """Return how far from a peak the top of a parabola through it lies, and how high that is."""
+    top = float(values[peak])
     if not 0 < peak < len(values) - 1:
-        return 0.0
-    before, top, after = values[peak - 1 : peak + 2]
+        return 0.0, top
+    before, after = float(values[peak - 1]), float(values[peak + 1])
     bend = before - 2 * top + after
-    return float(np.clip(0.5 * (before - after) / bend, -0.5, 0.5)) if bend < 0 else 0.0
+    if not (bend < 0 and before <= top >= after):
+        return 0.0, top
+    return 0.5 * (before - after) / bend, top - (before - after) ** 2 / (8 * bend)
 
 
 def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool) -> float:
