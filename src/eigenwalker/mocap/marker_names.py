@@ -40,6 +40,8 @@ class MarkerSet:
 def known_sets() -> tuple[MarkerSet, ...]:
     """Return the marker sets of ``marker_sets.toml``, in the order in which they are tried.
 
+    The last is made of all sets on the skin, for captures that mix them.
+
     Examples
     --------
     >>> known_sets()[1].landmarks["right_thigh"]
@@ -47,7 +49,7 @@ def known_sets() -> tuple[MarkerSet, ...]:
 
     """
     text = files("eigenwalker.mocap").joinpath("marker_sets.toml").read_text(encoding="utf-8")
-    return tuple(
+    sets = [
         MarkerSet(
             name,
             landmarks=_both_sides(table.get("landmarks", {})),
@@ -55,7 +57,23 @@ def known_sets() -> tuple[MarkerSet, ...]:
             extras=_both_sides(table.get("extras", {})),
         )
         for name, table in tomllib.loads(text).items()
+    ]
+    on_skin = [known for known in sets if known.landmarks]
+    mixed = MarkerSet(
+        "landmarks of several sets",
+        landmarks=_merged([known.landmarks for known in on_skin]),
+        joints=_merged([known.joints for known in on_skin]),
+        extras=_merged([known.extras for known in on_skin]),
     )
+    return (*sets, mixed)
+
+
+def _merged(entries: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Return the entries of several sets as one, with the alternatives of all."""
+    merged: dict[str, list[str]] = {}
+    for name, entry in (item for of_set in entries for item in of_set.items()):
+        merged.setdefault(name, []).append(entry)
+    return {name: " | ".join(alternatives) for name, alternatives in merged.items()}
 
 
 def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
@@ -100,7 +118,7 @@ class MarkerNames:
     def __init__(self, names: Sequence[str]) -> None:
         self._known: dict[str, str] = {}
         for name, own in zip(names, _without_common_start(names), strict=True):
-            for key in (_plain(own), *_side_first(own)):
+            for key in (_plain(own), *_side_first(own), *_of_midline(own)):
                 self._known.setdefault(key, name)
 
     def find(self, entry: str) -> Found | None:
@@ -167,6 +185,12 @@ def _side_first(name: str) -> list[str]:
     return [f"{sides[hit['side'][0].lower()]}|{_plain(hit['part'])}" for hit in hits if hit]
 
 
+def _of_midline(name: str) -> list[str]:
+    """Return the part where a name marks it as central, as in C_Head."""
+    hit = re.fullmatch(r"[cC][ _.-]+(.+)", name.strip())
+    return [_plain(hit[1])] if hit else []
+
+
 def _without_common_start(names: Sequence[str]) -> list[str]:
     """Return the names without the subject or character that stands before most of them."""
     names = [re.split(r"[:|]", name)[-1].strip() for name in names]
@@ -177,4 +201,4 @@ def _without_common_start(names: Sequence[str]) -> list[str]:
     sides = {"l", "r", *SIDES}
     if count < COMMON * len(names) or start.rstrip(" _.-").lower() in sides:
         return names
-    return [name.removeprefix(start) for name in names]
+    return _without_common_start([name.removeprefix(start) for name in names])

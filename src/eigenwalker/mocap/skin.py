@@ -27,6 +27,8 @@ WIDTH_OF_LEG = {"knee": 0.112, "ankle": 0.080, "elbow": 0.076}
 """Widths of joints as shares of the leg, where nobody measured them (after ANSUR II, 2014)."""
 SHOULDER_OF_LEG = (0.043, 0.027)
 """How far the shoulder centre is below and inwards of the acromion, as shares of the leg."""
+SHOULDERS_TO_STERNUM = 0.15
+"""How far the sternum is along the line from amid the acromia to the pelvis."""
 CLEAR_MM = 15.0
 """A marker on thigh or shank nearer than this to the line between the joints shows no plane."""
 CLEAR_BEND = 0.2
@@ -70,9 +72,9 @@ def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str]
 
     """
     body = _Body(dict(skin), measures)
-    body.trunk()
     pelvis = body.pelvis()
     if pelvis is not None:
+        body.trunk()
         body.hips(pelvis)
         for side, outward in (("left", pelvis.left), ("right", -pelvis.left)):
             body.leg(side, outward)
@@ -94,19 +96,12 @@ class _Body:
         """The sternum: behind the notch between the clavicles, halfway to the spine."""
         self._fill(("clavicle", "breastbone", "c7", "t10"))
         front, back = self.skin.get("clavicle"), self._midpoint("c7", "t10")
+        shoulders = self._midpoint("left_shoulder", "right_shoulder")
         if front is not None and back is not None:
             self.joints["sternum"] = (front + back) / 2
-            return
-        stand_in = next(
-            (
-                point
-                for names in (("clavicle", "c7"), ("left_shoulder", "right_shoulder"))
-                if (point := self._midpoint(*names)) is not None
-            ),
-            front,
-        )
-        if stand_in is not None:
-            self.joints["sternum"] = stand_in
+        elif shoulders is not None:
+            below = SHOULDERS_TO_STERNUM * (self.joints["pelvis"] - shoulders)
+            self.joints["sternum"] = shoulders + below
             self.approximate.add("sternum")
 
     def pelvis(self) -> Pelvis | None:
@@ -166,14 +161,19 @@ class _Body:
         self._inwards_of_marker(elbow, self.joints[shoulder], outward)
 
     def _inwards_of_marker(self, name: str, above: np.ndarray, outward: np.ndarray) -> None:
-        """The centre of a hinge: amid its inner and outer marker, else by the chord function."""
+        """The centre of a hinge: amid its inner and outer marker, else by the chord function.
+
+        Where the joint above is missing, the centre stands to its marker as before and after.
+        """
         centre = self._midpoint(name, f"{name}_inner")
         if centre is None:
             width = self.measures.lengths_mm.get(f"{name}_width")
             if width is None:
                 width = WIDTH_OF_LEG[name.partition("_")[2]] * self.leg_mm
                 self.approximate.add(name)
-            centre = chord(above, self.skin[name], outward, width / 2 + MARKER_RADIUS_MM)
+            marker = self.skin[name]
+            centre = chord(above, marker, outward, width / 2 + MARKER_RADIUS_MM)
+            centre = marker + bridged(centre - marker)
         self.joints[name] = centre
 
     def _midpoint(self, *names: str) -> np.ndarray | None:
@@ -222,8 +222,9 @@ def _plane_of_wand(
 def _axis_of_elbow(
     shoulder: np.ndarray, elbow: np.ndarray, wrist: np.ndarray, outward: np.ndarray
 ) -> np.ndarray:
-    """Return the outward direction at right angles to upper arm and forearm.
+    """Return the outward direction at right angles to the lines from marker to shoulder and wrist.
 
+    This is Plug-in Gait's plane, through the marker and not yet through the elbow's centre.
     A nearly straight arm shows none; there it is as before and after.
     """
     axis = np.cross(unit(elbow - shoulder), unit(wrist - elbow))
