@@ -1,15 +1,29 @@
 """Walks and populations with known truth: a jointed body on published norms."""
 
-from eigenwalker.simulation.people import simulate_captures, simulate_population
-from eigenwalker.simulation.traits import EFFECTS, PARAMETERS, TRAITS, draw_people
-from eigenwalker.simulation.walking import simulate_walk
+from eigenwalker.simulation.overground import Route
+from eigenwalker.simulation.parameters import PARAMETERS, average_person
+from eigenwalker.simulation.people import CAPTURE, simulate_captures, simulate_population
+from eigenwalker.simulation.planting import Pattern, plant, random_pattern
+from eigenwalker.simulation.traits import EFFECTS, TRAITS, draw_people
+from eigenwalker.simulation.truth import Truth, true_direction, truth_of
+from eigenwalker.simulation.walking import simulate_walk, true_events
 
 __all__ = [
+    "CAPTURE",
     "EFFECTS",
     "PARAMETERS",
     "TRAITS",
+    "Pattern",
+    "Route",
+    "Truth",
+    "average_person",
     "draw_people",
+    "plant",
+    "random_pattern",
     "simulate_captures",
     "simulate_population",
     "simulate_walk",
+    "true_direction",
+    "true_events",
+    "truth_of",
 ]

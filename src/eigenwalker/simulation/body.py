@@ -44,8 +44,8 @@ def body_of(person: Mapping[str, float]) -> Body:
 
     Shares of height are ANSUR's (see `traits.PARAMETERS`). The hips lie where Harrington et al.
     (2007, J Biomech 40:595) find them in a pelvis 240 mm wide and 150 mm deep, seen from its
-    centre. Recalled, not looked up: the sternum point, amid clavicles and seventh neck vertebra,
-    lies 0.038 of height above the shoulders, the ankle 0.042 ahead of the heel's contact.
+    centre. Recalled, not looked up: the sternum point, in the upper chest amid clavicles and back,
+    lies 0.008 of height above the shoulders, the ankle 0.042 ahead of the heel's contact.
     """
     height = person["height_mm"]
 
@@ -67,7 +67,7 @@ def body_of(person: Mapping[str, float]) -> Body:
         ),
         hip=np.array([0.017 * height, of("hip_share") / 2, -0.049 * height]),
         shoulder=np.array([0.0, of("shoulder_share") / 2, of("trunk_share") - pelvis]),
-        sternum=np.array([-0.005 * height, 0.0, 0.038 * height + of("trunk_share") - pelvis]),
+        sternum=np.array([-0.004 * height, 0.0, 0.008 * height + of("trunk_share") - pelvis]),
         neck=np.array([-0.015 * height, 0.0, neck]),
         head=np.array([0.035 * height, 0.0, of("head_share") - pelvis - neck]),
         upper_arm=of("upper_arm_share"),

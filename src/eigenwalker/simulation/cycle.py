@@ -132,7 +132,9 @@ def solve_cycle(person: Mapping[str, float]) -> Cycle:
     pace = pace_of(person, body)
     own = _Problem(person, body, pace)
     best = _least_change(own, own.prior)
-    slope = _change_with_stride(own, _Problem(person, body, replace(pace, stride=2 * pace.stride)), best)
+    slope = _change_with_stride(
+        own, _Problem(person, body, replace(pace, stride=2 * pace.stride)), best
+    )
     legs, _, pelvis = own.split(best)
     legs_slope, _, pelvis_slope = own.split(slope)
     sway = np.array([np.zeros(_PELVIS), own.sway, np.zeros(_PELVIS)])
@@ -207,7 +209,9 @@ class _Problem:
         height = 0.985 * (self.body.thigh + self.body.shank) + self.body.foot.height
         rise = np.zeros(_PELVIS)
         rise[0] = height - self.body.hip[2]
-        top = 4 * np.pi * (0.30 + person["bob_lag"])  # highest at 30 and 80 per cent (Orendurff et al. 2004)
+        top = (
+            4 * np.pi * (0.30 + person["bob_lag"])
+        )  # highest at 30 and 80 per cent (Orendurff et al. 2004)
         rise[3:5] = self.pace.vertical_range / 2 * np.array([np.cos(top), np.sin(top)])
         rise_sd = np.concatenate([[30.0], 1.2 / pelvis_harmonic])
         rise_sd[3:5] = 0.5

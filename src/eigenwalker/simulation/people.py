@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from joblib import Parallel, delayed
+from threadpoolctl import threadpool_limits
 
 from eigenwalker.decomposition import decompose_pca
+from eigenwalker.gait import in_place
 from eigenwalker.population import Population
-from eigenwalker.simulation.traits import EFFECTS, TRAITS, draw_people
+from eigenwalker.simulation.planting import Pattern, plant
+from eigenwalker.simulation.traits import EFFECTS, TRAITS, Effects, draw_people
+from eigenwalker.simulation.truth import recipe_of
 from eigenwalker.simulation.walking import simulate_walk
+from eigenwalker.walker import Walker
+
+_SHARE = 100
+
+CAPTURE = {"variability": 1.0, "wander_mm": 10.0, "noise_mm": 1.0}
+"""What a capture is like if nothing else is asked for: strides of healthy adults on a treadmill,
+and the millimetre of noise of Troje (2002)."""
 
 
 def simulate_captures(
@@ -20,14 +33,13 @@ def simulate_captures(
     *,
     seed: int = 0,
     sex_effect: float = 1.0,
-    effects: Mapping[str, Mapping[str, float]] = EFFECTS,
-    variability: float = 1.0,
-    wander_mm: float = 10.0,
-    noise_mm: float = 1.0,
-    duration_s: float = 12.0,
-    rate_hz: float = 120.0,
+    effects: Effects = EFFECTS,
+    planted: Mapping[str, Pattern] | None = None,
+    **capture: Any,
 ) -> Iterator[tuple[xr.DataArray, pd.Series]]:
-    """Yield the capture of one drawn person after another, with what is known of the person.
+    """Yield the capture of one drawn person after another, with all that is known of the person.
+
+    One capture at a time is in memory, however many there are.
 
     Parameters
     ----------
@@ -36,30 +48,49 @@ def simulate_captures(
     seed : int
         The same seed gives the same people and captures.
     sex_effect : float
-        Multiplies all differences between the sexes.
+        Multiplies all differences between the sexes, of body and of movement: 0 removes them.
     effects : mapping of trait to mapping of parameter to effect size
-        See `draw_people`.
-    variability, wander_mm, noise_mm : float
-        See `simulate_walk`.
-    duration_s, rate_hz : float
-        Length of each capture in seconds, and frames a second.
+        See `draw_people`; ``{}`` for none.
+    planted : mapping of trait to Pattern, optional
+        Effects in mean posture, movement or frequency themselves, for each unit of the trait's
+        score (see `draw_people`: sex counts from -0.5 to 0.5).
+    **capture
+        How the capture is made, as `simulate_walk` takes it: ``markers="skin"``,
+        ``noise_mm=0``. What is left out is `CAPTURE`.
 
     Yields
     ------
     capture : DataArray of shape (time, marker, axis)
-        Walking in place, as `simulate_walk` returns it.
     person : Series
-        Traits and parameters of the person.
+        Traits, parameters and scores, as `draw_people` returns them.
+
+    Examples
+    --------
+    >>> for capture, person in simulate_captures(1, 1, duration_s=3):
+    ...     print(person["sex"], capture.sizes["time"])
+    female 360
+    male 360
 
     """
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
-    seeds = np.random.SeedSequence([seed, len(people)]).spawn(len(people))
-    for (_, person), own in zip(people.iterrows(), seeds, strict=True):
-        capture = simulate_walk(
-            person.to_dict(), seed=own, duration_s=duration_s, rate_hz=rate_hz,
-            variability=variability, wander_mm=wander_mm, noise_mm=noise_mm,
-        )  # fmt: skip
-        yield capture, person
+    for number in range(len(people)):
+        person = people.iloc[number]
+        yield _capture(person, (seed, number), planted or {}, capture), person
+
+
+def _capture(
+    person: pd.Series, seed: tuple[int, int], planted: Mapping[str, Pattern],
+    capture: Mapping[str, Any],
+) -> xr.DataArray:  # fmt: skip
+    amounts = {trait: person[f"{trait}_score"] for trait in planted}
+    walks = person.to_dict()
+    walks["frequency_hz"] += sum(
+        amount * planted[trait].frequency_hz for trait, amount in amounts.items()
+    )
+    walk = simulate_walk(walks, seed=seed, **{**CAPTURE, **capture})
+    for trait, amount in amounts.items():
+        walk = plant(walk, planted[trait], amount)
+    return walk
 
 
 def simulate_population(
@@ -68,25 +99,28 @@ def simulate_population(
     *,
     seed: int = 0,
     sex_effect: float = 1.0,
-    effects: Mapping[str, Mapping[str, float]] = EFFECTS,
+    effects: Effects = EFFECTS,
+    planted: Mapping[str, Pattern] | None = None,
+    n_jobs: int = -1,
+    **capture: Any,
 ) -> Population:
     """Return a population of simulated walkers, every property of which is known.
 
+    Each person's capture goes the way of a real one: in place, decomposed, brought into
+    correspondence.
+
     Parameters
     ----------
-    n_women, n_men : int
-        How many of each; women come first.
-    seed : int
-        The same seed gives the same population.
-    sex_effect : float
-        Multiplies all differences between the sexes, of body and of movement: 0 removes them.
-    effects : mapping of trait to mapping of parameter to effect size
-        See `draw_people`.
+    n_women, n_men, seed, sex_effect, effects, planted, **capture
+        See `simulate_captures`.
+    n_jobs : int
+        Processes that share the work of more than a hundred walkers; -1 for one a core.
 
     Returns
     -------
     Population
-        With the traits sex, age_years, weight_kg, height_mm, happy and nervous.
+        With the traits sex, age_years, weight_kg, height_mm, happy and nervous; `truth_of` tells
+        the rest.
 
     Examples
     --------
@@ -95,11 +129,31 @@ def simulate_population(
     (4, 229)
 
     """
-    captures = simulate_captures(
-        n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects
+    people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
+    planted = dict(planted or {})
+    parts = np.array_split(np.arange(len(people)), max(len(people) // _SHARE, 1))
+    work = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
+    with threadpool_limits(1):
+        found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
+    walkers = [walker for some in found for walker in some]
+    return Population(
+        walkers,
+        people[list(TRAITS)],
+        provenance={
+            "simulated": f"{n_women} women and {n_men} men who do not exist, seed {seed}",
+            "recipe": recipe_of(n_women, n_men, seed, sex_effect, effects, planted),
+        },
     )
-    walkers, rows = [], []
-    for capture, person in captures:
-        walkers.append(decompose_pca(capture))
-        rows.append(person[list(TRAITS)])
-    return Population(walkers, pd.DataFrame(rows).reset_index(drop=True).infer_objects())
+
+
+def _walkers(
+    people: pd.DataFrame, numbers: np.ndarray, seed: int, planted: Mapping[str, Pattern],
+    capture: Mapping[str, Any],
+) -> list[Walker]:  # fmt: skip
+    """Return the walkers of some of the people; only these leave the process that walked them."""
+    # Planting needs the phase of each frame, which comes with the truth.
+    making = {"truth": bool(planted), **capture}
+    return [
+        decompose_pca(in_place(_capture(people.iloc[row], (seed, int(number)), planted, making)))
+        for row, number in enumerate(numbers)
+    ]

@@ -71,9 +71,7 @@ def segment_turns(angles: Mapping[str, np.ndarray]) -> dict[str, Turns]:
     """
     turns = {part: trunk_turns(angles, part) for part in ("pelvis", "trunk", "head")}
     for name, side in SIDES.items():
-        own = {
-            key.removeprefix(f"{name}_"): a for key, a in angles.items() if key.startswith(name)
-        }
+        own = {key.removeprefix(f"{name}_"): a for key, a in angles.items() if key.startswith(name)}
         splay, yaw = turn("x", own["splay"]), turn("z", -side * own["foot_yaw"])
         pitch = own["foot_pitch"]
         turns[f"{name}_thigh"] = (turn("y", -own["thigh"]), splay)

@@ -94,9 +94,7 @@ def walked_strides(
         body_longer=_handed_over(phase, cycle, pace, longer),
         placed=_placed(phase, cycle, pace, wander[:, 1], chance, variability),
         wander=wander,
-        moods=variability * np.stack(
-            [slow_noise(chance, phase, 1.5) for _ in range(N_STREAMS)]
-        ),
+        moods=variability * np.stack([slow_noise(chance, phase, 1.5) for _ in range(N_STREAMS)]),
     )
 
 

@@ -1,0 +1,184 @@
+"""What is true of a simulated population: who was drawn, and what traits do to its features."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.decomposition import decompose_pca
+from eigenwalker.gait import in_place
+from eigenwalker.population import Population
+from eigenwalker.simulation.parameters import PARAMETERS
+from eigenwalker.simulation.planting import Pattern, plant
+from eigenwalker.simulation.traits import EFFECTS, Effects, draw_people
+from eigenwalker.simulation.walking import simulate_walk
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What is true of a simulated population.
+
+    Attributes
+    ----------
+    people : DataFrame, one row for each walker
+        Traits, the parameters drawn for each person, and what each trait amounts to
+        (``sex_score`` and so on, see `draw_people`).
+    effects : DataFrame of shape (parameter, trait)
+        What one unit of a trait's score adds to a parameter, in SDs of the parameter within a
+        sex. That of sex holds the differences of the means too.
+    planted : dict of trait to Pattern
+        Effects planted in mean posture, movement or frequency themselves.
+
+    """
+
+    people: pd.DataFrame
+    effects: pd.DataFrame
+    planted: dict[str, Pattern]
+
+
+def truth_of(population: Population) -> Truth:
+    """Return the truth about a population that `simulate_population` made.
+
+    It travels with the population, through files and selections, as the recipe by which everyone
+    was drawn; who is who is checked against their traits.
+
+    Parameters
+    ----------
+    population : Population
+        Simulated; any selection of its walkers.
+
+    Returns
+    -------
+    Truth
+
+    Raises
+    ------
+    ValueError
+        If the population was not simulated, or not by this version of the program.
+
+    Examples
+    --------
+    >>> truth = truth_of(ew.simulate_population(2, 2, seed=1))
+    >>> truth.people["arm_swing_deg"].round().tolist()
+    [15.0, 17.0, 19.0, 13.0]
+    >>> bool(truth.effects.loc["obliquity_factor", "sex"] < 0)
+    True
+
+    """
+    if "recipe" not in population.provenance:
+        raise ValueError(
+            "This population was not simulated, so nobody knows its truth; "
+            "make one with simulate_population()."
+        )
+    recipe = json.loads(population.provenance["recipe"])
+    planted = {trait: _pattern(numbers) for trait, numbers in recipe.pop("planted", {}).items()}
+    people = draw_people(**recipe)
+    effects = recipe.get("effects", EFFECTS)
+    return Truth(
+        people=_same_rows(people, population.traits),
+        effects=_effect_table(effects, recipe["sex_effect"]),
+        planted=planted,
+    )
+
+
+def true_direction(population: Population, trait: str, *, n_people: int = 12) -> np.ndarray:
+    """Return what a trait truly does to the features of a simulated population.
+
+    Some of the people walk twice, without noise: as half a unit less of the trait would have
+    them walk, and as half a unit more.
+
+    Parameters
+    ----------
+    population : Population
+        As `simulate_population` made it, or any selection of it.
+    trait : str
+        A key of `EFFECTS`.
+    n_people : int
+        How many people to average over; they are taken evenly from the population.
+
+    Returns
+    -------
+    array of shape (feature,)
+        Change of the features for one unit of the trait's score: for sex, men less women; for
+        the others, one SD.
+
+    Raises
+    ------
+    ValueError
+        If the trait is unknown, or the population was not simulated.
+
+    Examples
+    --------
+    >>> people = ew.simulate_population(2, 2, seed=1)
+    >>> nervous = true_direction(people, "nervous", n_people=2)
+    >>> bool(nervous[people.feature_names.index("frequency_hz")] > 0)
+    True
+
+    """
+    if trait not in EFFECTS:
+        raise ValueError(f"trait={trait!r} is not known; effects are of {sorted(EFFECTS)}.")
+    truth = truth_of(population)
+    pattern = truth.planted.get(trait, Pattern())
+    steps = truth.effects[trait] * [parameter.sd for parameter in PARAMETERS.values()]
+    steps["frequency_hz"] += pattern.frequency_hz
+    rows = np.linspace(0, len(truth.people) - 1, min(n_people, len(truth.people))).round()
+    own = truth.people.iloc[rows.astype(int)][list(PARAMETERS)]
+
+    def walked(person: pd.Series, amount: float) -> np.ndarray:
+        walk = plant(simulate_walk((person + amount * steps).to_dict()), pattern, amount)
+        return population.vector(decompose_pca(in_place(walk)))
+
+    return np.mean([walked(p, 0.5) - walked(p, -0.5) for _, p in own.iterrows()], axis=0)
+
+
+def recipe_of(
+    n_women: int, n_men: int, seed: int, sex_effect: float, effects: Effects,
+    planted: dict[str, Pattern],
+) -> str:  # fmt: skip
+    """Return what `truth_of` needs to draw the same people again."""
+    recipe: dict[str, object] = {
+        "n_women": n_women, "n_men": n_men, "seed": seed, "sex_effect": sex_effect,
+    }  # fmt: skip
+    if effects is not EFFECTS:
+        recipe["effects"] = {trait: dict(sizes) for trait, sizes in effects.items()}
+    if planted:
+        recipe["planted"] = {trait: _numbers(pattern) for trait, pattern in planted.items()}
+    return json.dumps(recipe)
+
+
+def _numbers(pattern: Pattern) -> dict[str, object]:
+    return {
+        "structure": np.asarray(pattern.structure).tolist(),
+        "movement": np.asarray(pattern.movement).tolist(),
+        "frequency_hz": pattern.frequency_hz,
+    }
+
+
+def _pattern(numbers: dict) -> Pattern:
+    return Pattern(
+        np.array(numbers["structure"]), np.array(numbers["movement"]), numbers["frequency_hz"]
+    )
+
+
+def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> pd.DataFrame:
+    known = ["height_mm", "weight_kg", "happy", "nervous"]
+    number = {key: row for row, key in enumerate(people[known].itertuples(index=False, name=None))}
+    rows = [number.get(key) for key in traits[known].itertuples(index=False, name=None)]
+    if None in rows:
+        raise ValueError(
+            "These walkers are not those that this version draws by the recipe of the population; "
+            "read its truth with the version that simulated it, or simulate it anew."
+        )
+    return people.iloc[rows].reset_index(drop=True)
+
+
+def _effect_table(effects: Effects, sex_effect: float) -> pd.DataFrame:
+    table = pd.DataFrame(0.0, index=list(PARAMETERS), columns=list(EFFECTS))
+    for trait, sizes in effects.items():
+        table.loc[list(sizes), trait] = list(sizes.values())
+    table["sex"] += [(p.male - p.female) / p.sd for p in PARAMETERS.values()]
+    table["sex"] *= sex_effect
+    return table
