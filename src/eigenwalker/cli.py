@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -99,11 +100,9 @@ def info(
     if as_json:
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    width = max(len(name) for name in facts)
+    width = max(len(name) for name in facts) + 2
     for name, value in facts.items():
-        lines = value if isinstance(value, list) else [value]
-        for number, line in enumerate(lines or ["none"]):
-            print(f"{name if number == 0 else '':<{width}}  {_in_words(line)}")
+        print(f"{name:<{width}}{_laid_out(value, width)}")
 
 
 @app.command()
@@ -316,7 +315,13 @@ def _rows(table: pd.DataFrame) -> str:
     return table.to_string(index=False, float_format=number, na_rep="-")
 
 
-def _in_words(value: object) -> str:
+def _laid_out(value: object, indent: int) -> str:
+    """A fact in words; names run on, sentences stand on lines of their own."""
+    if isinstance(value, list):
+        if any(" " in str(each) for each in value):
+            return f"\n{' ' * indent}".join(map(str, value))
+        wide = textwrap.wrap(", ".join(map(str, value)) or "none", 100 - indent)
+        return f"\n{' ' * indent}".join(wide)
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

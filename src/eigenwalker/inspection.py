@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.population import Population
@@ -44,7 +46,9 @@ def inspect_file(path: str | Path) -> dict[str, Fact]:
 
 def _of_population(population: Population) -> dict[str, object]:
     traits = population.traits
-    flags = [f"walker {number}: {flag}" for number, flag in enumerate(traits["flag"]) if flag != ""]
+    flagged = population.flagged
+    names = traits.get("file", "walker " + traits.index.to_series().astype(str))[flagged]
+    flags = [f"{name}: {flag}" for name, flag in zip(names, traits["flag"][flagged], strict=True)]
     first = population.walkers[0]
     return {
         "kind": "population",
@@ -53,7 +57,11 @@ def _of_population(population: Population) -> dict[str, object]:
         "form": f"{first.form}, harmonics {', '.join(map(str, first.harmonics))}",
         "features": len(population.feature_names),
         "markers": list(first.markers),
-        "traits": [_trait_in_words(str(name), traits[name]) for name in traits if name != "flag"],
+        "traits": [
+            _trait_in_words(str(name), traits[name])
+            for name in traits
+            if name not in ("flag", "file")
+        ],
         "frequency_hz": float(np.mean([walker.frequency_hz for walker in population.walkers])),
         "provenance": [f"{key}: {value}" for key, value in population.provenance.items()],
     }
@@ -82,19 +90,33 @@ def _of_capture(path: Path) -> dict[str, object]:
     try:
         joints = virtual_markers(capture)
     except ValueError as error:
-        return facts | {"verdict": "do not use", "problems": [*problems, str(error)]}
-    quality = assess(joints)
-    measured = {
-        name: value
-        for name, value in vars(quality).items()
-        if name not in ("reasons", "verdict") and isinstance(value, int | float | str | bool)
+        return {"verdict": "do not use", "problems": [*problems, str(error)]} | facts
+    return {
+        "kind": "capture",
+        **_assessed(joints, problems),
+        **{name: value for name, value in facts.items() if name != "kind"},
+        "marker_set": joints.attrs.get("marker_set"),
     }
-    return (
-        facts
-        | {"marker_set": joints.attrs.get("marker_set")}
-        | measured
-        | {"verdict": quality.verdict, "problems": [*problems, *quality.reasons]}
-    )
+
+
+def _assessed(joints: xr.DataArray, problems: list[str]) -> dict[str, object]:
+    """The verdict on a capture, its reasons, and what was measured."""
+    quality = assess(joints)
+    measured: dict[str, object] = {}
+    for name, value in vars(quality).items():
+        if isinstance(value, Mapping):
+            measured[name] = [f"{_name(key)}: {number:.3g}" for key, number in value.items()]
+        elif name not in ("reasons", "verdict"):
+            measured[name] = value
+    return {
+        "verdict": quality.verdict,
+        "problems": [*problems, *quality.reasons],
+        **measured,
+    }
+
+
+def _name(key: str | tuple[str, str]) -> str:
+    return key if isinstance(key, str) else " to ".join(key)
 
 
 def _plain(facts: dict[str, object]) -> dict[str, Fact]:
