@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -252,8 +253,8 @@ def _leg_length(skin: Points, lengths_mm: Mapping[str, float]) -> float:
 def midpoint(points: Sequence[np.ndarray]) -> np.ndarray:
     """Return the midpoint of markers that move together, also where some of them are missing.
 
-    Of two, a missing one stands to the other as before and after; of four, it is put where the
-    other three say.
+    Of two, a missing one stands to the other as before and after; of more, it is put where the
+    others say.
 
     Examples
     --------
@@ -274,31 +275,38 @@ def midpoint(points: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def filled_cluster(points: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """Return markers of one rigid part, those missing put where three others or more say.
+    """Return markers of one rigid part, those missing put where the others say.
+
+    Each frame is compared with the nearest one in which all are seen. Two markers are enough if
+    they are far apart; the part is then turned as little as they allow.
 
     Parameters
     ----------
     points : sequence of arrays of shape (time, 3)
-        NaN where missing.
+        Three or more; NaN where missing.
 
     Returns
     -------
     list of arrays of shape (time, 3)
-        Unchanged where fewer than three markers are seen.
+        Unchanged where too few markers are seen.
 
     """
-    if len(points) < 4:
+    if len(points) < 3:
         return list(points)
     cluster = np.stack(list(points), axis=1)
     there = np.asarray(~np.isnan(cluster).any(axis=2))
     count = there.sum(axis=1)
     whole = np.flatnonzero(count == len(points))
-    if not len(whole):
-        return list(points)
-    for frame in np.flatnonzero((count >= 3) & (count < len(points))):
+    for frame in np.flatnonzero((count >= 2) & (count < len(points))) if len(whole) else ():
         model = cluster[whole[np.abs(whole - frame).argmin()]]
         seen = there[frame]
-        centre, target = model[seen].mean(axis=0), cluster[frame, seen].mean(axis=0)
-        turn = Rotation.align_vectors(cluster[frame, seen] - target, model[seen] - centre)[0]
-        cluster[frame, ~seen] = turn.apply(model[~seen] - centre) + target
+        before, now = model[seen], cluster[frame, seen]
+        size = np.linalg.norm(model[:, None] - model, axis=2).max()
+        if np.linalg.norm(before - before[0], axis=1).max() <= size / 3:
+            continue
+        with warnings.catch_warnings():
+            # Markers in one line leave the turn about it open; the smallest is taken.
+            warnings.filterwarnings("ignore", "Optimal rotation is not uniquely", UserWarning)
+            turn = Rotation.align_vectors(now[1:] - now[0], before[1:] - before[0])[0]
+        cluster[frame, ~seen] = turn.apply(model[~seen] - before.mean(axis=0)) + now.mean(axis=0)
     return list(cluster.transpose(1, 0, 2))

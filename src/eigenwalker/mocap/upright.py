@@ -166,6 +166,6 @@ def guess_unit(positions: np.ndarray, names: Sequence[str], *, source: str) -> U
         f"{source} names no unit of length; {reason}. Name it to be sure: "
         f"read_mocap(..., unit={name!r}).",
         UnitGuessed,
-        stacklevel=2,
+        stacklevel=4,  # who called read_mocap
     )
     return Unit(name, UNITS[name], reason)
