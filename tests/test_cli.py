@@ -114,7 +114,7 @@ def test_demo_writes_a_report_and_films_and_ends(run, people, tmp_path) -> None:
     assert str(page) in said
     assert "Sex from gait" in page.read_text()
     films = sorted((tmp_path / "new" / "out").glob("*.mp4"))
-    assert "sex-discriminant.mp4" in [film.name for film in films]
+    assert "sex-discriminant-dots.mp4" in [film.name for film in films]
 
 
 def test_classify_prints_the_table(run, people) -> None:

@@ -20,6 +20,13 @@ _HOME = {
     "direction": "caricature",
     "DiscriminantClassifier": "discriminant",
     "DiscriminantRegressor": "discriminant",
+    "figure_curves": "display.curves",
+    "figure_eigenpostures": "display.eigenpostures",
+    "figure_joints": "display.bodies",
+    "figure_scores": "display.components",
+    "figure_space": "display.populations",
+    "figure_variance": "display.components",
+    "figure_walkers": "display.bodies",
     "fit_folder": "study",
     "fundamental_frequency": "gait",
     "gait_events": "gait",
@@ -33,6 +40,8 @@ _HOME = {
     "permutation_test": "validation",
     "plausibility": "plausibility",
     "Population": "population",
+    "project": "display.projection",
+    "Quality": "quality",
     "read_mocap": "mocap",
     "regress": "classification",
     "regression_curves": "jackknife",
@@ -40,13 +49,16 @@ _HOME = {
     "simulate_population": "simulation",
     "simulate_walk": "simulation",
     "Skeleton": "skeleton",
+    "stance_speed": "gait",
     "trait_axis": "trait_axis",
+    "UnitGuessed": "mocap",
     "UnreadableFile": "mocap",
     "virtual_markers": "mocap",
     "Walker": "walker",
     "walker_from_file": "study",
     "WalkerSpace": "space",
     "write_film": "display.films",
+    "write_report": "report.page",
 }
 """Each public name and the module it lives in."""
 
@@ -62,19 +74,31 @@ if TYPE_CHECKING:
     from eigenwalker.decomposition import decompose_pca as decompose_pca
     from eigenwalker.discriminant import DiscriminantClassifier as DiscriminantClassifier
     from eigenwalker.discriminant import DiscriminantRegressor as DiscriminantRegressor
+    from eigenwalker.display.bodies import figure_joints as figure_joints
+    from eigenwalker.display.bodies import figure_walkers as figure_walkers
+    from eigenwalker.display.components import figure_scores as figure_scores
+    from eigenwalker.display.components import figure_variance as figure_variance
+    from eigenwalker.display.curves import figure_curves as figure_curves
+    from eigenwalker.display.eigenpostures import figure_eigenpostures as figure_eigenpostures
     from eigenwalker.display.films import write_film as write_film
+    from eigenwalker.display.populations import figure_space as figure_space
+    from eigenwalker.display.projection import project as project
     from eigenwalker.gait import fundamental_frequency as fundamental_frequency
     from eigenwalker.gait import gait_events as gait_events
     from eigenwalker.gait import gait_parameters as gait_parameters
     from eigenwalker.gait import in_place as in_place
+    from eigenwalker.gait import stance_speed as stance_speed
     from eigenwalker.jackknife import jackknife_curves as jackknife_curves
     from eigenwalker.jackknife import regression_curves as regression_curves
+    from eigenwalker.mocap import UnitGuessed as UnitGuessed
     from eigenwalker.mocap import UnreadableFile as UnreadableFile
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.plausibility import plausibility as plausibility
     from eigenwalker.population import Population as Population
+    from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
+    from eigenwalker.report.page import write_report as write_report
     from eigenwalker.simulation import simulate_captures as simulate_captures
     from eigenwalker.simulation import simulate_population as simulate_population
     from eigenwalker.simulation import simulate_walk as simulate_walk

@@ -47,6 +47,9 @@ Part = Annotated[
 ]
 
 
+WithFlagged = Annotated[bool, typer.Option("--with-flagged", help="Count flagged walkers too.")]
+
+
 def main() -> None:
     """Run the command line; what goes wrong is said in a sentence, not in a traceback."""
     try:
@@ -75,11 +78,12 @@ def demo(
     open_page: Annotated[
         bool, typer.Option("--open/--no-open", help="Open the report if there is a screen.")
     ] = True,
+    with_flagged: WithFlagged = False,
 ) -> None:
     """Run the main job: tell a trait from gait, and show walkers of either pole."""
     from eigenwalker.report.main_job import write_main_job
 
-    population = _population(people)
+    population = _population(people, with_flagged)
     with _bar("Classifying and filming") as progress:
         page, found = write_main_job(output, population, trait, progress=progress)
     print(_rows(found.table()))
@@ -175,13 +179,14 @@ def classify(
         Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
     ] = None,
     permutations: Annotated[int, typer.Option(help="Random labels to compare with.")] = 200,
+    with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
     from eigenwalker import classification
     from eigenwalker.contrast import contrast
     from eigenwalker.report.main_job import write_main_job
 
-    population = _population(people)
+    population = _population(people, with_flagged)
     asked = contrast(population, trait)
     page = None
     with _bar("Classifying") as progress:
@@ -222,6 +227,7 @@ def synthesize(
     start: Annotated[
         str, typer.Option("--from", help="'average', the number of a walker, or a capture file.")
     ] = "average",
+    with_flagged: WithFlagged = False,
 ) -> None:
     """Film the average walker, or one's own, moved along traits, and say how plausible it is."""
     import numpy as np
@@ -229,7 +235,7 @@ def synthesize(
     from eigenwalker.display.films import write_film
     from eigenwalker.trait_axis import trait_axis
 
-    population = _population(people)
+    population = _population(people, with_flagged)
     vector = _start(population, start)
     axes: list[TraitAxis] = []
     for wish in trait or []:
@@ -254,12 +260,13 @@ def synthesize(
     print(f"Film: {output}")
 
 
-def _population(path: Path | None) -> Population:
+def _population(path: Path | None, with_flagged: bool) -> Population:
     from eigenwalker.datasets import BUILT_IN, load_population
 
     if path is None:
         print(f"Using {BUILT_IN}.", file=sys.stderr)
-    return load_population(path)
+    population = load_population(path)
+    return population.trusting_all() if with_flagged else population
 
 
 def _start(population: Population, start: str) -> np.ndarray:

@@ -89,6 +89,12 @@ def contrast(population: Population, trait: str) -> Contrast:
     name, _, pair = trait.partition("=")
     column = trait_column(population.traits, name)
     values = population.traits[column]
+    if population.flagged.all():
+        raise ValueError(
+            f"All {len(population)} walkers are flagged, the first because: "
+            f"{population.traits[FLAG][0]} To use them all the same, take "
+            "population.trusting_all(), or --with-flagged on the command line."
+        )
     known = values.notna() & (values.astype(str) != "") & ~population.flagged
     if pair:
         negative, positive = _two_poles(pair, column, values[known])

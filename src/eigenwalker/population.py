@@ -238,6 +238,10 @@ class Population:
         """Return the population without flagged walkers."""
         return self.select(~self.flagged)
 
+    def trusting_all(self) -> Population:
+        """Return the population with its flags taken off, so that flagged walkers count too."""
+        return replace(self, traits=self.traits.assign(**{FLAG: ""}))
+
     def add(self, walkers: Sequence[Walker], traits: pd.DataFrame) -> Population:
         """Return the population with more walkers, brought into correspondence with those here.
 

@@ -94,7 +94,7 @@ def walker_from_file(
         "marker_set": joints.attrs.get("marker_set", ""),
         "unit_guessed": bool(capture.attrs.get("unit_guessed", False)),
         "verdict": quality.verdict,
-        FLAG: "; ".join(quality.reasons) if quality.verdict == "do not use" else "",
+        FLAG: quality.flag,
     }
     return walker, facts
 

@@ -18,7 +18,7 @@ from eigenwalker.display.bodies import figure_joints, figure_walkers
 from eigenwalker.display.components import figure_variance
 from eigenwalker.display.curves import figure_curves
 from eigenwalker.display.eigenpostures import figure_eigenpostures
-from eigenwalker.display.films import write_film
+from eigenwalker.display.films import Style, write_film
 from eigenwalker.display.populations import figure_space
 from eigenwalker.gait import gait_parameters
 from eigenwalker.plausibility import plausibility
@@ -314,16 +314,8 @@ def _title(asked: Contrast, alpha: float) -> str:
 def _gait_table(walkers: Mapping[str, Walker]) -> Table:
     columns = {title: gait_parameters(walker) for title, walker in walkers.items()}
     names = next(iter(columns.values())).dropna().index
-    rows = [
-        [str(name), *(_figures(float(column[name])) for column in columns.values())]
-        for name in names
-    ]
+    rows = [[str(name), *(float(column[name]) for column in columns.values())] for name in names]
     return Table("Gait of the walkers shown", ["", *columns], rows)
-
-
-def _figures(number: float) -> str:
-    """Three figures, and no powers of ten."""
-    return f"{number:.0f}" if abs(number) >= 100 else f"{number:.3g}"
 
 
 def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
@@ -334,7 +326,7 @@ def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
         found = plausibility(population, population.average + alpha * axis.step)
         limbs = found.limb_change.index
         changes = [f"{100 * change:+.0f} %" for change in found.limb_change]
-        rows.append([title, _figures(found.position.distance), *changes])
+        rows.append([title, found.position.distance, *changes])
     return Table(
         "How plausible they are: distance from the average walker, 1 being usual; change of limbs",
         ["walker", "distance", *limbs],
@@ -343,26 +335,26 @@ def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
 
 
 def _films(folder: Path, name: str, walkers: Mapping[str, Walker]) -> list[Film]:
-    """Points of light one by one, then sticks side by side; four strides each."""
+    """Walkers side by side, as points of light and as sticks."""
     titles = list(walkers)
-    shown = {"low": titles[0], "average": titles[len(titles) // 2], "high": titles[-1]}
+    ends = [titles[0], titles[len(titles) // 2], titles[-1]]
+    kinds: list[tuple[Style, str, list[str]]] = [
+        ("dots", "Points of light", ends),
+        ("sticks", "Sticks", titles),
+    ]
     films = []
-    for which, title in shown.items():
-        path = folder / f"{name}-{which}.mp4"
-        write_film(walkers[title], path, n_strides=4, view_deg=30, size_px=420)
-        caption = f"{_capital(title)}, in points of light."
-        films.append(Film(path, caption, f"Point-light film: {caption}"))
-    path = write_film(
-        list(walkers.values()),
-        folder / f"{name}.mp4",
-        n_strides=4,
-        view_deg=30,
-        size_px=420,
-        style="sticks",
-        titles=titles,
-    )
-    caption = f"From {titles[0]} to {titles[-1]}, in one tempo."
-    films.append(Film(path, caption, f"Stick figures side by side. {caption}"))
+    for style, words, shown in kinds:
+        path = write_film(
+            [walkers[title] for title in shown],
+            folder / f"{name}-{style}.mp4",
+            n_strides=2,
+            view_deg=30,
+            size_px=420,
+            style=style,
+            titles=shown,
+        )
+        caption = f"{words}: {', '.join(shown)}, in one tempo."
+        films.append(Film(path, caption, f"Film of walkers side by side. {caption}"))
     return films
 
 
