@@ -174,8 +174,7 @@ def _held_out_sums(
     shape = (min(table.Y.shape), len(table.Y))
     lengths, c, scores = np.zeros((3, *shape))
     n_most = 0
-    for out in ticked(folds, progress):
-        fold = table.without(out)
+    for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
         n = len(fold.lengths)
         lengths[:n, out] = fold.lengths[:, None]
         c[:n, out] = fold.c

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.discriminant import Order
 from eigenwalker.folds import (
+    FoldComponents,
     LeaveOut,
     Progress,
     checked_classes,
@@ -84,25 +85,23 @@ def nested_leave_one_out(
     pairs = list(combinations(range(len(folds)), 2))
     with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
-        for first, second in ticked(pairs, progress):
-            out = np.concatenate([folds[first], folds[second]])
-            wrong = _misses_without(table, out, order)
+        both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
+        steps = ticked(table.leaving_out(both), len(pairs), progress)
+        for (first, second), (out, fold) in zip(pairs, steps, strict=True):
+            wrong = _misses(fold, table.R[out, 0], order)
             n, of_first = len(wrong), len(folds[first])
             inner_errors[first, :n] += wrong[:, of_first:].sum(axis=1)
             inner_errors[second, :n] += wrong[:, :of_first].sum(axis=1)
             inner_errors[[first, second], n:] = np.inf
-        for out, errors in zip(folds, inner_errors, strict=True):
+        for errors, (out, fold) in zip(inner_errors, table.leaving_out(folds), strict=True):
             chosen_n[out] = errors.argmin() + 1
-            missed[out] = _misses_without(table, out, order)[errors.argmin()]
+            missed[out] = _misses(fold, table.R[out, 0], order)[errors.argmin()]
     return NestedErrors(missed=missed, chosen_n=chosen_n)
 
 
-def _misses_without(table: LeaveOut, out: np.ndarray, order: Order) -> np.ndarray:
+def _misses(fold: FoldComponents, r: np.ndarray, order: Order) -> np.ndarray:
     """Which of the walkers left out are misclassified: shape (component, walker)."""
-    fold = table.without(out)
-    return (
-        table.R[out, 0] * discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order) <= 0
-    )
+    return r * discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order) <= 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,8 +171,7 @@ def permutation_test(
     errors = np.zeros((min(walkers.shape), traits.shape[1]), dtype=int)
     with one_blas_thread():
         table = LeaveOut.of(walkers, traits, scale=scale, scale_in_fold=scale_in_fold)
-        for out in ticked(folds, progress):
-            fold = table.without(out)
+        for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
             for walker, scores in zip(out, fold.scores.T, strict=True):
                 sums = discriminant_sums(fold.lengths[:, None], fold.c, scores[:, None], order)
                 wrong = traits[walker] * sums <= 0
