@@ -81,11 +81,18 @@ def demo(
     with_flagged: WithFlagged = False,
 ) -> None:
     """Run the main job: tell a trait from gait, and show walkers of either pole."""
+    from eigenwalker.datasets import built_in_capture
     from eigenwalker.report.main_job import write_main_job
 
     population = _population(people, with_flagged)
     with _bar("Classifying and filming") as progress:
-        page, found = write_main_job(output, population, trait, progress=progress)
+        page, found = write_main_job(
+            output,
+            population,
+            trait,
+            example=built_in_capture() if people is None else None,
+            progress=progress,
+        )
     print(_rows(found.table()))
     print(f"\nReport: {page}")
     if open_page and _has_screen():

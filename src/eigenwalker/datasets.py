@@ -5,8 +5,10 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+import xarray as xr
+
 from eigenwalker.population import Population
-from eigenwalker.simulation import simulate_population
+from eigenwalker.simulation import simulate_captures, simulate_population
 
 BUILT_IN = "the built-in population, simulated: 20 women and 20 men who do not exist"
 
@@ -43,3 +45,16 @@ def load_population(path: str | Path | None = None) -> Population:
 @cache
 def _built_in() -> Population:
     return simulate_population(n_women=20, n_men=20, seed=0)
+
+
+def built_in_capture() -> xr.DataArray:
+    """Return the simulated capture of the first woman of the built-in population.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        The 15 joints in place, 12 s at 120 Hz.
+
+    """
+    capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0))
+    return capture

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 import eigenwalker
 from eigenwalker.caricature import Kind
@@ -14,8 +15,9 @@ from eigenwalker.classification import N_PANELS, Classification, Progress, Regre
 from eigenwalker.classification import classify as classify_inputs
 from eigenwalker.classification import regress as regress_inputs
 from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.decomposition import decompose_pca
 from eigenwalker.display.bodies import figure_joints, figure_walkers
-from eigenwalker.display.components import figure_variance
+from eigenwalker.display.components import figure_scores, figure_variance
 from eigenwalker.display.curves import figure_curves
 from eigenwalker.display.eigenpostures import figure_eigenpostures
 from eigenwalker.display.films import Style, write_film
@@ -58,6 +60,7 @@ def write_main_job(
     population: Population,
     trait: str,
     *,
+    example: xr.DataArray | None = None,
     n_permutations: int = 200,
     progress: Progress | None = None,
 ) -> tuple[Path, Classification | Regression]:
@@ -71,6 +74,8 @@ def write_main_job(
         Its flagged walkers are named in the report and left out of everything else.
     trait : str
         As `contrast` takes it.
+    example : DataArray of shape (time, marker, axis), optional
+        A walk in place, to show how sines stand for its scores (J fig. 3).
     n_permutations : int
         Random labels to compare a classifier with.
     progress : callable, optional
@@ -97,7 +102,7 @@ def write_main_job(
         lead=_lead(found),
         sections=[
             Section("Who walked", _who(population)),
-            Section("How well the model holds", _model(population)),
+            Section("How well the model holds", _model(population, example)),
             Section("What tells them apart", _classifiers(population, found)),
             Section("What it looks like", _looks(folder, population, axes)),
             Section("Mind", [Items(_cautions(population, found))]),
@@ -157,7 +162,7 @@ def _trait_row(name: str, values: pd.Series) -> list | None:
     if known.empty:
         return None
     if pd.api.types.is_numeric_dtype(known):
-        said = f"{known.mean():.3g} (SD {known.std():.2g})"
+        said = f"{known.mean():.4g} (SD {known.std():.2g})"
     else:
         counts = known.astype(str).value_counts()
         said = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
@@ -165,7 +170,7 @@ def _trait_row(name: str, values: pd.Series) -> list | None:
     return [name, said, len(known)]
 
 
-def _model(population: Population) -> list[Block]:
+def _model(population: Population, example: xr.DataArray | None) -> list[Block]:
     known = population.unflagged() if not population.flagged.all() else population
     average = population.walker(population.average)
     blocks: list[Block] = []
@@ -185,6 +190,14 @@ def _model(population: Population) -> list[Block]:
                 "Bar chart: most variance lies in the first component, little after the fourth.",
             ),
         ]
+    if example is not None:
+        blocks.append(
+            Figure(
+                figure_scores(example, decompose_pca(example)),
+                "One walk: scores of its eigenpostures over time, and the sines in their place.",
+                "Four wavy curves over five seconds, and below them the same as pure sines.",
+            )
+        )
     if len(known) > 1:
         alike = known.posture_correlations()
         rows = [
