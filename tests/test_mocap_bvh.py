@@ -198,6 +198,15 @@ def test_joints_of_the_same_name_are_numbered():
     assert walk.marker.values.tolist() == ["Hips", "Head", "Head_end", "Head_2", "Head_end_2"]
 
 
+def test_several_people_keep_their_joints_apart():
+    head, table = BODY.split("MOTION")
+    body = head.removeprefix("HIERARCHY\n")
+    row = ROWS.splitlines()[0]
+    walk = _read(f"{head}{body}MOTION{table}{row} {row}\n{row} {row}\n")
+    names = ["Hips", "Head", "Head_end", "LeftFoot", "LeftFoot_end"]
+    assert walk.marker.values.tolist() == [f"{who}:{name}" for who in (1, 2) for name in names]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

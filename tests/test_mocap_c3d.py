@@ -233,10 +233,10 @@ def test_repeated_names_are_numbered():
 
 def test_what_is_no_marker_is_left_out_and_told():
     points = np.repeat(_points(), 3, axis=1)
-    labels = ["LFHD", "*127", "", "LKneeAngles", "Weird", "LHipPower", "U_12", "LTOE", "LASI"]
+    labels = ["LFHD", "*127", "", "LKneeAngles", "Weird", "LHipPower", "U_12", "LTOE", "Triangle"]
     listed = [_texts(Machine("Intel"), 1, "ANGLES", ["Weird"])]
     walk = _read(_file(points, labels, extra=listed))
-    assert walk.marker.values.tolist() == ["LFHD", "LTOE", "LASI"]
+    assert walk.marker.values.tolist() == ["LFHD", "LTOE", "Triangle"]
     assert walk.attrs["left_out"] == ["*127", "", "LKneeAngles", "Weird", "LHipPower", "U_12"]
     with pytest.raises(UnreadableFile, match="unlabelled"):
         _read(_file(_points(), ["*1", "*2", ""]))

@@ -11,7 +11,7 @@ import xarray as xr
 
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
-from eigenwalker.mocap.unreadable import UnreadableFile
+from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
 from eigenwalker.trajectories import MILLIMETRES
 
@@ -86,11 +86,8 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
         path.name,
         f"a {by_name[0]} file, as it is called" if by_name else f"a {formats} file",
         f"one that begins with {content[:16]!r}",
-        _AGAIN if by_name else f"export it as {formats}",
+        AGAIN if by_name else f"export it as {formats}",
     )
-
-
-_AGAIN = "export or copy the file again"
 
 
 def _content(path: Path) -> bytes:
@@ -113,5 +110,5 @@ def _content(path: Path) -> bytes:
             name, "a file that can be read", error.strerror or "an error", "check its permissions"
         ) from error
     if not content:
-        raise UnreadableFile(name, "a capture", "an empty file", _AGAIN)
+        raise UnreadableFile(name, "a capture", "an empty file")
     return content

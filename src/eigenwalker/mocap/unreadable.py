@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+AGAIN = "export or copy the file again"
+
 
 class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
     """A file does not hold what a reader needs.
@@ -28,7 +30,7 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
 
     """
 
-    def __init__(self, source: str, expected: str, came: str, advice: str) -> None:
+    def __init__(self, source: str, expected: str, came: str, advice: str = AGAIN) -> None:
         super().__init__(source, expected, came, advice)
         self.source = source
         self.expected = expected
