@@ -6,11 +6,13 @@ from eigenwalker.simulation.people import CAPTURE, simulate_captures, simulate_p
 from eigenwalker.simulation.planting import Pattern, plant, random_pattern
 from eigenwalker.simulation.traits import EFFECTS, TRAITS, draw_people
 from eigenwalker.simulation.truth import Truth, true_direction, truth_of
-from eigenwalker.simulation.walking import simulate_walk, true_events
+from eigenwalker.simulation.walking import FULL, simulate_walk, true_events
+from eigenwalker.simulation.writing import write_captures
 
 __all__ = [
     "CAPTURE",
     "EFFECTS",
+    "FULL",
     "PARAMETERS",
     "TRAITS",
     "Pattern",
@@ -26,4 +28,5 @@ __all__ = [
     "true_direction",
     "true_events",
     "truth_of",
+    "write_captures",
 ]

@@ -142,10 +142,10 @@ def solve_cycle(person: Mapping[str, float]) -> Cycle:
 
 
 def _least_change(problem: _Problem, unknown: np.ndarray) -> np.ndarray:
-    """Return the most probable cycle: Gauss-Newton, with shorter steps where a full one is worse."""
+    """Return the most probable cycle: Gauss-Newton, its steps shortened where they overshoot."""
 
     def cost(residual: np.ndarray, unknown: np.ndarray) -> float:
-        return residual @ residual + problem.precision @ (unknown - problem.prior) ** 2
+        return float(residual @ residual + problem.precision @ (unknown - problem.prior) ** 2)
 
     residual, slopes = problem.linearised(unknown)
     now = cost(residual, unknown)

@@ -42,10 +42,11 @@ class Foot:
         heel = np.array([-self.heel - self.ball, 0.0])
         on_heel, on_heel_slope = _turned(pitch, self.heel, self.height)
         on_ball, on_ball_slope = _turned(pitch, -self.ball, self.height)
+        tip = np.array([self.toe, 0.0])
         rolled = np.maximum(pitch - TOE_BEND, 0.0)
         toes, toes_slope = _turned(rolled, self.toe, 0.0)
         lifted = (pitch > TOE_BEND)[:, None]
-        place = np.where((pitch < 0)[:, None], heel + on_heel, on_ball + [self.toe, 0.0] - toes)
+        place = np.where((pitch < 0)[:, None], heel + on_heel, on_ball - toes + tip)
         slope = np.where((pitch < 0)[:, None], on_heel_slope, on_ball_slope - lifted * toes_slope)
         return place, slope
 

@@ -83,7 +83,7 @@ def _capture(
     capture: Mapping[str, Any],
 ) -> xr.DataArray:  # fmt: skip
     amounts = {trait: person[f"{trait}_score"] for trait in planted}
-    walks = person.to_dict()
+    walks = {str(name): value for name, value in person.items()}
     walks["frequency_hz"] += sum(
         amount * planted[trait].frequency_hz for trait, amount in amounts.items()
     )
@@ -135,7 +135,7 @@ def simulate_population(
     work = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
     with threadpool_limits(1):
         found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
-    walkers = [walker for some in found for walker in some]
+    walkers = [walker for some in found or () for walker in some or ()]
     return Population(
         walkers,
         people[list(TRAITS)],

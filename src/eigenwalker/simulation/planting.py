@@ -55,7 +55,8 @@ def random_pattern(
     Parameters
     ----------
     part : {"structure", "dynamics"}
-        The mean posture, or the movement about it.
+        The mean posture, or the movement about it. Ankles are not moved up and down: where they
+        stand is where `in_place` finds the floor, from which the mean posture is measured.
     size_mm : float
         Root mean square of what one unit of the trait adds to each coordinate.
     seed : int
@@ -76,6 +77,7 @@ def random_pattern(
     chance = np.random.default_rng([seed, 77])
     shape = (_N_JOINTS, 3) if part == "structure" else (4, _N_JOINTS, 3)
     direction = chance.standard_normal(shape)
+    direction[..., [JOINTS.index(f"{side}_ankle") for side in ("left", "right")], 2] = 0
     direction *= size_mm / np.sqrt(np.mean(direction**2))
     if part == "structure":
         return Pattern(structure=direction)

@@ -9,6 +9,8 @@ import numpy as np
 from eigenwalker.simulation.body import Body
 from eigenwalker.simulation.posture import SIDES, Turns, turned
 
+Offset = tuple[float, float, float] | np.ndarray
+
 RADIUS_MM = 7.0
 _HARMONICS = 2
 SOFT_TISSUE_MM = {
@@ -78,16 +80,16 @@ def _waves(phase: np.ndarray) -> np.ndarray:
     return np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def _placed_markers(body: Body) -> dict[str, tuple[str, str, tuple[float, float, float]]]:
+def _placed_markers(body: Body) -> dict[str, tuple[str, str, Offset]]:
     """Return joint, segment and offset in the segment of each marker."""
     height = body.height
     spine = (body.hip[1] - 7.3) / 0.33 / 2  # Harrington et al.: hip 0.33 of their distance and 7.3
     sternum = body.sternum
-    placed = {
-        "CLAV": ("pelvis", "trunk", tuple(sternum + [0.053 * height, 0, 0.012 * height])),
-        "STRN": ("pelvis", "trunk", tuple(sternum + [0.065 * height, 0, -0.066 * height])),
-        "C7": ("pelvis", "trunk", tuple(sternum + [-0.043 * height, 0, 0.050 * height])),
-        "T10": ("pelvis", "trunk", tuple(sternum + [-0.063 * height, 0, -0.074 * height])),
+    placed: dict[str, tuple[str, str, Offset]] = {
+        "CLAV": ("pelvis", "trunk", np.add(sternum, (0.053 * height, 0, 0.012 * height))),
+        "STRN": ("pelvis", "trunk", np.add(sternum, (0.065 * height, 0, -0.066 * height))),
+        "C7": ("pelvis", "trunk", np.add(sternum, (-0.043 * height, 0, 0.050 * height))),
+        "T10": ("pelvis", "trunk", np.add(sternum, (-0.063 * height, 0, -0.074 * height))),
     }
     for side, sign in SIDES.items():
         own = _one_side(body, side, spine)
@@ -98,9 +100,7 @@ def _placed_markers(body: Body) -> dict[str, tuple[str, str, tuple[float, float,
     return placed
 
 
-def _one_side(
-    body: Body, side: str, spine: float
-) -> dict[str, tuple[str, str, tuple[float, float, float]]]:
+def _one_side(body: Body, side: str, spine: float) -> dict[str, tuple[str, str, Offset]]:
     """Offsets of one side: forward, outwards, up."""
     share, foot = 0.49 * body.height, body.foot  # of the leg from iliac spine to ankle
     knee, ankle, elbow = (width * share / 2 + RADIUS_MM for width in (0.112, 0.080, 0.076))

@@ -81,13 +81,13 @@ def walked_strides(
     )
     steps = STEP_CV * variability * persistent_noise(chance, 2 * n_strides).reshape(n_strides, 2).T
     grid = np.arange((n_strides - 1) * _PER_STRIDE) / _PER_STRIDE - 0.5
-    on_grid = np.stack([_held(grid - o, s, pace.stance) for o, s in zip(cycle.onsets, steps)])
+    on_grid = _step_lengths(grid, cycle, pace, steps)
     advance = pace.stride * np.cumsum(1 + _handed_over(grid, cycle, pace, on_grid)) / _PER_STRIDE
     advance -= np.interp(0.0, grid, advance)
     belt = pace.speed * time + wander[:, 0]
-    phase = np.interp(belt - belt[0] * (wander_mm > 0), advance, grid)
-    phase = phase if variability or wander_mm else pace.frequency * time
-    longer = np.stack([_held(phase - o, s, pace.stance) for o, s in zip(cycle.onsets, steps)])
+    even = not (variability or wander_mm)
+    phase = pace.frequency * time if even else np.interp(belt - belt[0], advance, grid)
+    longer = _step_lengths(phase, cycle, pace, steps)
     return Strides(
         phase=phase,
         longer=longer,
@@ -96,6 +96,12 @@ def walked_strides(
         wander=wander,
         moods=variability * np.stack([slow_noise(chance, phase, 1.5) for _ in range(N_STREAMS)]),
     )
+
+
+def _step_lengths(phase: np.ndarray, cycle: Cycle, pace: Pace, steps: np.ndarray) -> np.ndarray:
+    """Return by how much the present step of each leg is longer: array of shape (side, ...)."""
+    pairs = zip(cycle.onsets, steps, strict=True)
+    return np.stack([_held(phase - onset, own, pace.stance) for onset, own in pairs])
 
 
 def _held(own: np.ndarray, steps: np.ndarray, stance: float) -> np.ndarray:

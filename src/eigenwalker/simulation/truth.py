@@ -63,7 +63,7 @@ def truth_of(population: Population) -> Truth:
     --------
     >>> truth = truth_of(ew.simulate_population(2, 2, seed=1))
     >>> truth.people["arm_swing_deg"].round().tolist()
-    [15.0, 17.0, 19.0, 13.0]
+    [13.0, 17.0, 6.0, 14.0]
     >>> bool(truth.effects.loc["obliquity_factor", "sex"] < 0)
     True
 
@@ -166,8 +166,8 @@ def _pattern(numbers: dict) -> Pattern:
 def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> pd.DataFrame:
     known = ["height_mm", "weight_kg", "happy", "nervous"]
     number = {key: row for row, key in enumerate(people[known].itertuples(index=False, name=None))}
-    rows = [number.get(key) for key in traits[known].itertuples(index=False, name=None)]
-    if None in rows:
+    rows = [number.get(key, -1) for key in traits[known].itertuples(index=False, name=None)]
+    if -1 in rows:
         raise ValueError(
             "These walkers are not those that this version draws by the recipe of the population; "
             "read its truth with the version that simulated it, or simulate it anew."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -13,11 +13,11 @@ from eigenwalker.simulation.body import body_of
 from eigenwalker.simulation.cycle import Cycle, Pace, pace_of, solve_cycle
 from eigenwalker.simulation.imperfections import with_drift, with_gaps, with_noise
 from eigenwalker.simulation.overground import Route, set_off
+from eigenwalker.simulation.parameters import check_parameters
 from eigenwalker.simulation.playing import Angles, play
 from eigenwalker.simulation.posture import SIDES, joint_positions, segment_turns
 from eigenwalker.simulation.skin import skin_markers
 from eigenwalker.simulation.strides import Strides, walked_strides
-from eigenwalker.simulation.parameters import check_parameters
 from eigenwalker.simulation.traits import draw_people
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import label_trajectories
@@ -183,10 +183,11 @@ def _chance(seed: int | Sequence[int], stream: int) -> np.random.Generator:
     return np.random.default_rng([*np.atleast_1d(seed).tolist(), stream])
 
 
-def _anyone(chance: np.random.Generator) -> dict[str, float]:
+def _anyone(chance: np.random.Generator) -> dict[str, Any]:
     women = int(chance.random() < 0.5)
     seed = int(chance.integers(2**31))
-    return draw_people(women, 1 - women, seed=seed).iloc[0].to_dict()
+    drawn = draw_people(women, 1 - women, seed=seed).iloc[0]
+    return {str(name): value for name, value in drawn.items()}
 
 
 def _scalars(
