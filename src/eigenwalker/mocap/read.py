@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
+from eigenwalker.mocap.content import content_of
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
 from eigenwalker.trajectories import MILLIMETRES
 
-MOST_BYTES = 2**31
-
 
 class Format(NamedTuple):
-    """A kind of file: what it is called, how to know it, and who reads it."""
+    """A kind of file: what it is called, how to know it, and who reads it.
+
+    `wants` names what its reader takes beside the bytes: ``"path"`` where a file beside it is
+    needed, ``"rate_hz"`` where files may name no rate.
+    """
 
     name: str
     suffix: str
     looks_like: Callable[[bytes], bool]
     read: Callable[..., xr.DataArray]
+    wants: tuple[str, ...] = ()
 
 
 FORMATS = (
@@ -34,7 +40,9 @@ FORMATS = (
 """Every format that is read. A reader takes the bytes of a file and its name as ``source``."""
 
 
-def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.DataArray:
+def read_mocap(
+    path: str | os.PathLike[str], *, unit: str | None = None, rate_hz: float | None = None
+) -> xr.DataArray:
     """Return what a file holds as trajectories, as captured.
 
     Parameters
@@ -45,6 +53,9 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
         Unit of length, for files that name none (all BVH) or the wrong one. If left out, it is the
         one the file names, or else the one in which the body is as tall as people are; that
         is warned of with `UnitGuessed`. ``"asf"`` is the unit of CMU skeletons, inch/0.45.
+
+    rate_hz : float, optional
+        Frames a second, for files that name none or the wrong one.
 
     Returns
     -------
@@ -60,7 +71,7 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
     UnreadableFile
         If there is no such file, or it is damaged, cut short, or of another format.
     ValueError
-        If `unit` is not known.
+        If `unit` is not known, or `rate_hz` no rate.
 
     Examples
     --------
@@ -72,14 +83,18 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
 
     """
     path = Path(path)
-    content = _content(path)
+    content = content_of(path)
     known = MILLIMETRES | UNITS
     if unit is not None and unit not in known:
         raise ValueError(f"unit={unit!r} is not known; give one of {sorted(known)}.")
+    if rate_hz is not None and not 0 < rate_hz < math.inf:
+        raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")
     named = None if unit is None else Unit(unit, known[unit], "named by the caller")
     for form in FORMATS:
         if form.looks_like(content):
-            return form.read(content, source=path.name, unit=named)
+            wanted = {name: {"path": path, "rate_hz": rate_hz}[name] for name in form.wants}
+            walk = form.read(content, source=path.name, unit=named, **wanted)
+            return walk if "rate_hz" in wanted else _at_rate(walk, rate_hz)
     by_name = [form.name for form in FORMATS if form.suffix == path.suffix.lower()]
     formats = " or ".join(form.name for form in FORMATS)
     raise UnreadableFile(
@@ -90,25 +105,8 @@ def read_mocap(path: str | os.PathLike[str], *, unit: str | None = None) -> xr.D
     )
 
 
-def _content(path: Path) -> bytes:
-    """Return the bytes of a file that is there and can be read."""
-    name = path.name or str(path)
-    if path.is_dir():
-        raise UnreadableFile(name, "a file", "a folder", "name one of the files in it")
-    if not path.exists():
-        came = f"nothing of that name in {str(path.parent)!r}"
-        raise UnreadableFile(name, "a file", came, "check the path")
-    if not path.is_file():
-        raise UnreadableFile(name, "a plain file", "a device or pipe", "save it as a file")
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            came = f"{path.stat().st_size / 1e9:.1f} GB"
-            raise UnreadableFile(name, "2 GB at most", came, "cut it into shorter captures")
-        content = path.read_bytes()
-    except OSError as error:
-        raise UnreadableFile(
-            name, "a file that can be read", error.strerror or "an error", "check its permissions"
-        ) from error
-    if not content:
-        raise UnreadableFile(name, "a capture", "an empty file")
-    return content
+def _at_rate(walk: xr.DataArray, rate_hz: float | None) -> xr.DataArray:
+    """Return a capture on the clock that the caller names, if one is named."""
+    if rate_hz is None:
+        return walk
+    return walk.assign_coords(time=np.arange(walk.sizes["time"]) / rate_hz)
