@@ -11,9 +11,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.mocap.asf_amc import looks_like_acclaim, read_asf_amc
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
 from eigenwalker.mocap.content import content_of
+from eigenwalker.mocap.netcdf import looks_like_netcdf, read_netcdf
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
 from eigenwalker.trajectories import MILLIMETRES
@@ -36,6 +38,8 @@ class Format(NamedTuple):
 FORMATS = (
     Format("BVH", ".bvh", looks_like_bvh, read_bvh),
     Format("C3D", ".c3d", looks_like_c3d, read_c3d),
+    Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, wants=("path", "rate_hz")),
+    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf),
 )
 """Every format that is read. A reader takes the bytes of a file and its name as ``source``."""
 
@@ -48,14 +52,16 @@ def read_mocap(
     Parameters
     ----------
     path : str or path
-        A BVH or C3D file. What it holds decides, not what it is called.
+        A BVH or C3D file, or a motion (AMC) with its skeleton (ASF) beside it. What it holds
+        decides, not what it is called.
     unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
         Unit of length, for files that name none (all BVH) or the wrong one. If left out, it is the
         one the file names, or else the one in which the body is as tall as people are; that
         is warned of with `UnitGuessed`. ``"asf"`` is the unit of CMU skeletons, inch/0.45.
-
     rate_hz : float, optional
-        Frames a second, for files that name none or the wrong one.
+        Frames a second, for files that name none (most AMC) or the wrong one. If left out, it is
+        the one the file names, or else the usual one of its kind; that is warned of with
+        `RateAssumed`.
 
     Returns
     -------

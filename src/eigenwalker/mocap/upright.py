@@ -121,11 +121,40 @@ def turn_upright(up: str) -> np.ndarray:
     return np.diag([1.0, -1.0, -1.0]) @ turn if up.startswith("-") else turn
 
 
+def body_height(positions: np.ndarray, names: Sequence[str]) -> float:
+    """Return how tall a body is: from the lowest point of the feet to the highest of the head.
+
+    Of all points, where names tell neither; in the middle of the frames.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, 3)
+        z up, in any unit.
+    names : sequence of str
+        One name a marker.
+
+    Returns
+    -------
+    float
+        In the unit of `positions`; NaN where it is not above 0.
+
+    Examples
+    --------
+    >>> body_height(np.array([[[0, 0, 170], [0, 0, 5]]]), ["Head", "LeftToe"])
+    165.0
+
+    """
+    high, low = head_and_feet(positions, names)
+    if not high.size or not low.size:
+        high = low = positions
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # frames without a sample give NaN
+        height = np.nanmedian(np.nanmax(high[..., 2], axis=1) - np.nanmin(low[..., 2], axis=1))
+    return float(height) if height > 0 else np.nan
+
+
 def guess_unit(positions: np.ndarray, names: Sequence[str], *, source: str) -> Unit:
     """Return the unit in which a body is as tall as people are, and warn that it is a guess.
-
-    The height is that of the highest point of the head above the lowest of the feet (of all points,
-    where names tell neither), in the middle of the frames.
 
     Parameters
     ----------
@@ -142,16 +171,9 @@ def guess_unit(positions: np.ndarray, names: Sequence[str], *, source: str) -> U
         The one of `UNITS` which brings the height nearest to that of a person, and the reason.
 
     """
-    high, low = head_and_feet(positions, names)
-    if not high.size or not low.size:
-        high = low = positions
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # frames without a sample give NaN
-        height = np.nanmedian(np.nanmax(high[..., 2], axis=1) - np.nanmin(low[..., 2], axis=1))
-    if not height > 0:
-        height = np.nan
-        name = "mm"
-    else:
+    height = body_height(positions, names)
+    name = "mm"
+    if not np.isnan(height):
         name = min(UNITS, key=lambda unit: abs(np.log(height * UNITS[unit] / PERSON_MM)))
     tall = height * UNITS[name]
     if PLAUSIBLE_MM[0] <= tall <= PLAUSIBLE_MM[1]:
