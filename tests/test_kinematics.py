@@ -1,11 +1,19 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.kinematics import forward_kinematics
+from eigenwalker.kinematics import (
+    bone_rotations,
+    forward_kinematics,
+    rigid_turn,
+    shortest_turn,
+)
 
 PARENTS = [-1, 0, 1, 0, 3]
 
@@ -62,3 +70,66 @@ def test_offsets_may_change_over_time():
     moved, _ = forward_kinematics(PARENTS, moving, turns)
     expected = still + np.arange(len(turns))[:, None, None]
     np.testing.assert_allclose(moved, expected, atol=1e-12)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6))
+def test_bone_rotations_bring_a_rigid_body_where_it_was_seen(seed):
+    rest, turns = _body(seed)
+    turns[:, [2, 4]] = [0, 0, 0, 1]  # a last joint carries nothing whose place would tell its turn
+    seen, _ = forward_kinematics(PARENTS, rest, turns)
+    placed = _placed(rest, seen)
+    np.testing.assert_allclose(placed, seen, atol=1e-9)
+
+
+def test_bone_rotations_pay_for_a_longer_bone_once():
+    rest = np.array([[0, 0, 0], [0, 0, -400], [0, 0, -400], [200, 0, 0.0], [100, 0, 0]])
+    turns = np.zeros((1, 5, 4))
+    turns[..., 3] = 1
+    longer = rest.copy()
+    longer[1, 2] = -420
+    seen, _ = forward_kinematics(PARENTS, longer, turns)
+    off = np.linalg.norm(_placed(rest, seen) - seen, axis=2)[0]
+    np.testing.assert_allclose(off[1:3], [20, 20], atol=1e-3)
+    sideways = seen + np.array([[0, 0, 0], [0, 0, 0], [400, 0, 380], [0, 0, 0], [0, 0, 0]])
+    off = np.linalg.norm(_placed(rest, sideways) - sideways, axis=2)[0]
+    assert off[1] == pytest.approx(20, abs=0.1)
+    assert off[2] < 2, "the bone beyond turns a little and reaches its end"
+
+
+def test_joints_of_no_length_let_bones_swing_against_each_other():
+    parents = [-1, 0, 1, 0, 3]
+    rest = np.array([[0, 0, 0], [0, 0, 0], [0, 100, 0], [0, 0, 0], [0, 0, 200.0]])
+    seen = np.zeros((1, 5, 3))
+    seen[0, 2], seen[0, 4] = [60, 80, 0], [0, 120, 160]
+    np.testing.assert_allclose(_placed(rest, seen, parents), seen, atol=1e-9)
+
+
+def test_the_shortest_turn_turns_no_further_than_the_angle_between():
+    rng = np.random.default_rng(5)
+    start, ends = rng.normal(size=3), rng.normal(size=(50, 3))
+    turn = shortest_turn(start, ends)
+    cosine = ends @ start / np.linalg.norm(start) / np.linalg.norm(ends, axis=1)
+    np.testing.assert_allclose(turn.magnitude(), np.arccos(cosine), atol=1e-9)
+    turned = turn.apply(start) / np.linalg.norm(start)
+    np.testing.assert_allclose(turned, ends / np.linalg.norm(ends, axis=1)[:, None], atol=1e-12)
+
+
+def test_the_shortest_turn_to_the_opposite_or_to_nothing_is_defined():
+    turn = shortest_turn(np.array([0, 0, 3.0]), np.array([[0, 0, -2.0], [0, 0, 0], [0, 0, 1]]))
+    np.testing.assert_allclose(turn.apply([0, 0, 1]), [[0, 0, -1], [0, 0, 1], [0, 0, 1]])
+
+
+def test_rigid_turns_are_those_of_scipy():
+    rng = np.random.default_rng(6)
+    still, moving = rng.normal(size=(4, 3)), rng.normal(size=(10, 4, 3))
+    turns = rigid_turn(still, moving)
+    for turn, frame in zip(turns, moving, strict=True):
+        expected, _ = Rotation.align_vectors(frame, still)
+        np.testing.assert_allclose(turn.as_matrix(), expected.as_matrix(), atol=1e-9)
+
+
+def _placed(rest: np.ndarray, seen: np.ndarray, parents: Sequence[int] = PARENTS) -> np.ndarray:
+    offsets = np.tile(rest, (len(seen), 1, 1))
+    offsets[:, 0] = seen[:, 0]
+    return forward_kinematics(parents, offsets, bone_rotations(parents, rest, seen))[0]

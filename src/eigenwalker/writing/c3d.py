@@ -37,16 +37,23 @@ def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
         If there are more markers, or longer names, than the format holds.
 
     """
-    names = [str(name).encode("utf-8").decode("latin-1") for name in walk.marker.values]
-    if len(names) > MOST_MARKERS or max(map(len, names)) > LONGEST_NAME:
+    names = [str(name).encode() for name in walk.marker.values]
+    width = max(map(len, names))
+    if len(names) > MOST_MARKERS or width > LONGEST_NAME:
         raise ValueError(
             f"A C3D file is written with {MOST_MARKERS} markers at most, whose names have up to "
-            f"{LONGEST_NAME} bytes; here are {len(names)}, with up to {max(map(len, names))}. "
+            f"{LONGEST_NAME} bytes; here are {len(names)}, with up to {width}. "
             "Take some of them, or rename them, or write .csv or .nc."
         )
     rate_hz = sampling_rate(walk)
     writer = c3d.Writer(point_rate=round(rate_hz, 6), point_units=unit)
-    writer.set_point_labels(names)
+    writer.point_group.add_param(
+        "LABELS",
+        desc="Marker names",
+        bytes_per_element=-1,
+        dimensions=[width, len(names)],
+        bytes=b"".join(name.ljust(width) for name in names),
+    )
     writer.set_screen_axis("+X", f"+{up.upper()}")
     writer.set_start_frame(max(1, 1 + round(float(walk.time.values[0]) * rate_hz)))
     missing = np.asarray(np.isnan(walk.values).any(axis=2))
