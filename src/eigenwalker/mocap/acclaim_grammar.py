@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eigenwalker.mocap.clock import rate_of
 from eigenwalker.mocap.numbers import number, numbers
 from eigenwalker.mocap.unreadable import UnreadableFile
 
@@ -163,7 +164,8 @@ def _bone(block: _Lines, source: str) -> Bone:
     length = number(entry["length"][0], f"the length of {name}", source)
     if length < 0 or (length > 0 and not 0.9 < norm < 1.1):
         came = f"{length:g} along a direction of length {norm:.3g}"
-        raise UnreadableFile(source, f"a length and a direction of length 1 of {name}", came)
+        wanted = f"a length of {name} above 0, along a direction of length 1"
+        raise UnreadableFile(source, wanted, came)
     return Bone(
         name=name,
         parent=-1,
@@ -246,7 +248,7 @@ def parse_amc(text: str, source: str) -> Motion:
     return Motion(
         channels=channels,
         degrees=True if "degrees" in keywords else False if "radians" in keywords else None,
-        rate_hz=number(rate[0], "the frame rate", source) if rate else None,
+        rate_hz=rate_of(rate[0], "samples-per-second", source) if rate else None,
     )
 
 

@@ -110,8 +110,6 @@ def read_asf_amc(
     unit = told or guess_unit(ends, names, source=beside.name)
     known_rate = rate_hz or motion.rate_hz
     rate = known_rate or CMU_RATE_HZ
-    if rate <= 0:
-        raise UnreadableFile(source, "a frame rate above 0", f"{rate:g}")
     walk = label_trajectories(ends * unit.millimetres, markers=names, rate_hz=rate)
     turned = (Rotation.from_matrix(turn) * Rotation.from_quat(turns.reshape(-1, 4))).as_rotvec()
     walk = walk.assign_coords(rotation=(walk.dims, turned.reshape(walk.shape)))
