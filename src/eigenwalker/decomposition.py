@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.linalg import eigh
+from scipy.linalg.blas import dsyrk  # pyright: ignore[reportAttributeAccessIssue] - untyped
 
 from eigenwalker.gait import frequency_of_scores
 from eigenwalker.gait.frequency import rotations
@@ -23,6 +25,8 @@ PHASE_REFERENCE = ("left_ankle", "right_ankle")
 """The markers whose distance along x sets the time origin: first minus second rises through 0."""
 _SHARES_KEPT = 10
 _ROUNDING = 1e-9
+_FAR = 1e3
+"""Power over variance above which products about the origin lose too many digits."""
 
 
 class Eigenpostures(NamedTuple):
@@ -30,15 +34,12 @@ class Eigenpostures(NamedTuple):
 
     mean: np.ndarray
     components: np.ndarray
-    variance_share: np.ndarray
+    scatter: np.ndarray
     frequency_hz: float
     harmonics: np.ndarray
     amplitudes: np.ndarray
     phases: np.ndarray
     sine_r2: np.ndarray
-    fourier: np.ndarray
-    fourier_residual: float
-    total: float
     rate_hz: float
 
 
@@ -90,14 +91,15 @@ def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
     origin = -phases[0] / found.harmonics[0]
     phases, turned = _half_turn(phases + found.harmonics * origin)
     p[turned] *= -1
-    explained = found.sine_r2 * found.variance_share[: len(p)]
+    fourier, fourier_residual = fourier_of(postures, found.frequency_hz / rate_hz, n_harmonics)
     return _walker(
         walk,
         postures,
         found,
         form="eigenposture",
         origin=origin,
-        residual=found.total * max(1 - float(explained.sum()), 0.0),
+        fourier=fourier,
+        fourier_residual=fourier_residual,
         p0=found.mean,
         p=p,
         harmonics=found.harmonics,
@@ -139,8 +141,8 @@ def decompose_fourier(
     >>> foot = np.cos(2 * np.pi * time)[:, None, None] * [[200, 0, 0]]
     >>> walk = ew.label_trajectories(foot, markers=["foot"], rate_hz=100)
     >>> walker = decompose_fourier(walk, n_harmonics=1)
-    >>> walker.eigenpostures.values[:, 0, 0].round(6).tolist()  # sin 1, cos 1
-    [200.0, 0.0]
+    >>> walker.eigenpostures.sel(component=1, axis="x").values.round(6).tolist()
+    [200.0]
     >>> round(walker.time_origin_s, 6)
     0.75
 
@@ -149,7 +151,8 @@ def decompose_fourier(
     found = eigenpostures_of(postures, rate_hz, n_harmonics)
     markers = walk.marker.values.tolist()
     # The mean posture is regressed too: over broken strides it is not the average of frames.
-    coefficients = found.fourier[1:].reshape(2 * n_harmonics, len(markers), 3)
+    fourier, residual = fourier_of(postures, found.frequency_hz / rate_hz, n_harmonics)
+    coefficients = fourier[1:].reshape(2 * n_harmonics, len(markers), 3)
     origin = origin_angle(coefficients, markers, phase_ref)
     return _walker(
         walk,
@@ -157,8 +160,9 @@ def decompose_fourier(
         found,
         form="fourier",
         origin=origin,
-        residual=found.fourier_residual,
-        p0=found.fourier[0],
+        fourier=fourier,
+        fourier_residual=residual,
+        p0=fourier[0],
         p=shift_origin(coefficients, origin),
         harmonics=np.repeat(np.arange(1, n_harmonics + 1), 2),
         phases=np.tile([0.0, np.pi / 2], n_harmonics),
@@ -182,45 +186,85 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     Returns
     -------
     Eigenpostures
-        Phases count from the middle of the postures; components are rows of unit length.
+        Phases count from the middle of the postures; components are rows of unit length; of the
+        scatter (sums of squares and products about the mean) only the lower triangle is filled.
 
     """
-    n_frames, n_features = postures.shape
+    n_features = postures.shape[1]
     n_components = min(2 * n_harmonics, n_features)
-    # Shifted by the first frame, the Gram matrix keeps all digits however far the origin is.
-    shifted = postures - postures[0]
-    offset = np.full(n_frames, 1 / n_frames) @ shifted
-    moments = shifted.T @ shifted
-    variance, axes = np.linalg.eigh(moments - n_frames * np.outer(offset, offset))
-    variance = np.clip(variance[::-1], 0, None)
-    components = axes[:, ::-1].T[:n_components]
-    scores = shifted @ components.T - components @ offset
+    mean, scatter = _mean_and_scatter(postures)
+    largest = [n_features - n_components, n_features - 1]
+    power, axes = eigh(scatter, subset_by_index=largest, check_finite=False)
+    axes = np.ascontiguousarray(axes[:, ::-1])
+    scores = postures @ axes
+    scores -= mean @ axes
     frequency_hz = frequency_of_scores(scores, rate_hz, n_harmonics=n_harmonics)
 
-    design = _sines(n_frames, frequency_hz / rate_hz, n_harmonics)
-    products, gram = design @ shifted, design @ design.T
-    fourier = np.linalg.solve(gram, products)
-    residual = np.trace(moments) - np.vdot(fourier, products)
-    fourier[0] += postures[0]
-    with_scores = (products - np.outer(gram[0], offset)) @ components.T
+    sines = _sines(len(postures), frequency_hz / rate_hz, n_harmonics)[1:]
     harmonics, amplitudes, phases, sine_r2 = _fit_sines(
-        with_scores[1:], gram[1:, 1:], variance[:n_components]
+        sines @ scores, sines @ sines.T, np.maximum(power[::-1], 0.0)
     )
-    total = float(variance.sum())
     return Eigenpostures(
-        mean=postures[0] + offset,
-        components=components,
-        variance_share=variance[:_SHARES_KEPT] / (total or 1.0),
+        mean=mean,
+        components=axes.T,
+        scatter=scatter,
         frequency_hz=frequency_hz,
         harmonics=harmonics,
         amplitudes=amplitudes,
         phases=phases,
         sine_r2=sine_r2,
-        fourier=fourier,
-        fourier_residual=max(float(residual), 0.0),
-        total=total,
         rate_hz=rate_hz,
     )
+
+
+def _mean_and_scatter(postures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean, and sums of squares and products about it (lower triangle).
+
+    Products about the origin are quicker; where the postures are so far from it that subtracting
+    their mean's would cost digits, they are taken about the first posture.
+    """
+    n = len(postures)
+    mean = np.full(n, 1 / n) @ postures
+    scatter = dsyrk(1.0, postures.T, lower=True)
+    power = scatter.trace()
+    if power < _FAR * (power - n * (mean @ mean)):
+        scatter -= np.multiply.outer(mean, n * mean)
+        return mean, scatter
+    shifted = postures - postures[0]
+    offset = np.full(n, 1 / n) @ shifted
+    scatter = dsyrk(1.0, shifted.T, lower=True) - n * np.outer(offset, offset)
+    return postures[0] + offset, scatter
+
+
+def fourier_of(
+    postures: np.ndarray, cycles_per_frame: float, n_harmonics: int = 2
+) -> tuple[np.ndarray, float]:
+    """Return postures as a Fourier series of a known frequency, by least squares (W2, M2).
+
+    Parameters
+    ----------
+    postures : array of shape (time, feature)
+        Evenly sampled.
+    cycles_per_frame : float
+        Stride frequency over frame rate.
+    n_harmonics : int
+        Harmonics to take.
+
+    Returns
+    -------
+    coefficients : array of shape (1 + 2 * harmonic, feature)
+        Of 1, sin 1, cos 1, sin 2, cos 2 ..., time counting from the middle of the postures.
+    residual : float
+        Sum of squares left over.
+
+    """
+    shifted = postures - postures[0]
+    design = _sines(len(postures), cycles_per_frame, n_harmonics)
+    products = design @ shifted
+    coefficients = np.linalg.solve(design @ design.T, products)
+    residual = float(np.vdot(shifted, shifted) - np.vdot(coefficients, products))
+    coefficients[0] += postures[0]
+    return coefficients, max(residual, 0.0)
 
 
 def _sines(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
@@ -243,18 +287,18 @@ def _fit_sines(
 
     From the products of the sines with the scores and with one another, and the scores' squares.
     """
-    n_harmonics = len(gram) // 2
-    weights = np.empty((n_harmonics, 2, products.shape[1]))
-    explained = np.empty((n_harmonics, products.shape[1]))
-    for harmonic in range(n_harmonics):
-        pair = slice(2 * harmonic, 2 * harmonic + 2)
-        weights[harmonic] = np.linalg.solve(gram[pair, pair], products[pair])
-        explained[harmonic] = (weights[harmonic] * products[pair]).sum(axis=0)
-    best = explained.argmax(axis=0)
-    each = np.arange(products.shape[1])
-    sine, cosine = weights[best, 0, each], weights[best, 1, each]
+    sine, cosine = slice(0, None, 2), slice(1, None, 2)
+    ss, cc = np.diagonal(gram)[sine, None], np.diagonal(gram)[cosine, None]
+    sc = np.diagonal(gram, 1)[sine, None]
+    with_sine, with_cosine = products[sine], products[cosine]
+    determinant = ss * cc - sc**2
+    on_sine = (cc * with_sine - sc * with_cosine) / determinant
+    on_cosine = (ss * with_cosine - sc * with_sine) / determinant
+    explained = on_sine * with_sine + on_cosine * with_cosine
+    best, each = explained.argmax(axis=0), np.arange(products.shape[1])
+    a, b = on_sine[best, each], on_cosine[best, each]
     r2 = explained[best, each] / np.where(power > 0, power, 1)
-    return best + 1, np.hypot(sine, cosine), np.arctan2(cosine, sine), r2
+    return best + 1, np.hypot(a, b), np.arctan2(b, a), r2
 
 
 def _postures(walk: xr.DataArray, n_harmonics: int) -> tuple[xr.DataArray, np.ndarray, float]:
@@ -335,7 +379,8 @@ def _walker(
     *,
     form: Form,
     origin: float,
-    residual: float,
+    fourier: np.ndarray,
+    fourier_residual: float,
     p0: np.ndarray,
     p: np.ndarray,
     harmonics: np.ndarray,
@@ -347,15 +392,18 @@ def _walker(
     period_s = 1 / found.frequency_hz
     middle_s = (time[0] + time[-1]) / 2
     after_start_s = (middle_s + origin / (2 * np.pi) * period_s - time[0]) % period_s
-    share = residual / found.total if found.total else 1.0
+    variance = np.maximum(np.linalg.eigvalsh(found.scatter)[::-1], 0.0)
+    total = float(variance.sum()) or 1.0
+    unexplained = total - float(found.sine_r2 @ variance[: len(found.sine_r2)])
+    residual = fourier_residual if form == "fourier" else max(unexplained, 0.0)
     fit = CaptureFit(
-        r2=1 - share,
-        fourier_r2=1 - found.fourier_residual / (found.total or 1.0),
+        r2=1 - residual / total,
+        fourier_r2=1 - fourier_residual / total,
         residual_power=residual / float(np.vdot(postures, postures)),
-        relative_rms=float(np.sqrt(share)),
-        variance_share=found.variance_share,
+        relative_rms=float(np.sqrt(residual / total)),
+        variance_share=variance[:_SHARES_KEPT] / total,
         sine_r2=found.sine_r2,
-        fourier=shift_origin(found.fourier[1:].reshape(-1, n_markers, 3), origin),
+        fourier=shift_origin(fourier[1:].reshape(-1, n_markers, 3), origin),
         eigenpostures=p,
         harmonics=harmonics,
         phases=phases,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 
@@ -17,8 +20,9 @@ _OCTAVE = 0.99
 """When about twice a frequency explains this share of what the frequency explains, the lower one
 lives on its second harmonic alone: it is half the stride frequency."""
 
-_CONVERGED = 1e-11
-"""Relative size of the step to come, if steps go on to shrink as the last one did."""
+_CONVERGED = 1e-6
+"""Relative size of the last step. The next would be its square where sines fit exactly, and under a
+hundredth of it in real walks."""
 _MAX_STEPS = 50
 
 
@@ -114,74 +118,90 @@ def frequency_of_scores(
             f"{n_frames} frames at {rate_hz:.4g} Hz last {n_frames / rate_hz:.3g} s, too short for "
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
         )
-    centred = scores - scores[0]
-    centred -= np.full(n_frames, 1 / n_frames) @ centred
-    if not np.abs(centred).max() > 1e-9 * max(1.0, np.abs(scores[0]).max()):
+    centred = scores - np.full(n_frames, 1 / n_frames) @ scores
+    least = 1e-9 * max(1.0, np.abs(scores[0]).max())
+    if not np.vdot(centred, centred) > n_frames * least**2:
         raise ValueError("Nothing moves here, so there is no stride frequency.")
-    coarse = _coarse_frequency(centred, rate_hz, (lowest, bounds_hz[1]))
+    block = max(1, int(rate_hz / _COARSE_RATE_HZ))
+    n_blocks = n_frames // block
+    blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))
     angle = 2 * np.pi / rate_hz
-    return _refined(centred, coarse * angle, n_harmonics, trend=trend) / angle
+    frequency_hz = _coarse_frequency(blocks, rate_hz / block, (lowest, bounds_hz[1]))
+    # Sums of a few frames keep the frequency of a sine: most of the way is gone on them.
+    start = frequency_hz * angle
+    reach = np.pi / n_frames
+    step = _gauss_newton_step(blocks, start * block, n_harmonics, trend=trend) / block
+    step = min(max(step, -reach / 2), reach / 2)
+    return _refined(centred, start + step, n_harmonics, trend=trend) / angle
 
 
 _FEWEST_STRIDES = 0.9
 """Below about one stride two harmonics fit anything."""
 
 
-def _coarse_frequency(scores: np.ndarray, rate_hz: float, bounds_hz: tuple[float, float]) -> float:
+def _coarse_frequency(
+    sums: np.ndarray, block_rate_hz: float, bounds_hz: tuple[float, float]
+) -> float:
     """Return the frequency that explains velocities best with two harmonics, on a grid.
 
     The least-squares spectrum (mean, sines and cosines fitted together) has no leakage, so two
     strides are enough; its normal equations are known in closed form.
     """
-    block = max(1, int(rate_hz / _COARSE_RATE_HZ))
-    n_frames = len(scores) // block * block
-    sums = np.add.reduceat(scores[:n_frames], np.arange(0, n_frames, block), axis=0)
     velocity = sums[1:] - sums[:-1]
     velocity -= (sums[-1] - sums[0]) / len(velocity)
     size = 1 << (4 * len(velocity) - 1).bit_length()
-    spacing_hz = rate_hz / block / size
-    grid = np.arange(
-        max(1, int(np.ceil(bounds_hz[0] / spacing_hz))),
-        min(size // 4, int(bounds_hz[1] / spacing_hz)) + 1,
-    )
-    explained = _explained_by_two_harmonics(velocity, grid, size)
+    spacing_hz = block_rate_hz / size
+    first = max(1, int(np.ceil(bounds_hz[0] / spacing_hz)))
+    last = min(size // 4, int(bounds_hz[1] / spacing_hz))
+    spectrum = np.fft.rfft(velocity, size, axis=0)
+    explained = _normal_equations(len(velocity), size, first, last).explained(spectrum)
     best = int(explained.argmax())
-    about_double = (grid > 1.6 * grid[best]) & (grid < 2.4 * grid[best])
-    higher = int(np.where(about_double, explained, 0.0).argmax())
-    (offset, top), (higher_offset, higher_top) = (_peak(explained, at) for at in (best, higher))
-    if about_double[higher] and higher_top >= _OCTAVE * top:
-        best, offset = higher, higher_offset
-    return float(grid[best] + offset) * spacing_hz
+    offset, top = _peak(explained, best)
+    doubles = slice(round(1.6 * (first + best)) - first, round(2.4 * (first + best)) - first + 1)
+    if explained[doubles].size:
+        higher = doubles.start + int(explained[doubles].argmax())
+        higher_offset, higher_top = _peak(explained, higher)
+        if higher_top >= _OCTAVE * top:
+            best, offset = higher, higher_offset
+    return (first + best + offset) * spacing_hz
 
 
-def _explained_by_two_harmonics(values: np.ndarray, grid: np.ndarray, size: int) -> np.ndarray:
-    """Return the sum of squares that mean, first and second harmonic explain, for each of a grid.
+class _NormalEquations(NamedTuple):
+    """Least squares of mean, first and second harmonic at each frequency of a grid.
 
-    Time runs from the middle, where cosines are orthogonal to sines.
+    Time runs from the middle, where cosines are orthogonal to sines. They depend on the number of
+    samples only, so walks of one length share them.
     """
-    n = len(values)
-    spectrum = np.fft.rfft(values, size, axis=0)
+
+    harmonics: np.ndarray
+    turns: np.ndarray
+    inverses: np.ndarray
+
+    def explained(self, spectrum: np.ndarray) -> np.ndarray:
+        """Return the sum of squares explained at each frequency, over all columns."""
+        turned = spectrum[self.harmonics] * self.turns[..., None]
+        explained = np.zeros(turned.shape[1])
+        for b, weights in zip((np.real(turned), np.imag(turned)), self.inverses, strict=True):
+            squares = np.einsum("hfc,hfc->hf", b, b)
+            explained += np.einsum("hf,hf->f", weights[:2], squares)
+            explained += weights[2] * np.einsum("fc,fc->f", b[0], b[1])
+        return explained
+
+
+@lru_cache(maxsize=16)
+def _normal_equations(n: int, size: int, first: int, last: int) -> _NormalEquations:
+    grid = np.arange(first, last + 1)
     theta = 2 * np.pi / size * grid
-
-    def sums(harmonic: int) -> tuple[np.ndarray, np.ndarray]:
-        turned = spectrum[harmonic * grid] * np.exp(0.5j * (n - 1) * harmonic * theta)[:, None]
-        return turned.real, turned.imag
-
-    (cos1, sin1), (cos2, sin2) = sums(1), sums(2)
     d1, d2, d3, d4 = (np.sin(n * h / 2 * theta) / np.sin(h / 2 * theta) for h in (1, 2, 3, 4))
-    even = _explained(
-        (n + d2) / 2 - d1**2 / n, (d1 + d3) / 2 - d1 * d2 / n, (n + d4) / 2 - d2**2 / n, cos1, cos2
-    )
-    odd = _explained((n - d2) / 2, (d1 - d3) / 2, (n - d4) / 2, sin1, sin2)
-    return even + odd
+    even = _inverse((n + d2) / 2 - d1**2 / n, (d1 + d3) / 2 - d1 * d2 / n, (n + d4) / 2 - d2**2 / n)
+    odd = _inverse((n - d2) / 2, (d1 - d3) / 2, (n - d4) / 2)
+    turns = np.exp(0.5j * (n - 1) * np.multiply.outer([1, 2], theta))
+    return _NormalEquations(np.multiply.outer([1, 2], grid), turns, np.stack([even, odd]))
 
 
-def _explained(
-    g11: np.ndarray, g12: np.ndarray, g22: np.ndarray, b1: np.ndarray, b2: np.ndarray
-) -> np.ndarray:
-    """Return b' inv(G) b for 2 x 2 normal matrices G, summed over columns."""
-    b11, b12, b22 = (np.einsum("fc,fc->f", b, c) for b, c in ((b1, b1), (b1, b2), (b2, b2)))
-    return (g22 * b11 - 2 * g12 * b12 + g11 * b22) / (g11 * g22 - g12**2)
+def _inverse(g11: np.ndarray, g12: np.ndarray, g22: np.ndarray) -> np.ndarray:
+    """Weights of b1 b1, b2 b2 and b1 b2 in b' inv(G) b, for 2 x 2 matrices G."""
+    return np.stack([g22, g11, -2 * g12]) / (g11 * g22 - g12**2)
 
 
 def _peak(values: np.ndarray, peak: int) -> tuple[float, float]:
@@ -205,14 +225,12 @@ def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool)
     n = len(scores)
     reach = np.pi / n
     lowest, highest = angle - reach, angle + reach
-    previous = reach
     for _ in range(_MAX_STEPS):
         step = _gauss_newton_step(scores, angle, n_harmonics, trend=trend)
         step = min(max(step, -reach / 2), reach / 2)
         angle = min(max(angle + step, lowest), highest)
-        if abs(step) * min(abs(step / previous), 1) < _CONVERGED * angle:
+        if abs(step) < _CONVERGED * angle:
             break
-        previous = step
     return angle
 
 
@@ -228,13 +246,15 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
     n_basis = n_fixed + 2 * n_harmonics
     rows = np.empty((n_basis + 2 * n_harmonics, n))
     rows[0] = 1
-    rows[1] = frames / n
+    if trend:
+        rows[1] = frames / n
     turning = power = rotations(angle, n)
     for h in range(1, n_harmonics + 1):
         cos, sin = n_fixed + 2 * h - 2, n_fixed + 2 * h - 1
         rows[cos], rows[sin] = np.real(power), np.imag(power)
-        np.multiply(rows[sin], -h * frames, out=rows[cos + 2 * n_harmonics])
-        np.multiply(rows[cos], h * frames, out=rows[sin + 2 * n_harmonics])
+        faster = h * frames
+        np.multiply(rows[cos], faster, out=rows[sin + 2 * n_harmonics])
+        np.multiply(rows[sin], -faster, out=rows[cos + 2 * n_harmonics])
         power = power * turning
     products, with_data = rows @ rows.T, rows @ scores
     inverse = np.linalg.inv(products[:n_basis, :n_basis])
