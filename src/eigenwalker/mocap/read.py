@@ -15,9 +15,15 @@ from eigenwalker.mocap.asf_amc import looks_like_acclaim, read_asf_amc
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
 from eigenwalker.mocap.content import content_of
+from eigenwalker.mocap.mot import looks_like_mot, read_mot
 from eigenwalker.mocap.netcdf import looks_like_netcdf, read_netcdf
+from eigenwalker.mocap.pose_json import looks_like_json, read_pose_json
+from eigenwalker.mocap.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
+from eigenwalker.mocap.table import looks_like_table, read_table
+from eigenwalker.mocap.trc import looks_like_trc, read_trc
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
+from eigenwalker.mocap.vicon_csv import looks_like_vicon_csv, read_vicon_csv
 from eigenwalker.trajectories import MILLIMETRES
 
 
@@ -40,6 +46,14 @@ FORMATS = (
     Format("C3D", ".c3d", looks_like_c3d, read_c3d),
     Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, wants=("path", "rate_hz")),
     Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf),
+    Format("TRC", ".trc", looks_like_trc, read_trc, wants=("rate_hz",)),
+    Format("STO", ".sto", looks_like_mot, read_mot, wants=("rate_hz",)),
+    Format("MOT", ".mot", looks_like_mot, read_mot, wants=("rate_hz",)),
+    Format("Vicon CSV", ".csv", looks_like_vicon_csv, read_vicon_csv, wants=("rate_hz",)),
+    Format("Qualisys TSV", ".tsv", looks_like_qualisys_tsv, read_qualisys_tsv, wants=("rate_hz",)),
+    Format("JSON", ".json", looks_like_json, read_pose_json, wants=("rate_hz",)),
+    Format("table", ".csv", looks_like_table, read_table, wants=("path", "rate_hz")),
+    Format("table", ".txt", looks_like_table, read_table, wants=("path", "rate_hz")),
 )
 """Every format that is read. A reader takes the bytes of a file and its name as ``source``."""
 
@@ -102,12 +116,12 @@ def read_mocap(
             walk = form.read(content, source=path.name, unit=named, **wanted)
             return walk if "rate_hz" in wanted else _at_rate(walk, rate_hz)
     by_name = [form.name for form in FORMATS if form.suffix == path.suffix.lower()]
-    formats = " or ".join(form.name for form in FORMATS)
+    formats = ", ".join(dict.fromkeys(form.name for form in FORMATS))
     raise UnreadableFile(
         path.name,
-        f"a {by_name[0]} file, as it is called" if by_name else f"a {formats} file",
+        f"a {' or '.join(by_name)} file, as it is called" if by_name else f"a file of {formats}",
         f"one that begins with {content[:16]!r}",
-        AGAIN if by_name else f"export it as {formats}",
+        AGAIN if by_name else "export it as one of these",
     )
 
 

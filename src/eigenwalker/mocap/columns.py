@@ -1,0 +1,82 @@
+"""Columns called after points and axes (``nose_x``, ``Head X, Y, Z``) -> points."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+_UNIT = re.compile(r"[ _]*[\[(](mm|cm|m)[\])]$|_(mm|cm|m)$")
+_AXIS_AFTER = re.compile(
+    r"(?P<name>.+?)(?:[ _.:\-\[(]+[tp]?(?P<after>[xyzXYZ])[\])]?|(?P<glued>[XYZ]))"
+)
+_AXIS_BEFORE = re.compile(r"(?P<axis>[xyzXYZ])[ _.](?P<name>.+)")
+
+
+class Column(NamedTuple):
+    """A cell of a header: the point that it is about, if any, and the axis."""
+
+    name: str
+    axis: str
+
+
+class Points(NamedTuple):
+    """Points of a header, the columns of their x, y and z, and the columns of nothing else."""
+
+    names: list[str]
+    columns: list[tuple[int, int, int]]
+    others: list[int]
+
+
+def points_of(header: Sequence[str]) -> Points:
+    """Return the points whose three coordinates a header names, in the order of their first.
+
+    Parameters
+    ----------
+    header : sequence of str
+        Cells such as ``nose_x``, ``Head (X)``, ``noseX``, ``x_nose``, ``LASI_tx``; a cell that is
+        an axis only belongs to the point named before it.
+
+    Returns
+    -------
+    Points
+
+    Examples
+    --------
+    >>> points_of(["time", "Foot Left X", "Y", "Z", "nose_x", "nose_y", "nose_z", "max"])
+    Points(names=['Foot Left', 'nose'], columns=[(1, 2, 3), (4, 5, 6)], others=[0, 7])
+
+    """
+    found: dict[str, dict[str, int]] = {}
+    order: list[str] = []
+    last = ""
+    for index, cell in enumerate(header):
+        column = _column(cell, last)
+        if column is None:
+            continue
+        last = column.name
+        name = last
+        while column.axis in found.get(name, {}):  # another point of the same name
+            name += " again"
+        if name not in found:
+            found[name] = {}
+            order.append(name)
+        found[name][column.axis] = index
+    whole = [name for name in order if len(found[name]) == 3]
+    columns = [(found[name]["x"], found[name]["y"], found[name]["z"]) for name in whole]
+    taken = {column for triple in columns for column in triple}
+    others = [index for index in range(len(header)) if index not in taken]
+    return Points([name.removesuffix(" again") for name in whole], columns, others)
+
+
+def _column(cell: str, last: str) -> Column | None:
+    """Return what a cell of a header is about; None for anything but a coordinate."""
+    cell = cell.strip()[:200]
+    if cell.lower() in ("x", "y", "z"):
+        return Column(last, cell.lower()) if last else None
+    cell = _UNIT.sub("", cell)
+    if hit := _AXIS_AFTER.fullmatch(cell):
+        return Column(hit["name"], (hit["after"] or hit["glued"]).lower())
+    if hit := _AXIS_BEFORE.fullmatch(cell):
+        return Column(hit["name"], hit["axis"].lower())
+    return None
