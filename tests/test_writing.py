@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import eigenwalker as ew
+from eigenwalker import cli
 from eigenwalker.mocap import UnreadableFile, read_mocap
 from eigenwalker.mocap.netcdf import read_netcdf
 from eigenwalker.skeleton import JOINTS
@@ -339,3 +340,23 @@ def test_what_a_format_cannot_hold_is_refused(walk, gappy, tmp_path: Path):
         write_mocap(many, tmp_path / "walk.c3d")
     with pytest.raises(ValueError, match="rename the markers"):
         write_mocap(walk.assign_coords(marker=["a\tb", *JOINTS.markers[1:]]), tmp_path / "walk.trc")
+
+
+# ---------------------------------------------------------------- the command line
+
+
+def test_convert_writes_markers_or_joints(captures: Path, tmp_path: Path, monkeypatch, capsys):
+    capture = captures / "cmu/02_01.c3d"
+    for words in (["walk.nc"], ["joints.nc", "--joints"], ["walk.bvh"]):
+        output, *options = words
+        line = ["eigenwalker", "convert", str(capture), str(tmp_path / output), *options]
+        monkeypatch.setattr("sys.argv", line)
+        with pytest.raises(SystemExit) as end:
+            cli.main()
+        assert end.value.code == 0
+    assert capsys.readouterr().out.count("Written: ") == 3
+    markers, joints = (read_mocap(tmp_path / name) for name in ("walk.nc", "joints.nc"))
+    assert {"LFHD", "LTOE"} <= set(markers.marker.values)
+    assert {*JOINTS.markers, "left_toe"} <= set(joints.marker.values)
+    bones = read_mocap(tmp_path / "walk.bvh", unit="cm").sel(marker=joints.marker.values)
+    assert float(abs(bones - joints).max()) < 25

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from eigenwalker import cli_data
+
 if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
@@ -30,6 +32,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     help="How people walk: from captures to a model, classifiers, and walkers of any trait.",
 )
+app.add_typer(cli_data.app, name="data")
 
 SOME_REFUSED = 1
 FAILED = 2
@@ -114,6 +117,27 @@ def info(
     width = max(len(name) for name in facts) + 2
     for name, value in facts.items():
         print(f"{name:<{width}}{_laid_out(value, width)}")
+
+
+@app.command()
+def convert(
+    capture: Annotated[Path, typer.Argument(help="A capture, of any format that is read.")],
+    output: Annotated[Path, typer.Argument(help="File to write: .bvh, .c3d, .csv, .nc or .trc.")],
+    joints: Annotated[
+        bool, typer.Option("--joints", help="Write joints, not markers; .bvh always holds joints.")
+    ] = False,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of the capture, where it names none: mm, cm, m, ...")
+    ] = None,
+) -> None:
+    """Write a capture in another format."""
+    from eigenwalker.mocap import read_mocap, virtual_markers
+    from eigenwalker.writing import write_mocap
+
+    walk = read_mocap(capture, unit=unit)
+    if joints or output.suffix.lower() == ".bvh":
+        walk = virtual_markers(walk, joints="full")
+    print(f"Written: {write_mocap(walk, output)}")
 
 
 @app.command()
