@@ -1,0 +1,74 @@
+"""The numbers in a MATLAB file, by name.
+
+Run in a child process (`child_process`), as SciPy does not promise to survive damaged files; so it
+imports nothing of this package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+DEEPEST = 8
+MOST_NUMBERS = 50_000_000
+
+
+def mat_arrays(path: str) -> dict[str, np.ndarray]:
+    """Return the arrays of real numbers in a MATLAB file, those in structs as ``struct.field``.
+
+    Parameters
+    ----------
+    path : str
+        A file of version 4, 5 (-v6, -v7) or 7.3.
+
+    Returns
+    -------
+    dict of str to array of float
+        In MATLAB's order of dimensions, one-element dimensions kept.
+
+    """
+    with open(path, "rb") as file:
+        start = file.read(128)
+    if start.startswith((b"MATLAB 7.3", b"\x89HDF")):
+        return _of_hdf5(path)
+    from scipy.io import loadmat, whosmat
+
+    for name, shape, _ in whosmat(path):
+        if np.prod([float(size) for size in shape]) > MOST_NUMBERS:
+            raise ValueError(f"{name} has the shape {shape}")
+    variables = loadmat(path, struct_as_record=False, chars_as_strings=False)
+    return dict(_numeric({n: v for n, v in variables.items() if not n.startswith("__")}))
+
+
+def _numeric(variables: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield the numeric arrays among variables, and those in structs of one element."""
+    for name, value in variables.items():
+        if not isinstance(value, np.ndarray):
+            continue
+        fields = getattr(value.flat[0], "_fieldnames", None) if value.size == 1 else None
+        if value.dtype.kind in "fiub" and value.size:
+            yield name, value.astype(float)
+        elif fields and depth < DEEPEST:
+            inner = {f"{name}.{field}": getattr(value.flat[0], field) for field in fields}
+            yield from _numeric(inner, depth + 1)
+
+
+def _of_hdf5(path: str) -> dict[str, np.ndarray]:
+    import h5py
+
+    found: dict[str, np.ndarray] = {}
+
+    def keep(name: str, item: object) -> None:
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiub" or not item.size:
+            return
+        if name.startswith("#") or bytes(item.attrs.get("MATLAB_class", b"")) == b"char":
+            return  # cells, and texts, which MATLAB stores as numbers
+        if item.size > MOST_NUMBERS:
+            raise ValueError(f"{name} has the shape {item.shape}")
+        found[name.replace("/", ".")] = np.asarray(item[()], dtype=float).T
+
+    with h5py.File(path, "r") as file:
+        file.visititems(keep)
+    return found
