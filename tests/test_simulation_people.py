@@ -180,14 +180,17 @@ def test_patterns_are_of_the_fifteen_joints():
         random_pattern("p0", size_mm=1)
 
 
-def test_captures_are_written_as_c3d_with_a_table(tmp_path):
+@pytest.mark.parametrize("format", ["c3d", "trc", "csv"])
+def test_captures_are_written_with_a_table_and_read_again(tmp_path, format):
     captures = {"n_women": 1, "n_men": 1, "seed": 2, "markers": "skin", "duration_s": 3}
-    table = write_captures(simulate_captures(gap_share=0.02, **captures), tmp_path / "new")
+    made = simulate_captures(gap_share=0.02, **captures)
+    table = write_captures(made, tmp_path / "new", format=format)
     traits = pd.read_csv(table)
     assert list(traits) == ["file", *TRAITS]
     expected, _ = next(simulate_captures(gap_share=0.02, **captures))
-    read = read_mocap(table.parent / traits["file"][0])
+    unit = {"unit": "mm"} if format == "csv" else {}  # a plain table names none
+    read = read_mocap(table.parent / traits["file"][0], **unit)
     assert read.marker.values.tolist() == expected.marker.values.tolist()
     np.testing.assert_allclose(read.values, expected.values, atol=1e-3)
-    with pytest.raises(ValueError, match="format='trc' is not known"):
-        write_captures([], tmp_path, format="trc")
+    with pytest.raises(ValueError, match="format='mot' is not known"):
+        write_captures([], tmp_path, format="mot")

@@ -351,8 +351,10 @@ def _drawn_legs(
         for name in ("hip_flexion", "pelvis_tilt", "knee_flexion", "ankle_dorsiflexion")
     )
     thigh = hip - tilt
+    straight = knee[0] + knee[1::2].sum()  # at heel strike; the factor scales what is beyond
+    knee *= person["knee_swing_factor"]
+    knee[0] += straight * (1 - person["knee_swing_factor"])
     knee = later(knee, person["knee_lag"])
-    knee[1:] *= person["knee_swing_factor"]
     thigh[0] += np.radians(person["thigh_deg"])
     knee[0] += np.radians(person["knee_deg"])
     return thigh, knee, knee - thigh - ankle

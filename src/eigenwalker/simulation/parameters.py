@@ -93,7 +93,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "knee_swing_factor": _alike(
             1.08,
             0.08,
-            f"{SCHWARTZ}: swing maximum 60.5 (4.8) in children; adults about 65, Winter 1991",
+            f"{SCHWARTZ}: swing maximum 60.5 (4.8), in adults about 65",
         ),
         "foot_progression_deg": _alike(-7.3, 5, f"{SCHWARTZ}: SD 7.2"),
         # Left less right.

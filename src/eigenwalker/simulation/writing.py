@@ -16,11 +16,16 @@ from eigenwalker.simulation.traits import TRAITS
 from eigenwalker.trajectories import sampling_rate
 
 
+_TRC_KEYS = (
+    "DataRate CameraRate NumFrames NumMarkers Units OrigDataRate OrigDataStartFrame OrigNumFrames"
+)
+
+
 def write_captures(
     captures: Iterable[tuple[xr.DataArray, pd.Series]],
     folder: str | Path,
     *,
-    format: Literal["c3d", "csv"] = "c3d",
+    format: Literal["c3d", "trc", "csv"] = "c3d",
 ) -> Path:
     """Write captures into a folder, with a table of the traits and one of the truth.
 
@@ -32,8 +37,9 @@ def write_captures(
         Such as `simulate_captures` yields, best with ``markers="skin"``.
     folder : path
         Made if need be.
-    format : {"c3d", "csv"}
-        C3D as motion capture systems write it, or a table with a column for each coordinate.
+    format : {"c3d", "trc", "csv"}
+        C3D or TRC as motion capture systems write them, or a table with a column for each
+        coordinate, in millimetres.
 
     Returns
     -------
@@ -57,7 +63,7 @@ def write_captures(
     ['traits.csv', 'truth.csv', 'walker_0001.csv', 'walker_0002.csv']
 
     """
-    writers = {"c3d": _write_c3d, "csv": _write_csv}
+    writers = {"c3d": _write_c3d, "trc": _write_trc, "csv": _write_csv}
     if format not in writers:
         raise ValueError(f"format={format!r} is not known; give one of {sorted(writers)}.")
     folder = Path(folder)
@@ -78,6 +84,24 @@ def _write_csv(walk: xr.DataArray, path: Path) -> None:
     table = pd.DataFrame(walk.values.reshape(len(walk), -1), columns=columns)
     table.insert(0, "time_s", walk.time.values)
     table.round(5).to_csv(path, index=False)
+
+
+def _write_trc(walk: xr.DataArray, path: Path) -> None:
+    rate, names = f"{sampling_rate(walk):g}", [str(name) for name in walk.marker.values]
+    n_frames = str(len(walk))
+    lines = [
+        ["PathFileType", "4", "(X/Y/Z)", path.name],
+        _TRC_KEYS.split(),
+        [rate, rate, n_frames, str(len(names)), "mm", rate, "1", n_frames],
+        ["Frame#", "Time", *(cell for name in names for cell in (name, "", ""))],
+        ["", "", *(f"{axis}{n}" for n in range(1, len(names) + 1) for axis in "XYZ")],
+        [],
+    ]
+    table = walk.values.reshape(len(walk), -1)
+    for number, (time, row) in enumerate(zip(walk.time.values, table, strict=True), start=1):
+        seen = ["" if np.isnan(value) else f"{value:.5f}" for value in row]
+        lines.append([str(number), f"{time:.6f}", *seen])
+    path.write_text("\n".join("\t".join(line) for line in lines) + "\n", encoding="utf-8")
 
 
 def _write_c3d(walk: xr.DataArray, path: Path) -> None:
