@@ -50,8 +50,10 @@ def test_a_guessed_unit_is_warned_of_by_a_name_that_can_be_silenced(tmp_path: Pa
         ("empty.bvh", b"", "empty"),
         ("prose.bvh", b"Dear colleague", "BVH file, as it is called"),
         ("prose.c3d", b"Dear colleague", "C3D file, as it is called"),
-        ("table.trc", b"PathFileType\t4", "export it as BVH or C3D"),
-        ("bytes", bytes(range(256)), "BVH or C3D"),
+        ("table.trc", b"Dear colleague", "TRC file, as it is called"),
+        ("table.csv", b"Dear colleague", "Vicon CSV or table file, as it is called"),
+        ("prose.doc", b"Dear colleague", "export it as one of these"),
+        ("bytes", bytes(range(256)), "BVH, C3D"),
     ],
 )
 def test_a_file_of_another_kind_is_refused(tmp_path: Path, name, content, told):

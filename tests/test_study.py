@@ -104,7 +104,7 @@ def test_no_path_leads_out_of_the_folder(folder) -> None:
 
 
 def test_an_empty_folder_and_no_folder_are_refused(tmp_path) -> None:
-    with pytest.raises(ValueError, match=r"no captures \(\*\.bvh, \*\.c3d\)"):
+    with pytest.raises(ValueError, match=r"no captures \(.*\*\.bvh, \*\.c3d"):
         fit_folder(tmp_path)
     with pytest.raises(ValueError, match="is no folder"):
         fit_folder(tmp_path / "none")

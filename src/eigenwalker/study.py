@@ -15,13 +15,13 @@ from threadpoolctl import threadpool_limits
 
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.gait import in_place
-from eigenwalker.mocap import FORMATS, read_mocap, virtual_markers
+from eigenwalker.mocap import FORMATS, is_capture, read_mocap, virtual_markers
 from eigenwalker.population import FLAG, Population
 from eigenwalker.quality import assess
 from eigenwalker.walker import Form, Walker
 
 DECOMPOSE = {"eigenposture": decompose_pca, "fourier": decompose_fourier}
-SUFFIXES = tuple(form.suffix for form in FORMATS)
+SUFFIXES = tuple(dict.fromkeys(form.suffix for form in FORMATS))
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
 
@@ -188,9 +188,7 @@ def _listed(
         table = _traits_table(traits)
     else:
         names = sorted(
-            path.relative_to(folder).as_posix()
-            for path in folder.rglob("*")
-            if path.suffix.lower() in SUFFIXES and path.is_file()
+            path.relative_to(folder).as_posix() for path in folder.rglob("*") if is_capture(path)
         )
         table = pd.DataFrame({FILE: names})
     if table.empty:

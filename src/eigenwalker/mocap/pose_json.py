@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -50,12 +52,19 @@ _POINTS = (
 _TIMES = {"time": 1.0, "time_s": 1.0, "timestamp": 1.0, "timestamp_s": 1.0, "t": 1.0}
 _TIMES |= {"time_ms": 1e-3, "timestamp_ms": 1e-3}
 _RATES = ("rate_hz", "fps", "frame_rate", "framerate", "sampling_rate")
+_WORDS = re.compile(rb'"(frames|[^"]*landmarks|[^"]*keypoints[^"]*|[^"]+_z)"\s*:', re.IGNORECASE)
 _PICTURE = "export 3D points (world landmarks, in metres)"
 
 
 def looks_like_json(content: bytes) -> bool:
     """Return whether a file begins as JSON documents do."""
     return content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[") and is_text(content)
+
+
+def holds_poses(beginning: bytes, path: Path) -> bool:
+    """Return whether a JSON document is one of points, by the words in its beginning."""
+    del path
+    return looks_like_json(beginning) and _WORDS.search(beginning) is not None
 
 
 def read_pose_json(

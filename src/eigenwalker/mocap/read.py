@@ -17,21 +17,25 @@ from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
 from eigenwalker.mocap.content import content_of
 from eigenwalker.mocap.mot import looks_like_mot, read_mot
 from eigenwalker.mocap.netcdf import looks_like_netcdf, read_netcdf
-from eigenwalker.mocap.pose_json import looks_like_json, read_pose_json
+from eigenwalker.mocap.pose_json import holds_poses, looks_like_json, read_pose_json
 from eigenwalker.mocap.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
-from eigenwalker.mocap.table import looks_like_table, read_table
+from eigenwalker.mocap.table import holds_points, looks_like_table, read_table
 from eigenwalker.mocap.trc import looks_like_trc, read_trc
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
 from eigenwalker.mocap.vicon_csv import looks_like_vicon_csv, read_vicon_csv
 from eigenwalker.trajectories import MILLIMETRES
 
+BEGINNING = 100_000
+"""Bytes of a file that tell whether it is meant as a capture."""
+
 
 class Format(NamedTuple):
     """A kind of file: what it is called, how to know it, and who reads it.
 
     `wants` names what its reader takes beside the bytes: ``"path"`` where a file beside it is
-    needed, ``"rate_hz"`` where files may name no rate.
+    needed, ``"rate_hz"`` where files may name no rate. Where other files have the suffix too,
+    `among_others` tells from the beginning of a file and its path whether it is meant as a capture.
     """
 
     name: str
@@ -39,21 +43,37 @@ class Format(NamedTuple):
     looks_like: Callable[[bytes], bool]
     read: Callable[..., xr.DataArray]
     wants: tuple[str, ...] = ()
+    among_others: Callable[[bytes, Path], bool] | None = None
 
 
+def _by(looks_like: Callable[[bytes], bool]) -> Callable[[bytes, Path], bool]:
+    return lambda beginning, _path: looks_like(beginning)
+
+
+_RATE = ("rate_hz",)
+_PATH_AND_RATE = ("path", "rate_hz")
 FORMATS = (
     Format("BVH", ".bvh", looks_like_bvh, read_bvh),
     Format("C3D", ".c3d", looks_like_c3d, read_c3d),
-    Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, wants=("path", "rate_hz")),
-    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf),
-    Format("TRC", ".trc", looks_like_trc, read_trc, wants=("rate_hz",)),
-    Format("STO", ".sto", looks_like_mot, read_mot, wants=("rate_hz",)),
-    Format("MOT", ".mot", looks_like_mot, read_mot, wants=("rate_hz",)),
-    Format("Vicon CSV", ".csv", looks_like_vicon_csv, read_vicon_csv, wants=("rate_hz",)),
-    Format("Qualisys TSV", ".tsv", looks_like_qualisys_tsv, read_qualisys_tsv, wants=("rate_hz",)),
-    Format("JSON", ".json", looks_like_json, read_pose_json, wants=("rate_hz",)),
-    Format("table", ".csv", looks_like_table, read_table, wants=("path", "rate_hz")),
-    Format("table", ".txt", looks_like_table, read_table, wants=("path", "rate_hz")),
+    Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, _PATH_AND_RATE),
+    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf, among_others=_by(looks_like_netcdf)),
+    Format("TRC", ".trc", looks_like_trc, read_trc, _RATE),
+    Format("STO", ".sto", looks_like_mot, read_mot, _RATE),
+    Format("MOT", ".mot", looks_like_mot, read_mot, _RATE),
+    Format(
+        "Vicon CSV", ".csv", looks_like_vicon_csv, read_vicon_csv, _RATE, _by(looks_like_vicon_csv)
+    ),
+    Format(
+        "Qualisys TSV",
+        ".tsv",
+        looks_like_qualisys_tsv,
+        read_qualisys_tsv,
+        _RATE,
+        _by(looks_like_qualisys_tsv),
+    ),
+    Format("JSON", ".json", looks_like_json, read_pose_json, _RATE, holds_poses),
+    Format("table", ".csv", looks_like_table, read_table, _PATH_AND_RATE, holds_points),
+    Format("table", ".txt", looks_like_table, read_table, _PATH_AND_RATE, holds_points),
 )
 """Every format that is read. A reader takes the bytes of a file and its name as ``source``."""
 
@@ -123,6 +143,33 @@ def read_mocap(
         f"one that begins with {content[:16]!r}",
         AGAIN if by_name else "export it as one of these",
     )
+
+
+def is_capture(path: Path) -> bool:
+    """Return whether a file in a folder is meant as a capture, sound or not.
+
+    Its suffix tells, and for suffixes that other files have too, such as ``.csv``, what it begins
+    with.
+
+    Parameters
+    ----------
+    path : Path
+        A file.
+
+    Returns
+    -------
+    bool
+
+    """
+    forms = [form for form in FORMATS if form.suffix == path.suffix.lower()]
+    if not forms or not path.is_file():
+        return False
+    try:
+        with path.open("rb") as file:
+            beginning = file.read(BEGINNING)
+    except OSError:
+        return True  # to be refused with the reason
+    return any(form.among_others is None or form.among_others(beginning, path) for form in forms)
 
 
 def _at_rate(walk: xr.DataArray, rate_hz: float | None) -> xr.DataArray:

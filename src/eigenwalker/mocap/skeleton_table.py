@@ -80,7 +80,7 @@ def read_skeleton_table(
     lines = lines_of(content, source)
     head = next((at for at, line in enumerate(lines) if line.strip() and line[0] != "#"), 0)
     separator = separator_of(lines[head])
-    header, first = _header(lines, head, separator)
+    header, first = header_of(lines, head, separator)
     points = points_of(header)
     if len(points.names) < FEWEST_POINTS:
         raise _no_points(header, source)
@@ -166,7 +166,7 @@ def trajectories_of(
     return walk
 
 
-def _header(lines: list[str], at: int, separator: str | None) -> tuple[list[str], int]:
+def header_of(lines: list[str], at: int, separator: str | None) -> tuple[list[str], int]:
     """Return the names of the columns and the line of the first frame.
 
     Names may stand in one line and x, y, z in the next.

@@ -11,7 +11,7 @@ from eigenwalker.mocap.content import beside
 from eigenwalker.mocap.data3d import looks_like_data3d, read_data3d
 from eigenwalker.mocap.described_table import read_described_table
 from eigenwalker.mocap.rows import cells, is_text, lines_of, separator_of
-from eigenwalker.mocap.skeleton_table import read_skeleton_table
+from eigenwalker.mocap.skeleton_table import FEWEST_POINTS, header_of, read_skeleton_table
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import Unit
 
@@ -39,6 +39,18 @@ def looks_like_table(content: bytes) -> bool:
     return len(words) > 1 and (
         separator is not None or _numeric(words) or len(points_of(words).names) > 0
     )
+
+
+def holds_points(beginning: bytes, path: Path) -> bool:
+    """Return whether a table is one of points: named so, described beside, or ``data3d``."""
+    if not looks_like_table(beginning):
+        return False
+    if beside(path, DESCRIPTION):
+        return True
+    lines = [line for line in lines_of(beginning, "")[:100] if line.strip() and line[0] != "#"]
+    header, _ = header_of(lines, 0, separator_of(lines[0]))
+    numeric = _numeric(cells(lines[0], separator_of(lines[0])))
+    return (looks_like_data3d(lines) and numeric) or len(points_of(header).names) >= FEWEST_POINTS
 
 
 def read_table(
@@ -80,9 +92,10 @@ def read_table(
             content, source=source, description=description, unit=unit, rate_hz=rate_hz
         )
     lines = lines_of(content, source)
-    if looks_like_data3d(lines):
+    numeric = _numeric(cells(lines[0], separator_of(lines[0])))
+    if numeric and looks_like_data3d(lines):
         return read_data3d(content, source=source, unit=unit, rate_hz=rate_hz)
-    if _numeric(cells(lines[0], separator_of(lines[0]))):
+    if numeric:
         raise UnreadableFile(
             source,
             "a line of names above the numbers, or a description beside the file",
