@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.linalg import eigh
 from scipy.linalg.blas import dsyrk  # pyright: ignore[reportAttributeAccessIssue] - untyped
+from scipy.linalg.lapack import dsyevr  # pyright: ignore[reportAttributeAccessIssue] - untyped
 
-from eigenwalker.gait import frequency_of_scores
-from eigenwalker.gait.frequency import rotations
+from eigenwalker.gait.frequency import frequency_of_centred, rotations
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 from eigenwalker.walker import CaptureFit, Form, Walker, shift_origin
 
@@ -193,16 +192,14 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     n_features = postures.shape[1]
     n_components = min(2 * n_harmonics, n_features)
     mean, scatter = _mean_and_scatter(postures)
-    largest = [n_features - n_components, n_features - 1]
-    power, axes = eigh(scatter, subset_by_index=largest, check_finite=False)
-    axes = np.ascontiguousarray(axes[:, ::-1])
+    power, axes = _largest_eigenpairs(scatter, n_components)
     scores = postures @ axes
     scores -= mean @ axes
-    frequency_hz = frequency_of_scores(scores, rate_hz, n_harmonics=n_harmonics)
+    frequency_hz = frequency_of_centred(scores, rate_hz, n_harmonics=n_harmonics)
 
     sines = _sines(len(postures), frequency_hz / rate_hz, n_harmonics)[1:]
     harmonics, amplitudes, phases, sine_r2 = _fit_sines(
-        sines @ scores, sines @ sines.T, np.maximum(power[::-1], 0.0)
+        sines @ scores, sines @ sines.T, np.maximum(power, 0.0)
     )
     return Eigenpostures(
         mean=mean,
@@ -234,6 +231,15 @@ def _mean_and_scatter(postures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     offset = np.full(n, 1 / n) @ shifted
     scatter = dsyrk(1.0, shifted.T, lower=True) - n * np.outer(offset, offset)
     return postures[0] + offset, scatter
+
+
+def _largest_eigenpairs(scatter: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Largest eigenvalues, and their eigenvectors as columns, of a lower triangle."""
+    d = len(scatter)
+    values, vectors, _, _, failed = dsyevr(scatter, range="I", il=d - n + 1, iu=d, lower=1)
+    if failed:
+        raise ValueError("The principal components of this walk could not be found.")
+    return values[n - 1 :: -1], np.ascontiguousarray(vectors[:, n - 1 :: -1])
 
 
 def fourier_of(
@@ -288,8 +294,8 @@ def _fit_sines(
     From the products of the sines with the scores and with one another, and the scores' squares.
     """
     sine, cosine = slice(0, None, 2), slice(1, None, 2)
-    ss, cc = np.diagonal(gram)[sine, None], np.diagonal(gram)[cosine, None]
-    sc = np.diagonal(gram, 1)[sine, None]
+    ss, cc = gram.diagonal()[sine, None], gram.diagonal()[cosine, None]
+    sc = gram.diagonal(1)[sine, None]
     with_sine, with_cosine = products[sine], products[cosine]
     determinant = ss * cc - sc**2
     on_sine = (cc * with_sine - sc * with_cosine) / determinant

@@ -109,7 +109,35 @@ def frequency_of_scores(
     5.0
 
     """
-    n_frames = len(scores)
+    least = 1e-9 * max(1.0, np.abs(scores[:1]).max(initial=0))
+    centred = scores - np.full(len(scores), 1 / max(len(scores), 1)) @ scores
+    return frequency_of_centred(
+        centred, rate_hz, n_harmonics=n_harmonics, bounds_hz=bounds_hz, trend=trend, least=least
+    )
+
+
+def frequency_of_centred(
+    centred: np.ndarray,
+    rate_hz: float,
+    *,
+    n_harmonics: int = 2,
+    bounds_hz: tuple[float, float] = BOUNDS_HZ,
+    trend: bool = False,
+    least: float = 1e-9,
+) -> float:
+    """Return what `frequency_of_scores` does, of columns whose mean is 0.
+
+    Parameters
+    ----------
+    centred : array of shape (time, component)
+        Evenly sampled.
+    rate_hz, n_harmonics, bounds_hz, trend
+        As there.
+    least : float
+        Root mean square below which nothing moves.
+
+    """
+    n_frames = len(centred)
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")
     lowest = max(bounds_hz[0], _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
@@ -118,8 +146,6 @@ def frequency_of_scores(
             f"{n_frames} frames at {rate_hz:.4g} Hz last {n_frames / rate_hz:.3g} s, too short for "
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
         )
-    centred = scores - np.full(n_frames, 1 / n_frames) @ scores
-    least = 1e-9 * max(1.0, np.abs(scores[0]).max())
     if not np.vdot(centred, centred) > n_frames * least**2:
         raise ValueError("Nothing moves here, so there is no stride frequency.")
     block = max(1, int(rate_hz / _COARSE_RATE_HZ))
