@@ -128,7 +128,7 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     """
     path = Path(path)
     try:
-        content = json.loads(content_of(path, most_bytes=_MOST_BYTES))
+        content = json.loads(content_of(path, most_bytes=_MOST_BYTES), parse_int=float)
     except (ValueError, RecursionError) as error:
         if isinstance(error, UnreadableFile):
             raise
@@ -155,7 +155,7 @@ def _tables(content: Any) -> dict[str, Any] | None:
 
 def _table(numbers: Any, key: str, path: Path) -> np.ndarray:
     sound = isinstance(numbers, list) and len(numbers) == _N_NUMBERS
-    if not sound or not all(type(number) in (int, float) for number in numbers):
+    if not sound or not all(isinstance(number, float) for number in numbers):
         came = f"{len(numbers)}, or others" if isinstance(numbers, list) else "something else"
         raise UnreadableFile(path.name, f"{_N_NUMBERS} numbers as {key!r}", came)
     table = np.array(numbers, dtype=float).reshape(len(SIN_FIRST), _N_ROWS).T
