@@ -80,15 +80,12 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
 
 
 def _dataset(content: bytes, source: str) -> xr.Dataset:
+    file = io.BytesIO(content)
     try:
-        with (
-            warnings.catch_warnings(),
-            xr.open_dataset(
-                io.BytesIO(content), engine="scipy", decode_times=False, cache=False
-            ) as opened,
-        ):
-            warnings.simplefilter("ignore")
-            return opened.load()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what damage does to names and numbers
+            with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
+                return opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
         raise UnreadableFile(source, _EXPECTED, f"a damaged file ({error})") from error
 
@@ -97,9 +94,10 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
     position = dataset["position"].transpose(*DIMS)
     if position["axis"].values.tolist() != list(AXES) or position.attrs.get("units") != "mm":
         raise ValueError("axes or units are none of ours")
-    values = np.asarray(position.values, dtype=float) * millimetres
+    values = np.asarray(position.values, dtype=float)
     if (np.abs(values) > MOST_DISTANT).any():
         raise ValueError("infinite or absurd positions")
+    values = values * millimetres
     time = np.asarray(position["time"].values, dtype=float)
     if len(time) < 1 or not (np.diff(time) > 0).all():
         raise ValueError("times that do not go on")
