@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from eigenwalker.mocap import UnreadableFile
+from eigenwalker.mocap import UnreadableFile, read_mocap
 from eigenwalker.mocap.child_process import arrays_from_child
 from eigenwalker.mocap.mat import read_mat, read_mat_arrays
 from eigenwalker.mocap.mat_arrays import mat_arrays
@@ -222,3 +222,11 @@ def test_a_script_without_a_main_guard_is_not_run_again(tmp_path):
 def test_the_reader_runs_here_as_it_does_in_the_child(tmp_path, walk):
     savemat(tmp_path / "a.mat", {"walk": walk})
     np.testing.assert_array_equal(mat_arrays(str(tmp_path / "a.mat"))["walk"], walk)
+
+
+def test_a_matlab_file_read_as_a_capture_says_how_to_read_it(tmp_path, walk):
+    savemat(tmp_path / "a.mat", {"walk": walk})
+    savemat(tmp_path / "old.mat", {"walk": walk[:, 0]}, format="4")
+    for name in ("a.mat", "old.mat"):
+        with pytest.raises(UnreadableFile, match=r"a MATLAB file, .* read_mat\(path, variable"):
+            read_mocap(tmp_path / name)

@@ -86,8 +86,8 @@ def read_mocap(
     Parameters
     ----------
     path : str or path
-        A BVH or C3D file, or a motion (AMC) with its skeleton (ASF) beside it. What it holds
-        decides, not what it is called.
+        A file of any of the `FORMATS`, such as C3D, BVH, TRC, or a motion (AMC) with its skeleton
+        (ASF) beside it. What it holds decides, not what it is called.
     unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
         Unit of length, for files that name none (all BVH) or the wrong one. If left out, it is the
         one the file names, or else the one in which the body is as tall as people are; that
@@ -135,6 +135,10 @@ def read_mocap(
             wanted = {name: {"path": path, "rate_hz": rate_hz}[name] for name in form.wants}
             walk = form.read(content, source=path.name, unit=named, **wanted)
             return walk if "rate_hz" in wanted else _at_rate(walk, rate_hz)
+    if content.startswith(b"MATLAB") or path.suffix.lower() == ".mat":
+        raise UnreadableFile(
+            path.name, "a capture that says what it is", "a MATLAB file, which does not", _OF_MATLAB
+        )
     by_name = [form.name for form in FORMATS if form.suffix == path.suffix.lower()]
     formats = ", ".join(dict.fromkeys(form.name for form in FORMATS))
     raise UnreadableFile(
@@ -143,6 +147,12 @@ def read_mocap(
         f"one that begins with {content[:16]!r}",
         AGAIN if by_name else "export it as one of these",
     )
+
+
+_OF_MATLAB = (
+    "read an array of it by read_mat(path, variable, markers=..., rate_hz=...), walkers by "
+    "read_walkers_mat(path) or read_mm(path)"
+)
 
 
 def is_capture(path: Path) -> bool:
