@@ -11,6 +11,7 @@ import pytest
 
 import eigenwalker as ew
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.gait import in_place
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.population import FLAG, Population
 from eigenwalker.simulation import simulate_captures, simulate_population
@@ -58,7 +59,7 @@ def test_a_vector_walks_as_its_walker_does(people) -> None:
 
 def test_a_walker_of_ones_own_finds_its_place(people) -> None:
     captures = list(simulate_captures(6, 6, seed=3))
-    own = decompose_pca(captures[4][0])
+    own = decompose_pca(in_place(captures[4][0]))
     np.testing.assert_allclose(people.vector(own), people.X[4], atol=1e-6)
     with pytest.raises(ValueError, match="decompose it the same way"):
         people.vector(decompose_fourier(captures[4][0]))
@@ -150,7 +151,7 @@ def test_flagged_walkers_stay_but_shape_no_average(people) -> None:
     rng = np.random.default_rng(0)
     strange = captures[0][0] + rng.normal(scale=800, size=captures[0][0].shape)
     strange.attrs["units"] = "mm"
-    walkers = [decompose_pca(walk) for walk, _ in captures] + [decompose_pca(strange)]
+    walkers = [decompose_pca(in_place(walk)) for walk, _ in captures] + [decompose_pca(strange)]
     traits = pd.DataFrame([person for _, person in captures] + [captures[0][1]])
     flags = [""] * 12 + ["said by the quality report"]
     together = Population(walkers, traits.reset_index(drop=True).assign(**{FLAG: flags}))

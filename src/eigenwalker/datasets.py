@@ -7,6 +7,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from eigenwalker.gait import in_place
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_captures, simulate_population
 
@@ -48,13 +49,13 @@ def _built_in() -> Population:
 
 
 def built_in_capture() -> xr.DataArray:
-    """Return the simulated capture of the first woman of the built-in population.
+    """Return the walk of the first woman of the built-in population.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        The 15 joints in place, 12 s at 120 Hz.
+        Steady strides of the 15 joints in place, at 120 Hz.
 
     """
     capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0))
-    return capture
+    return in_place(capture)

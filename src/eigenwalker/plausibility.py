@@ -60,7 +60,7 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     Examples
     --------
     >>> people = ew.load_population()
-    >>> plausibility(people, people.average).limb_change.abs().max() < 1e-9
+    >>> bool(plausibility(people, people.average).limb_change.abs().max() < 1e-9)
     True
 
     """
