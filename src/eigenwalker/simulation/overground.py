@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eigenwalker.simulation.body import Body
-from eigenwalker.simulation.cycle import Pace
+from eigenwalker.simulation.pace import Pace
 from eigenwalker.simulation.playing import Angles
 
 _SETTING_OFF_S = 1.0

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from joblib import Parallel, delayed
-from threadpoolctl import threadpool_limits
 
 from eigenwalker.decomposition import decompose_pca
+from eigenwalker.folds import one_blas_thread
 from eigenwalker.gait import in_place
 from eigenwalker.population import Population
 from eigenwalker.simulation.planting import Pattern, plant
@@ -133,8 +133,7 @@ def simulate_population(
     planted = dict(planted or {})
     parts = np.array_split(np.arange(len(people)), max(len(people) // _SHARE, 1))
     work = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
-    with threadpool_limits(1):
-        found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
+    found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
     walkers = [walker for some in found or () for walker in some or ()]
     return Population(
         walkers,
@@ -153,7 +152,10 @@ def _walkers(
     """Return the walkers of some of the people; only these leave the process that walked them."""
     # Planting needs the phase of each frame, which comes with the truth.
     making = {"truth": bool(planted), **capture}
-    return [
-        decompose_pca(in_place(_capture(people.iloc[row], (seed, int(number)), planted, making)))
-        for row, number in enumerate(numbers)
-    ]
+    with one_blas_thread():
+        return [
+            decompose_pca(
+                in_place(_capture(people.iloc[row], (seed, int(number)), planted, making))
+            )
+            for row, number in enumerate(numbers)
+        ]

@@ -7,15 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from eigenwalker.simulation.body import Body
-from eigenwalker.simulation.cycle import (
-    LEG_HARMONICS,
-    PELVIS_HARMONICS,
-    Cycle,
-    Pace,
-    ankle_to_the_side,
-    trunk_curves,
-)
+from eigenwalker.simulation.cycle import Cycle
+from eigenwalker.simulation.drawn import LEG_HARMONICS, PELVIS_HARMONICS, trunk_curves
+from eigenwalker.simulation.ground import ankle_to_the_side
 from eigenwalker.simulation.norms import basis
+from eigenwalker.simulation.pace import Pace
 from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
 from eigenwalker.simulation.strides import Strides
 

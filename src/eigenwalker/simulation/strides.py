@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eigenwalker.simulation.cycle import Cycle, Pace
+from eigenwalker.simulation.cycle import Cycle
+from eigenwalker.simulation.pace import Pace
 
 STEP_CV = 0.015
 """Variation of step length, and with it of step time: 1.5 to 2 per cent in healthy adults."""

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.decomposition import decompose_pca
+from eigenwalker.folds import one_blas_thread
 from eigenwalker.gait import in_place
 from eigenwalker.population import Population
 from eigenwalker.simulation.parameters import PARAMETERS
@@ -131,7 +132,8 @@ def true_direction(population: Population, trait: str, *, n_people: int = 12) ->
         walk = plant(simulate_walk((person + amount * steps).to_dict()), pattern, amount)
         return population.vector(decompose_pca(in_place(walk)))
 
-    return np.mean([walked(p, 0.5) - walked(p, -0.5) for _, p in own.iterrows()], axis=0)
+    with one_blas_thread():
+        return np.mean([walked(p, 0.5) - walked(p, -0.5) for _, p in own.iterrows()], axis=0)
 
 
 def recipe_of(

@@ -10,9 +10,10 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.simulation.body import body_of
-from eigenwalker.simulation.cycle import Cycle, Pace, pace_of, solve_cycle
+from eigenwalker.simulation.cycle import Cycle, solve_cycle
 from eigenwalker.simulation.imperfections import with_drift, with_gaps, with_noise
 from eigenwalker.simulation.overground import Route, set_off
+from eigenwalker.simulation.pace import Pace, pace_of
 from eigenwalker.simulation.parameters import check_parameters
 from eigenwalker.simulation.playing import Angles, play
 from eigenwalker.simulation.posture import SIDES, joint_positions, segment_turns

@@ -15,7 +15,6 @@ import xarray as xr
 from eigenwalker.simulation.traits import TRAITS
 from eigenwalker.trajectories import sampling_rate
 
-
 _TRC_KEYS = (
     "DataRate CameraRate NumFrames NumMarkers Units OrigDataRate OrigDataStartFrame OrigNumFrames"
 )

@@ -1,0 +1,197 @@
+"""What the ground asks of a stride, and how far a stride is from it: the equations to be solved.
+
+The unknowns are the Fourier coefficients of thigh, knee and pitch of both feet, the places of
+their prints, and the coefficients of the pelvis' path up and ahead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from eigenwalker.simulation.body import Body
+from eigenwalker.simulation.drawn import (
+    LEG_HARMONICS,
+    PELVIS_HARMONICS,
+    leg_curves,
+    pelvis_paths,
+    trunk_curves,
+)
+from eigenwalker.simulation.norms import basis
+from eigenwalker.simulation.pace import Pace
+from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
+
+_FRAMES = 120
+_LEG = 2 * LEG_HARMONICS + 1
+_PELVIS = 2 * PELVIS_HARMONICS + 1
+
+_CONTACT_MM = 0.5
+_FLAT = (0.10, 0.28)
+"""When the whole sole is on the ground, shares of a stride."""
+_FLAT_RAD = np.radians(0.7)
+_LEAST_KNEE = np.radians(3.0)
+_KNEE_RAD = np.radians(0.5)
+_CLEARANCE_MM = 16.0
+_SPREAD_RAD = np.radians([[1.5], [2.0], [3.0]])
+"""How far thigh, knee and pitch may be from their draw; higher harmonics less."""
+_RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 0.5, 4.0
+"""How far the pelvis may be from its: other harmonics, the second one of its height, fore-aft."""
+
+
+class Ground:
+    """The stride of one person as a least-squares problem.
+
+    Attributes
+    ----------
+    prior, precision : array of shape (unknown,)
+        What the person was drawn to do, and how firmly: one over the variance.
+    onsets : array of shape (side,)
+        When the feet strike, shares of a stride.
+    sway : array of shape (coefficient,)
+        The pelvis' path to the side, which is as drawn.
+
+    """
+
+    def __init__(self, person: Mapping[str, float], body: Body, pace: Pace) -> None:
+        self.body, self.pace = body, pace
+        phase = np.arange(_FRAMES) / _FRAMES
+        self.onsets = np.array([0.0, 0.5 + person["step_asymmetry"]])
+        self._phases = (phase - self.onsets[:, None]) % 1.0
+        self._legs = [basis(own, LEG_HARMONICS) for own in self._phases]
+        self._trunk = basis(phase, PELVIS_HARMONICS)
+        self._yaw = np.radians(person["foot_progression_deg"])
+        curves = trunk_curves(person, pace.effort)
+        turns = trunk_turns({name: self._trunk @ curve for name, curve in curves.items()}, "pelvis")
+        self.sway, rise = pelvis_paths(person, pace)
+        self._hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
+        for hip in self._hips:
+            hip[:, 1] += self._trunk @ self.sway
+        rise[0] = 0.985 * (body.thigh + body.shank) + body.foot.height - body.hip[2]
+        self.prior = self._prior(person, rise)
+        self.precision = _precision()
+
+    def _prior(self, person: Mapping[str, float], rise: np.ndarray) -> np.ndarray:
+        curves = np.array(leg_curves(person, self.pace.effort))
+        half = np.radians([person["thigh_asymmetry_deg"], person["knee_asymmetry_deg"]]) / 2
+        legs = []
+        for side in SIDES.values():
+            own = curves.copy()
+            own[:2, 0] += side * half
+            legs += [*own.ravel(), self._first_print(own)]
+        return np.concatenate([legs, rise, np.zeros(_PELVIS - 1)])
+
+    def _first_print(self, own: np.ndarray) -> float:
+        """Where the ball of a foot comes to stand at its heel strike if nothing is changed."""
+        thigh, knee = (basis(np.array([0.0]), LEG_HARMONICS) @ own[:2].T)[0]
+        reach = self.body.thigh * np.sin(thigh) + self.body.shank * np.sin(thigh - knee)
+        return reach + self.body.foot.ball
+
+    def split(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return curves (side, joint, coefficient), prints (side,), pelvis (axis, coefficient)."""
+        legs = unknown[: 2 * (3 * _LEG + 1)].reshape(2, -1)
+        rise, ahead = np.split(unknown[2 * (3 * _LEG + 1) :], [_PELVIS])
+        pelvis = np.array([np.concatenate([[0.0], ahead]), np.zeros(_PELVIS), rise])
+        return legs[:, :-1].reshape(2, 3, _LEG), legs[:, -1], pelvis
+
+    def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return all residuals, each divided by its tolerance, and their derivatives."""
+        parts = [self._leg(unknown, leg) for leg in range(len(SIDES))]
+        return (
+            np.concatenate([residual for residual, _ in parts]),
+            np.concatenate([slopes for _, slopes in parts]),
+        )
+
+    def _leg(self, unknown: np.ndarray, leg: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return what a leg misses, in tolerances, and its derivatives."""
+        curves, prints, pelvis = self.split(unknown)
+        body, foot, own = self.body, self.body.foot, self._phases[leg]
+        thigh, knee, pitch = curves[leg] @ self._legs[leg].T
+        shank = thigh - knee
+        forward = body.thigh * np.sin(thigh) + body.shank * np.sin(shank)
+        down = body.thigh * np.cos(thigh) + body.shank * np.cos(shank)
+        hip = self._hips[leg] + self._trunk @ pelvis.T
+        side = list(SIDES.values())[leg]
+        foot_y = ankle_to_the_side(side, self.pace, body, self._yaw, pitch)
+        upright = np.sqrt(1 - ((foot_y - hip[:, 1]) / down) ** 2)
+        x, z = hip[:, 0] + forward, hip[:, 2] - upright * down
+
+        slopes = _Slopes(leg, self._legs[leg], self._trunk, len(unknown))
+        of_x = slopes(thigh=down, knee=-body.shank * np.cos(shank), ahead=1.0, print_=-1.0)
+        of_z = slopes(thigh=upright * forward, knee=-upright * body.shank * np.sin(shank), rise=1.0)
+        over, rolling = foot.ankle_over_print(pitch)
+        along = np.cos(self._yaw)
+        miss_x = x - (prints[leg] - self.pace.stride * own) - along * over[:, 0]
+        miss_z = z - over[:, 1]
+        stands = own <= self.pace.stance
+        flat = (own > _FLAT[0]) & (own < _FLAT[1])
+        straight = knee < _LEAST_KNEE
+        rows = [
+            (miss_x, of_x - slopes(pitch=along * rolling[:, 0]), stands, _CONTACT_MM),
+            (miss_z, of_z - slopes(pitch=rolling[:, 1]), stands, _CONTACT_MM),
+            (pitch, slopes(pitch=1.0), flat, _FLAT_RAD),
+            (knee - _LEAST_KNEE, slopes(knee=1.0), straight, _KNEE_RAD),
+        ]
+        sole, swinging = foot.sole_under_ankle(pitch)
+        for point in range(sole.shape[1]):
+            miss = z + sole[:, point, 1] - _clearance(own, self.pace.stance)
+            of_miss = of_z + slopes(pitch=swinging[:, point, 1])
+            rows.append((miss, of_miss, ~stands & (miss < 0), 2 * _CONTACT_MM))
+        return (
+            np.concatenate([miss[held] / tolerance for miss, _, held, tolerance in rows]),
+            np.concatenate([slope[held] / tolerance for _, slope, held, tolerance in rows]),
+        )
+
+
+class _Slopes:
+    """Puts derivatives by a leg's angles and the pelvis' path where the unknowns stand."""
+
+    def __init__(self, leg: int, waves: np.ndarray, trunk: np.ndarray, n_unknown: int) -> None:
+        self.waves, self.trunk, self.n_unknown = waves, trunk, n_unknown
+        first = leg * (3 * _LEG + 1)
+        self.angles = {
+            name: slice(first + i * _LEG, first + (i + 1) * _LEG)
+            for i, name in enumerate(("thigh", "knee", "pitch"))
+        }
+        self.print_ = first + 3 * _LEG
+        pelvis = 2 * (3 * _LEG + 1)
+        self.rise = slice(pelvis, pelvis + _PELVIS)
+        self.ahead = slice(pelvis + _PELVIS, n_unknown)
+
+    def __call__(
+        self, *, rise: float = 0.0, ahead: float = 0.0, print_: float = 0.0,
+        **angles: np.ndarray | float,
+    ) -> np.ndarray:  # fmt: skip
+        slopes = np.zeros((len(self.waves), self.n_unknown))
+        for name, slope in angles.items():
+            slopes[:, self.angles[name]] = np.reshape(slope, (-1, 1)) * self.waves
+        slopes[:, self.rise] = rise * self.trunk
+        slopes[:, self.ahead] = ahead * self.trunk[:, 1:]
+        slopes[:, self.print_] = print_
+        return slopes
+
+
+def _precision() -> np.ndarray:
+    harmonic = np.concatenate([[1], np.repeat(np.arange(1, LEG_HARMONICS + 1), 2)])
+    leg = [*(_SPREAD_RAD / harmonic**0.7).ravel(), 100.0]
+    harmonic = np.repeat(np.arange(1, PELVIS_HARMONICS + 1), 2)
+    rise = np.concatenate([[30.0], _RISE_MM / harmonic])
+    rise[3:5] = _BOB_MM
+    return np.concatenate([leg, leg, rise, _AHEAD_MM / harmonic]) ** -2.0
+
+
+def ankle_to_the_side(
+    side: int, pace: Pace, body: Body, yaw: float, pitch: np.ndarray
+) -> np.ndarray:
+    """Return the lateral place of an ankle: half a step width from the middle.
+
+    It swings about the ball of the foot as the foot, toes out, rolls over it.
+    """
+    rolled = body.foot.ankle_over_ball(pitch) + body.foot.ball
+    return side * (pace.step_width / 2 - np.sin(yaw) * rolled)
+
+
+def _clearance(own: np.ndarray, stance: float) -> np.ndarray:
+    """Least height of the sole in swing, less just after toe-off and before heel strike."""
+    swing = (own - stance) / (1 - stance)
+    return _CLEARANCE_MM * np.clip(np.minimum(swing / 0.15, (1 - swing) / 0.12), 0.0, 1.0)
