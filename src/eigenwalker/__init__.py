@@ -20,6 +20,7 @@ _HOME = {
     "direction": "caricature",
     "DiscriminantClassifier": "discriminant",
     "DiscriminantRegressor": "discriminant",
+    "fetch_captures": "downloads",
     "figure_curves": "display.curves",
     "figure_eigenpostures": "display.eigenpostures",
     "figure_joints": "display.bodies",
@@ -28,6 +29,8 @@ _HOME = {
     "figure_variance": "display.components",
     "figure_walkers": "display.bodies",
     "fit_folder": "study",
+    "from_movement": "interchange",
+    "from_pyomeca": "interchange",
     "fundamental_frequency": "gait",
     "gait_events": "gait",
     "gait_parameters": "gait",
@@ -50,6 +53,8 @@ _HOME = {
     "simulate_walk": "simulation",
     "Skeleton": "skeleton",
     "stance_speed": "gait",
+    "to_movement": "interchange",
+    "to_pyomeca": "interchange",
     "trait_axis": "trait_axis",
     "UnitGuessed": "mocap",
     "UnreadableFile": "mocap",
@@ -58,6 +63,7 @@ _HOME = {
     "walker_from_file": "study",
     "WalkerSpace": "space",
     "write_film": "display.films",
+    "write_mocap": "writing",
     "write_report": "report.page",
 }
 """Each public name and the module it lives in."""
@@ -83,11 +89,16 @@ if TYPE_CHECKING:
     from eigenwalker.display.films import write_film as write_film
     from eigenwalker.display.populations import figure_space as figure_space
     from eigenwalker.display.projection import project as project
+    from eigenwalker.downloads import fetch_captures as fetch_captures
     from eigenwalker.gait import fundamental_frequency as fundamental_frequency
     from eigenwalker.gait import gait_events as gait_events
     from eigenwalker.gait import gait_parameters as gait_parameters
     from eigenwalker.gait import in_place as in_place
     from eigenwalker.gait import stance_speed as stance_speed
+    from eigenwalker.interchange import from_movement as from_movement
+    from eigenwalker.interchange import from_pyomeca as from_pyomeca
+    from eigenwalker.interchange import to_movement as to_movement
+    from eigenwalker.interchange import to_pyomeca as to_pyomeca
     from eigenwalker.jackknife import jackknife_curves as jackknife_curves
     from eigenwalker.jackknife import regression_curves as regression_curves
     from eigenwalker.mocap import UnitGuessed as UnitGuessed
@@ -112,6 +123,7 @@ if TYPE_CHECKING:
     from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out
     from eigenwalker.validation import permutation_test as permutation_test
     from eigenwalker.walker import Walker as Walker
+    from eigenwalker.writing import write_mocap as write_mocap
 
 
 def __getattr__(name: str) -> object:
