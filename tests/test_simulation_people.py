@@ -188,8 +188,7 @@ def test_captures_are_written_with_a_table_and_read_again(tmp_path, format):
     traits = pd.read_csv(table)
     assert list(traits) == ["file", *TRAITS]
     expected, _ = next(simulate_captures(gap_share=0.02, **captures))
-    unit = {"unit": "mm"} if format == "csv" else {}  # a plain table names none
-    read = read_mocap(table.parent / traits["file"][0], **unit)
+    read = read_mocap(table.parent / traits["file"][0])
     assert read.marker.values.tolist() == expected.marker.values.tolist()
     np.testing.assert_allclose(read.values, expected.values, atol=1e-3)
     with pytest.raises(ValueError, match="format='mot' is not known"):
