@@ -86,6 +86,22 @@ def test_fit_ends_with_1_when_some_were_refused_and_2_when_all_were(run, folder,
     assert not (tmp_path / "none.nc").exists()
 
 
+def test_a_whole_study_can_be_rehearsed(run, tmp_path) -> None:
+    people, captures = tmp_path / "people.nc", tmp_path / "captures"
+    code, said, _ = run(
+        "simulate", "--women", 2, "--men", 3, "--seed", 1, "-o", people, "--captures", captures
+    )
+    assert code == 0
+    assert "5 walkers" in said
+    code, said, _ = run(
+        "fit", captures, "--traits", captures / "traits.csv", "-o", tmp_path / "again.nc"
+    )
+    assert code == 0
+    truth, again = Population.load(people), Population.load(tmp_path / "again.nc")
+    assert again.traits["sex"].tolist() == truth.traits["sex"].tolist()
+    assert again.X.shape == truth.X.shape
+
+
 def test_info_says_what_is_in_a_capture(run, folder) -> None:
     code, said, _ = run("info", folder / "male_5.c3d")
     assert code == 0

@@ -8,10 +8,10 @@ from __future__ import annotations
 import json
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
@@ -34,6 +34,7 @@ app = typer.Typer(
 )
 app.add_typer(cli_data.app, name="data")
 
+T = TypeVar("T")
 SOME_REFUSED = 1
 FAILED = 2
 
@@ -165,10 +166,7 @@ def fit(
     from eigenwalker.study import DECOMPOSE, fit_folder
 
     _one_of(form, DECOMPOSE, "--form")
-    if output.suffix != ".nc":
-        raise ValueError(
-            f"{output}: a population is written as .nc; name it for instance people.nc."
-        )
+    _population_path(output)
     with _bar("Reading captures") as progress:
         study = fit_folder(
             folder,
@@ -289,6 +287,51 @@ def synthesize(
         )
     _print_plausibility(population, vector)
     print(f"Film: {output}")
+
+
+@app.command()
+def simulate(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Population file to write (.nc).")],
+    women: Annotated[int, typer.Option(help="How many women.")] = 20,
+    men: Annotated[int, typer.Option(help="How many men.")] = 20,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same people.")] = 0,
+    sex_effect: Annotated[
+        float, typer.Option(help="Multiplies all differences between the sexes; 0 removes them.")
+    ] = 1.0,
+    captures: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write raw captures into, with traits.csv and truth.csv."),
+    ] = None,
+    captures_as: Annotated[
+        str, typer.Option(help="Format of the captures: c3d, trc or csv.")
+    ] = "c3d",
+) -> None:
+    """Simulate walkers of known truth, and the raw captures of a whole study to rehearse with."""
+    from eigenwalker.simulation import simulate_captures, simulate_population
+    from eigenwalker.simulation.writing import write_captures
+
+    _population_path(output)
+    with _bar("Simulating") as progress:
+        population = simulate_population(women, men, seed=seed, sex_effect=sex_effect)
+        population.save(output)
+        print(f"Population: {output} ({len(population)} walkers)")
+        if captures is not None:
+            walks = simulate_captures(women, men, seed=seed, sex_effect=sex_effect, markers="skin")
+            table = write_captures(
+                _counted(walks, women + men, progress), captures, format=captures_as
+            )
+            print(f"Captures: {captures}; who is who: {table}")
+
+
+def _population_path(path: Path) -> None:
+    if path.suffix != ".nc":
+        raise ValueError(f"{path}: a population is written as .nc; name it for instance people.nc.")
+
+
+def _counted(things: Iterable[T], total: int, progress: Callable[[int, int], None]) -> Iterator[T]:
+    for done, thing in enumerate(things, start=1):
+        yield thing
+        progress(done, total)
 
 
 def _population(path: Path | None, with_flagged: bool) -> Population:
