@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import c3d
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from eigenwalker.simulation import simulate_walk
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import sampling_rate
 from eigenwalker.walker import Form, Walker
@@ -80,3 +81,46 @@ def _write_c3d(path: Path, walk: xr.DataArray) -> Path:
 def write_c3d() -> Callable[[Path, xr.DataArray], Path]:
     """Writer of C3D files."""
     return _write_c3d
+
+
+@pytest.fixture(scope="session")
+def text_walk() -> xr.DataArray:
+    """A simulated walk of 2 s at 50 Hz, with a gap, to be written in formats of text."""
+    walk = simulate_walk(seed=3, duration_s=2.0, rate_hz=50, truth=False)
+    walk = xr.DataArray(
+        walk.values.round(3),
+        dims=walk.dims,
+        coords={name: walk[name].values for name in ("time", "marker", "axis")},
+        attrs={"units": "mm"},
+    )
+    walk.values[10:14, 2] = np.nan
+    return walk
+
+
+def _damaged(content: bytes, n: int, seed: int = 0) -> Iterator[bytes]:
+    """Files with a few bytes changed, lines doubled or left out, and cut short, seeded."""
+    rng = np.random.default_rng(seed)
+    letters = b' \t\n,;.0123456789eE-+naifXYZ"#:=[]{}\x00\xff'
+    lines = content.split(b"\n")
+    for _ in range(n):
+        bad = bytearray(content)
+        for _ in range(rng.integers(1, 4)):
+            at = int(rng.integers(max(len(bad), 1)))
+            match rng.integers(5):
+                case 0 if bad:
+                    bad[min(at, len(bad) - 1)] = letters[rng.integers(len(letters))]
+                case 1:
+                    del bad[at : at + int(rng.integers(1, 40))]
+                case 2:
+                    bad[at:at] = lines[rng.integers(len(lines))] + b"\n"
+                case 3:
+                    bad[at:at] = bytes(rng.choice(list(letters), 5).tolist())
+                case _:
+                    del bad[at:]
+        yield bytes(bad)
+
+
+@pytest.fixture(scope="session")
+def damaged() -> Callable[..., Iterator[bytes]]:
+    """Maker of damaged files: their content and how many."""
+    return _damaged

@@ -134,9 +134,11 @@ def table_of(
     Raises
     ------
     UnreadableFile
-        If a line has fewer or more cells, or something else than numbers in them.
+        If there is no line, or one has fewer or more cells, or something else than numbers.
 
     """
+    if not lines:
+        raise UnreadableFile(source, "a line of numbers or more", "none")
     comma = separator != "," and any(re.search(r"\d,\d", line) for line in lines[:20])
     rows: list[np.ndarray] = []
     room = sum(map(len, lines)) + n_columns

@@ -127,8 +127,6 @@ def trajectories_of(
 
     """
     names, positions, time, notes = skeleton
-    if not len(positions):
-        raise UnreadableFile(source, "a frame or more", "none")
     kind = _kind(names)
     noted = unit_named(notes.get("unit", ""))
     usual = Unit("m", MILLIMETRES["m"], "Kinect's unit") if kind == "Kinect" else None

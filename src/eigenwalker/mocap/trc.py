@@ -144,9 +144,10 @@ def _names(words: list[str], n_markers: int, source: str) -> list[str]:
     points = points_of(words)
     if len(points.names) == n_markers and len(named) == 3 * n_markers:
         return points.names
-    in_place = [words[at] if at < len(words) else "" for at in range(0, 3 * n_markers, 3)]
-    if len(named) < n_markers <= len(words) and named == [name for name in in_place if name]:
-        return in_place
+    if len(named) < n_markers <= len(words):
+        in_place = [words[at] if at < len(words) else "" for at in range(0, 3 * n_markers, 3)]
+        if named == [name for name in in_place if name]:
+            return in_place
     raise UnreadableFile(
         source, f"the names of {n_markers} markers, as it declares", f"{len(named)} names"
     )
