@@ -10,6 +10,8 @@ import numpy as np
 import eigenwalker as ew
 from eigenwalker.correspondence import matched_by_sign_and_order, posture_correlations
 from eigenwalker.simulation import (
+    EFFECTS,
+    PARAMETERS,
     draw_people,
     random_pattern,
     true_direction,
@@ -222,9 +224,22 @@ def _mean_difference(people, part):
     return features[sign > 0].mean(axis=0) - features[sign < 0].mean(axis=0)
 
 
+def where_numbers_come_from():
+    table("parameter", "women", "men", "SD", "source")
+    for name, parameter in PARAMETERS.items():
+        women, men, sd = (f"{value:g}" for value in parameter[:3])
+        row(name, women, men, sd, parameter.source)
+    print()
+    table("trait", "what one unit of it adds, in SDs of the parameter")
+    for trait, sizes in EFFECTS.items():
+        row(trait, ", ".join(f"{name} {size:+g}" for name, size in sizes.items()))
+
+
 def main():
     populations = [ew.simulate_population(20, 20, seed=seed) for seed in range(3)]
-    print("### Beside the paper\n")
+    print("### Where the numbers come from\n")
+    where_numbers_come_from()
+    print("\n### Beside the paper\n")
     beside_the_paper(populations)
     print("\n### Beside published norms, 100 people\n")
     beside_the_norms(50)
