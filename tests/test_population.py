@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import h5py
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
+from scipy.io import netcdf_file
 
 import eigenwalker as ew
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
@@ -122,16 +123,15 @@ def test_files_that_hold_no_population_are_refused(tmp_path) -> None:
     (tmp_path / "text.nc").write_text("file,sex\n")
     with pytest.raises(UnreadableFile, match="eigenwalker fit"):
         Population.load(tmp_path / "text.nc")
-    with h5py.File(tmp_path / "other.nc", "w") as other:
-        other["x"] = [1.0]
+    xr.Dataset({"x": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="scipy")
     with pytest.raises(UnreadableFile, match="expected a population file"):
         Population.load(tmp_path / "other.nc")
 
 
 def test_a_population_of_a_newer_version_asks_for_an_update(people, tmp_path) -> None:
     people.save(tmp_path / "new.nc")
-    with h5py.File(tmp_path / "new.nc", "a") as file:
-        file.attrs["format_version"] = 99
+    with netcdf_file(tmp_path / "new.nc", "a") as file:
+        file.format_version = 99
     with pytest.raises(UnreadableFile, match=r"version 99; update eigenwalker"):
         Population.load(tmp_path / "new.nc")
 

@@ -45,7 +45,12 @@ _HOME = {
     "Population": "population",
     "project": "display.projection",
     "Quality": "quality",
+    "RateAssumed": "mocap",
+    "read_bml_axes": "bml",
+    "read_mat": "mocap.mat",
+    "read_mm": "walker_files",
     "read_mocap": "mocap",
+    "read_walkers_mat": "walker_files",
     "regress": "classification",
     "regression_curves": "jackknife",
     "simulate_captures": "simulation",
@@ -61,6 +66,10 @@ _HOME = {
     "virtual_markers": "mocap",
     "Walker": "walker",
     "walker_from_file": "study",
+    "walker_from_mm": "walker_tables",
+    "walker_from_table": "walker_tables",
+    "walker_to_mm": "walker_tables",
+    "walker_to_table": "walker_tables",
     "WalkerSpace": "space",
     "write_film": "display.films",
     "write_mocap": "writing",
@@ -71,6 +80,7 @@ _HOME = {
 __all__ = sorted(_HOME)
 
 if TYPE_CHECKING:
+    from eigenwalker.bml import read_bml_axes as read_bml_axes
     from eigenwalker.caricature import direction as direction
     from eigenwalker.classification import classify as classify
     from eigenwalker.classification import regress as regress
@@ -101,10 +111,12 @@ if TYPE_CHECKING:
     from eigenwalker.interchange import to_pyomeca as to_pyomeca
     from eigenwalker.jackknife import jackknife_curves as jackknife_curves
     from eigenwalker.jackknife import regression_curves as regression_curves
+    from eigenwalker.mocap import RateAssumed as RateAssumed
     from eigenwalker.mocap import UnitGuessed as UnitGuessed
     from eigenwalker.mocap import UnreadableFile as UnreadableFile
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
+    from eigenwalker.mocap.mat import read_mat as read_mat
     from eigenwalker.plausibility import plausibility as plausibility
     from eigenwalker.population import Population as Population
     from eigenwalker.quality import Quality as Quality
@@ -123,6 +135,12 @@ if TYPE_CHECKING:
     from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out
     from eigenwalker.validation import permutation_test as permutation_test
     from eigenwalker.walker import Walker as Walker
+    from eigenwalker.walker_files import read_mm as read_mm
+    from eigenwalker.walker_files import read_walkers_mat as read_walkers_mat
+    from eigenwalker.walker_tables import walker_from_mm as walker_from_mm
+    from eigenwalker.walker_tables import walker_from_table as walker_from_table
+    from eigenwalker.walker_tables import walker_to_mm as walker_to_mm
+    from eigenwalker.walker_tables import walker_to_table as walker_to_table
     from eigenwalker.writing import write_mocap as write_mocap
 
 

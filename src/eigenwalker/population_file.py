@@ -20,13 +20,13 @@ import xarray as xr
 
 import eigenwalker
 from eigenwalker.correspondence import Correspondence, Reference
+from eigenwalker.mocap.netcdf import dataset_of
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.trajectories import AXES
 from eigenwalker.walker import CaptureFit, Walker
 
 FORMAT = "eigenwalker population"
 VERSION = 1
-_ENGINE = "h5netcdf"
 _EXPECTED = "a population file"
 _MAKE = "make one with 'eigenwalker fit' or Population.save"
 _UNITS = {
@@ -80,7 +80,7 @@ def write_population(
     handle, unfinished = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".nc")
     os.close(handle)
     try:
-        dataset.to_netcdf(unfinished, engine=_ENGINE)
+        dataset.to_netcdf(unfinished, engine="scipy", format="NETCDF3_64BIT")
         os.chmod(unfinished, 0o666 & ~_umask())
         os.replace(unfinished, path)
     finally:
@@ -99,11 +99,7 @@ def read_population(path: Path) -> Stored:
     if not path.is_file():
         came = "nothing of that name" if not path.exists() else "something else"
         raise UnreadableFile(path.name, _EXPECTED, came, "check the path")
-    try:
-        with xr.open_dataset(path, engine=_ENGINE, decode_times=False) as opened:
-            dataset = opened.load()
-    except Exception as error:  # a damaged file fails anywhere in the library, in many ways
-        raise UnreadableFile(path.name, _EXPECTED, f"no such file ({error})", _MAKE) from error
+    dataset = dataset_of(path.read_bytes(), path.name, expected=_EXPECTED)
     if (found := dataset.attrs.get("format")) != FORMAT:
         raise UnreadableFile(path.name, _EXPECTED, f"NetCDF of format {found!r}", _MAKE)
     if (version := dataset.attrs.get("format_version")) != VERSION:
@@ -180,9 +176,8 @@ def _stored(dataset: xr.Dataset) -> Stored:
     )
     traits = pd.DataFrame(
         {
-            str(variable.attrs["trait"]): variable.values
-            for name, variable in dataset.variables.items()
-            if str(name).startswith("trait_")
+            str(dataset[f"trait_{number}"].attrs["trait"]): dataset[f"trait_{number}"].values
+            for number in range(sum(str(name).startswith("trait_") for name in dataset))
         }
     )
     reference = Reference(

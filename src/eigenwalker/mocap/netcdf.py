@@ -48,7 +48,7 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
         If the file holds anything else, or is damaged or cut short.
 
     """
-    dataset = _dataset(content, source)
+    dataset = dataset_of(content, source, expected=_EXPECTED)
     if (found := dataset.attrs.get("format")) != FORMAT:
         raise UnreadableFile(source, _EXPECTED, f"NetCDF of format {str(found)[:40]!r}", _OPEN)
     if (version := dataset.attrs.get("format_version")) != VERSION:
@@ -79,7 +79,11 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
     return walk
 
 
-def _dataset(content: bytes, source: str) -> xr.Dataset:
+def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
+    """Return what a NetCDF file of version 3 holds, whoever wrote it.
+
+    No C library is needed for it: a damaged file can raise, but not crash the program.
+    """
     file = io.BytesIO(content)
     try:
         with warnings.catch_warnings():
@@ -87,7 +91,7 @@ def _dataset(content: bytes, source: str) -> xr.Dataset:
             with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
                 return opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
-        raise UnreadableFile(source, _EXPECTED, f"a damaged file ({error})") from error
+        raise UnreadableFile(source, expected, f"none, or a damaged one ({error})") from error
 
 
 def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
