@@ -13,10 +13,10 @@ import xarray as xr
 
 from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.population import Population
+from eigenwalker.population_file import looks_like_population
 from eigenwalker.quality import assess
 
 Fact = str | float | int | bool | None | list[str]
-POPULATION_SUFFIX = ".nc"
 
 
 def inspect_file(path: str | Path) -> dict[str, Fact]:
@@ -39,7 +39,7 @@ def inspect_file(path: str | Path) -> dict[str, Fact]:
 
     """
     path = Path(path)
-    if path.suffix.lower() == POPULATION_SUFFIX:
+    if path.is_file() and looks_like_population(path):
         return _plain(_of_population(Population.load(path)))
     return _plain(_of_capture(path))
 

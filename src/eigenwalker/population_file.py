@@ -20,7 +20,7 @@ import xarray as xr
 
 import eigenwalker
 from eigenwalker.correspondence import Correspondence, Reference
-from eigenwalker.mocap.netcdf import dataset_of
+from eigenwalker.mocap.netcdf import dataset_of, looks_like_netcdf
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.trajectories import AXES
 from eigenwalker.walker import CaptureFit, Walker
@@ -87,6 +87,13 @@ def write_population(
         Path(unfinished).unlink(missing_ok=True)
 
 
+def looks_like_population(path: Path) -> bool:
+    """Return whether a file is meant as a population."""
+    with path.open("rb") as file:
+        beginning = file.read(100_000)
+    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
+
+
 def read_population(path: Path) -> Stored:
     """Read what `write_population` wrote.
 
@@ -99,7 +106,11 @@ def read_population(path: Path) -> Stored:
     if not path.is_file():
         came = "nothing of that name" if not path.exists() else "something else"
         raise UnreadableFile(path.name, _EXPECTED, came, "check the path")
-    dataset = dataset_of(path.read_bytes(), path.name, expected=_EXPECTED)
+    content = path.read_bytes()
+    if not looks_like_netcdf(content):
+        came = f"a file that begins with {content[:16]!r}"
+        raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
+    dataset = dataset_of(content, path.name, expected=_EXPECTED)
     if (found := dataset.attrs.get("format")) != FORMAT:
         raise UnreadableFile(path.name, _EXPECTED, f"NetCDF of format {found!r}", _MAKE)
     if (version := dataset.attrs.get("format_version")) != VERSION:

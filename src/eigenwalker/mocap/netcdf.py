@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import warnings
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -22,6 +23,11 @@ _OPEN = "open it with xarray and label it with label_trajectories()"
 def looks_like_netcdf(content: bytes) -> bool:
     """Return whether a file begins as NetCDF files of version 3 do."""
     return content[:4] in (b"CDF\x01", b"CDF\x02")
+
+
+def holds_trajectories(beginning: bytes, _path: Path) -> bool:
+    """Return whether a file is of ours, and no population."""
+    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
 
 
 def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.DataArray:
@@ -91,7 +97,9 @@ def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
             with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
                 return opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
-        raise UnreadableFile(source, expected, f"none, or a damaged one ({error})") from error
+        raise UnreadableFile(
+            source, expected, f"none, or a damaged one ({_first_line(error)})"
+        ) from error
 
 
 def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
@@ -110,3 +118,7 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
         rotation = np.asarray(dataset["rotation"].transpose(*DIMS).values, dtype=float)
         walk = walk.assign_coords(rotation=(DIMS, rotation))
     return walk
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]

@@ -16,7 +16,7 @@ from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
 from eigenwalker.mocap.content import content_of
 from eigenwalker.mocap.mot import looks_like_mot, read_mot
-from eigenwalker.mocap.netcdf import looks_like_netcdf, read_netcdf
+from eigenwalker.mocap.netcdf import holds_trajectories, looks_like_netcdf, read_netcdf
 from eigenwalker.mocap.pose_json import holds_poses, looks_like_json, read_pose_json
 from eigenwalker.mocap.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
 from eigenwalker.mocap.table import holds_points, looks_like_table, read_table
@@ -56,7 +56,7 @@ FORMATS = (
     Format("BVH", ".bvh", looks_like_bvh, read_bvh),
     Format("C3D", ".c3d", looks_like_c3d, read_c3d),
     Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, _PATH_AND_RATE),
-    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf, among_others=_by(looks_like_netcdf)),
+    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf, among_others=holds_trajectories),
     Format("TRC", ".trc", looks_like_trc, read_trc, _RATE),
     Format("STO", ".sto", looks_like_mot, read_mot, _RATE),
     Format("MOT", ".mot", looks_like_mot, read_mot, _RATE),
