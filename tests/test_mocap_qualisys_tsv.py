@@ -5,6 +5,7 @@ import pytest
 
 from eigenwalker.mocap.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
 from eigenwalker.mocap.unreadable import UnreadableFile
+from eigenwalker.mocap.upright import UnitGuessed
 from eigenwalker.trajectories import sampling_rate
 
 
@@ -99,3 +100,9 @@ def test_damaged_files_end_in_data_or_the_one_error(text_walk, damaged):
 def test_the_first_key_marks_the_format():
     assert looks_like_qualisys_tsv(b"\xef\xbb\xbfNO_OF_FRAMES\t3")
     assert not looks_like_qualisys_tsv(b"FRAMES\t3")
+
+
+def test_a_table_in_another_unit_than_the_usual_is_guessed_aloud(text_walk):
+    with pytest.warns(UnitGuessed):
+        walk = _read(_tsv(text_walk / 1000))
+    assert (walk.attrs["unit"], walk.attrs["unit_guessed"]) == ("m", True)

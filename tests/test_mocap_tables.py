@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -466,3 +467,11 @@ def test_unit_guesses_of_tables_are_warned_of(text_walk, tmp_path):
     text = _csv(text_walk.marker.values, _y_up(text_walk)).encode()
     walk = read_skeleton_table(b"# unit: m\n" + text, source="a.csv")
     assert not walk.attrs["unit_guessed"]
+
+
+def test_the_example_in_the_documentation_is_the_description_that_is_tested():
+    docs = Path(__file__).parents[1] / "docs"
+    told = tomllib.loads((docs / "sample_walker3.toml").read_text())
+    text = (docs / "formats.md").read_text()
+    shown = text[text.index("```toml") + 7 :]
+    assert tomllib.loads(shown[: shown.index("```")]) == told

@@ -10,7 +10,15 @@ import xarray as xr
 
 from eigenwalker.mocap.marker_names import numbered
 from eigenwalker.mocap.unreadable import UnreadableFile
-from eigenwalker.mocap.upright import Unit, guess_unit, turn_upright, up_axis
+from eigenwalker.mocap.upright import (
+    PLAUSIBLE_MM,
+    Unit,
+    body_height,
+    guess_unit,
+    head_and_feet,
+    turn_upright,
+    up_axis,
+)
 from eigenwalker.trajectories import MILLIMETRES, label_trajectories
 
 _SPELLINGS = {
@@ -56,6 +64,7 @@ def as_captured(
     format_name: str,
     unit: Unit | None = None,
     file_unit: Unit | None = None,
+    usual_unit: Unit | None = None,
     up: str | None = None,
     usual_up: str = "z",
     start_s: float = 0.0,
@@ -77,7 +86,11 @@ def as_captured(
     unit : Unit, optional
         Unit that the caller names.
     file_unit : Unit, optional
-        Unit that the file or its format names; if there is neither, it is guessed.
+        Unit that the file names.
+    usual_unit : Unit, optional
+        Unit in which the format is mostly written. It is taken if head and feet, where they are
+        known, then are as far apart as in people, within a factor of 2. Otherwise, the unit is
+        guessed.
     up : str, optional
         Axis that the file says is up, such as ``"-y"``; the body tells if it is left out.
     usual_up : str
@@ -105,7 +118,8 @@ def as_captured(
     names, subject = _without_subject(numbered([plain[i] for i in kept]))
     known_up = up or up_axis(positions, names)
     positions = positions @ turn_upright(known_up or usual_up).T
-    named = unit or file_unit
+    usual = usual_unit if usual_unit and _fits(positions, names, usual_unit) else None
+    named = unit or file_unit or usual
     taken = named or guess_unit(positions, names, source=source)
     walk = label_trajectories(
         positions * taken.millimetres, markers=names, rate_hz=rate_hz, start_s=start_s
@@ -122,6 +136,14 @@ def as_captured(
         left_out=[name for i, name in enumerate(plain) if i not in set(kept)],
     )
     return walk
+
+
+def _fits(positions: np.ndarray, names: Sequence[str], unit: Unit) -> bool:
+    """Return whether a body is between half and twice as tall as people, or cannot be measured."""
+    if not all(part.size for part in head_and_feet(positions, names)):
+        return True
+    height = body_height(positions, names) * unit.millimetres
+    return not (height < PLAUSIBLE_MM[0] / 2 or height > PLAUSIBLE_MM[1] * 2)
 
 
 def _own(name: str) -> str:

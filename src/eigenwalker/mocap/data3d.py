@@ -83,7 +83,7 @@ def read_data3d(
         source=source,
         format_name="data3d",
         unit=unit,
-        file_unit=Unit("asf", UNITS["asf"], "the unit of the CMU skeletons"),
+        usual_unit=Unit("asf", UNITS["asf"], "the unit of the CMU skeletons"),
         up="y",
     )
     walk.attrs.update(assumed)

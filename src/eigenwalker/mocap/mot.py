@@ -87,8 +87,8 @@ def read_mot(
         source=source,
         format_name="STO",
         unit=unit,
-        file_unit=unit_named(keys.get("units", ""))
-        or Unit("m", MILLIMETRES["m"], "OpenSim's unit"),
+        file_unit=unit_named(keys.get("units", "")),
+        usual_unit=Unit("m", MILLIMETRES["m"], "OpenSim's unit"),
         usual_up="y",
         start_s=even.start_s if even else 0.0,
     )

@@ -81,7 +81,7 @@ def read_qualisys_tsv(
         source=source,
         format_name="Qualisys TSV",
         unit=unit,
-        file_unit=Unit("mm", 1.0, "Qualisys writes millimetres"),
+        usual_unit=Unit("mm", 1.0, "Qualisys writes millimetres"),
         start_s=start_s,
     )
 
