@@ -475,3 +475,27 @@ def test_the_example_in_the_documentation_is_the_description_that_is_tested():
     text = (docs / "formats.md").read_text()
     shown = text[text.index("```toml") + 7 :]
     assert tomllib.loads(shown[: shown.index("```")]) == told
+
+
+@quietly
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.csv", b"a_x," * 100_000 + b"\n1"),
+        ("a.csv", b"# " + b"a" * 500_000 + b"\nb,c\n1,2"),
+        ("a.csv", b"a" * 500_000 + b"_x,b\n1,2"),
+        ("a.csv", b"," * 500_000),
+        ("a.json", b'[{"' + b"keypoints" * 50_000),
+        ("a.tsv", b" " * 500_000),
+        ("a.tsv", b"NO_OF_FRAMES\t1\nMARKER_NAMES" + b"\ta" * 100_000 + b"\n1"),
+        ("a.sto", b"endheader\n" + b"time," + b"a_x," * 100_000 + b"\n1"),
+        ("a.trc", b"PathFileType\n" + b"NumFrames " * 50_000 + b"\n1 " * 50_000),
+        ("a.txt", b"1 " * 500_000),
+    ],
+)
+def test_wide_and_repeated_text_is_refused_at_once(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    is_capture(tmp_path / name)
+    with pytest.raises(UnreadableFile) as refusal:
+        read_mocap(tmp_path / name)
+    assert len(str(refusal.value)) < 1000

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -47,26 +48,20 @@ def points_of(header: Sequence[str]) -> Points:
     Points(names=['Foot Left', 'nose'], columns=[(1, 2, 3), (4, 5, 6)], others=[0, 7])
 
     """
-    found: dict[str, dict[str, int]] = {}
-    order: list[str] = []
+    found: dict[tuple[str, int], dict[str, int]] = {}
+    times: Counter[tuple[str, str]] = Counter()
     last = ""
     for index, cell in enumerate(header):
         column = _column(cell, last)
-        if column is None:
-            continue
-        last = column.name
-        name = last
-        while column.axis in found.get(name, {}):  # another point of the same name
-            name += " again"
-        if name not in found:
-            found[name] = {}
-            order.append(name)
-        found[name][column.axis] = index
-    whole = [name for name in order if len(found[name]) == 3]
-    columns = [(found[name]["x"], found[name]["y"], found[name]["z"]) for name in whole]
+        if column is not None:
+            last = column.name
+            times[column] += 1  # the second nose_x is about another point of that name
+            found.setdefault((last, times[column]), {})[column.axis] = index
+    whole = {name: axes for name, axes in found.items() if len(axes) == 3}
+    columns = [(axes["x"], axes["y"], axes["z"]) for axes in whole.values()]
     taken = {column for triple in columns for column in triple}
     others = [index for index in range(len(header)) if index not in taken]
-    return Points([name.removesuffix(" again") for name in whole], columns, others)
+    return Points([name for name, _ in whole], columns, others)
 
 
 def _column(cell: str, last: str) -> Column | None:

@@ -119,7 +119,7 @@ def _positions(
         points, columns, _ = points_of(names)
     kept = [i for i, name in enumerate(points) if not _NO_POSITION.search(name)]
     if len(kept) < FEWEST_POINTS:
-        came = f"{len(kept)} among {len(names)} columns such as {list(names[:4])}"
+        came = f"{len(kept)} among {len(names)} columns such as {list(names[:4])}"[:200]
         raise UnreadableFile(source, "the positions of several points", came, _OTHER)
     values = table[:, 1:][:, [columns[i] for i in kept]]
     return [points[i] for i in kept], values

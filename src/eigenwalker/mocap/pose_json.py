@@ -52,7 +52,7 @@ _POINTS = (
 _TIMES = {"time": 1.0, "time_s": 1.0, "timestamp": 1.0, "timestamp_s": 1.0, "t": 1.0}
 _TIMES |= {"time_ms": 1e-3, "timestamp_ms": 1e-3}
 _RATES = ("rate_hz", "fps", "frame_rate", "framerate", "sampling_rate")
-_WORDS = re.compile(rb'"(frames|[^"]*landmarks|[^"]*keypoints[^"]*|[^"]+_z)"\s*:', re.IGNORECASE)
+_WORDS = re.compile(rb'"(frames|[^"]{0,40}(landmarks|keypoints[^"]{0,9}|_z))" *:', re.IGNORECASE)
 _PICTURE = "export 3D points (world landmarks, in metres)"
 
 

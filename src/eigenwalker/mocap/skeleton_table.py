@@ -145,7 +145,7 @@ def trajectories_of(
         raise UnreadableFile(
             source,
             "a column time_s",
-            f"{names[:3]} and others, but no time",
+            f"{names[:3]}"[:120] + " and others, but no time",
             "name the rate: read_mocap(..., rate_hz=...)",
         )
     walk = as_captured(
@@ -206,7 +206,9 @@ def _seconds(time: np.ndarray, unit: str | None) -> np.ndarray:
 
 def _notes(lines: Sequence[str]) -> dict[str, str]:
     return {
-        key.lower(): value.strip() for line in lines[:100] for key, value in _NOTE.findall(line)
+        key.lower(): value.strip()
+        for line in lines[:100]
+        for key, value in _NOTE.findall(line[:300])
     }
 
 
