@@ -71,7 +71,11 @@ class Foot:
 
 
 def _turned(pitch: np.ndarray, forward: float, up: float) -> tuple[np.ndarray, np.ndarray]:
+    """Place of a point of the foot from the ankle, and its derivative by pitch."""
     cos, sin = np.cos(pitch), np.sin(pitch)
-    place = np.stack([forward * cos + up * sin, up * cos - forward * sin], axis=1)
-    slope = np.stack([up * cos - forward * sin, -up * sin - forward * cos], axis=1)
+    place, slope = np.empty((2, len(pitch), 2))
+    place[:, 0] = forward * cos + up * sin
+    place[:, 1] = up * cos - forward * sin
+    slope[:, 0] = place[:, 1]
+    slope[:, 1] = -place[:, 0]
     return place, slope

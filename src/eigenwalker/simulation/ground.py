@@ -6,7 +6,7 @@ their prints, and the coefficients of the pelvis' path up and ahead.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from eigenwalker.simulation.norms import basis
 from eigenwalker.simulation.pace import Pace
 from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
 
-_FRAMES = 120
+_FRAMES = 96
 _LEG = 2 * LEG_HARMONICS + 1
 _PELVIS = 2 * PELVIS_HARMONICS + 1
 
@@ -37,6 +37,10 @@ _SPREAD_RAD = np.radians([[1.5], [2.0], [3.0]])
 """How far thigh, knee and pitch may be from their draw; higher harmonics less."""
 _RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 0.5, 4.0
 """How far the pelvis may be from its: other harmonics, the second one of its height, fore-aft."""
+
+
+_ONE = np.ones(_FRAMES)
+_Demand = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
 
 
 class Ground:
@@ -96,14 +100,16 @@ class Ground:
 
     def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return all residuals, each divided by its tolerance, and their derivatives."""
-        parts = [self._leg(unknown, leg) for leg in range(len(SIDES))]
-        return (
-            np.concatenate([residual for residual, _ in parts]),
-            np.concatenate([slopes for _, slopes in parts]),
-        )
+        residuals, slopes = [], []
+        for leg in range(len(SIDES)):
+            for miss, by, held, tolerance in self._demands(unknown, leg):
+                if held.any():
+                    residuals.append(miss[held] / tolerance)
+                    slopes.append(self._slopes(by, leg, held) / tolerance)
+        return np.concatenate(residuals), np.concatenate(slopes)
 
-    def _leg(self, unknown: np.ndarray, leg: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return what a leg misses, in tolerances, and its derivatives."""
+    def _demands(self, unknown: np.ndarray, leg: int) -> Iterator[_Demand]:
+        """Yield what a leg misses over the stride, by what it changes, when, and the tolerance."""
         curves, prints, pelvis = self.split(unknown)
         body, foot, own = self.body, self.body.foot, self._phases[leg]
         thigh, knee, pitch = curves[leg] @ self._legs[leg].T
@@ -115,59 +121,40 @@ class Ground:
         foot_y = ankle_to_the_side(side, self.pace, body, self._yaw, pitch)
         upright = np.sqrt(1 - ((foot_y - hip[:, 1]) / down) ** 2)
         x, z = hip[:, 0] + forward, hip[:, 2] - upright * down
+        by_x = {"thigh": down, "knee": -body.shank * np.cos(shank), "ahead": _ONE, "print": -_ONE}
+        by_z = {"thigh": upright * forward, "knee": -upright * body.shank * np.sin(shank)}
+        by_z["rise"] = _ONE
 
-        slopes = _Slopes(leg, self._legs[leg], self._trunk, len(unknown))
-        of_x = slopes(thigh=down, knee=-body.shank * np.cos(shank), ahead=1.0, print_=-1.0)
-        of_z = slopes(thigh=upright * forward, knee=-upright * body.shank * np.sin(shank), rise=1.0)
+        stands = own <= self.pace.stance
         over, rolling = foot.ankle_over_print(pitch)
         along = np.cos(self._yaw)
         miss_x = x - (prints[leg] - self.pace.stride * own) - along * over[:, 0]
-        miss_z = z - over[:, 1]
-        stands = own <= self.pace.stance
-        flat = (own > _FLAT[0]) & (own < _FLAT[1])
-        straight = knee < _LEAST_KNEE
-        rows = [
-            (miss_x, of_x - slopes(pitch=along * rolling[:, 0]), stands, _CONTACT_MM),
-            (miss_z, of_z - slopes(pitch=rolling[:, 1]), stands, _CONTACT_MM),
-            (pitch, slopes(pitch=1.0), flat, _FLAT_RAD),
-            (knee - _LEAST_KNEE, slopes(knee=1.0), straight, _KNEE_RAD),
-        ]
+        yield miss_x, by_x | {"pitch": -along * rolling[:, 0]}, stands, _CONTACT_MM
+        yield z - over[:, 1], by_z | {"pitch": -rolling[:, 1]}, stands, _CONTACT_MM
+        yield pitch, {"pitch": _ONE}, (own > _FLAT[0]) & (own < _FLAT[1]), _FLAT_RAD
+        yield knee - _LEAST_KNEE, {"knee": _ONE}, knee < _LEAST_KNEE, _KNEE_RAD
         sole, swinging = foot.sole_under_ankle(pitch)
+        room = _clearance(own, self.pace.stance)
         for point in range(sole.shape[1]):
-            miss = z + sole[:, point, 1] - _clearance(own, self.pace.stance)
-            of_miss = of_z + slopes(pitch=swinging[:, point, 1])
-            rows.append((miss, of_miss, ~stands & (miss < 0), 2 * _CONTACT_MM))
-        return (
-            np.concatenate([miss[held] / tolerance for miss, _, held, tolerance in rows]),
-            np.concatenate([slope[held] / tolerance for _, slope, held, tolerance in rows]),
-        )
+            miss = z + sole[:, point, 1] - room
+            low = ~stands & (miss < 0)
+            yield miss, by_z | {"pitch": swinging[:, point, 1]}, low, 2 * _CONTACT_MM
 
-
-class _Slopes:
-    """Puts derivatives by a leg's angles and the pelvis' path where the unknowns stand."""
-
-    def __init__(self, leg: int, waves: np.ndarray, trunk: np.ndarray, n_unknown: int) -> None:
-        self.waves, self.trunk, self.n_unknown = waves, trunk, n_unknown
-        first = leg * (3 * _LEG + 1)
-        self.angles = {
-            name: slice(first + i * _LEG, first + (i + 1) * _LEG)
-            for i, name in enumerate(("thigh", "knee", "pitch"))
-        }
-        self.print_ = first + 3 * _LEG
-        pelvis = 2 * (3 * _LEG + 1)
-        self.rise = slice(pelvis, pelvis + _PELVIS)
-        self.ahead = slice(pelvis + _PELVIS, n_unknown)
-
-    def __call__(
-        self, *, rise: float = 0.0, ahead: float = 0.0, print_: float = 0.0,
-        **angles: np.ndarray | float,
-    ) -> np.ndarray:  # fmt: skip
-        slopes = np.zeros((len(self.waves), self.n_unknown))
-        for name, slope in angles.items():
-            slopes[:, self.angles[name]] = np.reshape(slope, (-1, 1)) * self.waves
-        slopes[:, self.rise] = rise * self.trunk
-        slopes[:, self.ahead] = ahead * self.trunk[:, 1:]
-        slopes[:, self.print_] = print_
+    def _slopes(self, by: Mapping[str, np.ndarray], leg: int, held: np.ndarray) -> np.ndarray:
+        """Return derivatives by the unknowns, where those by angles and the pelvis are given."""
+        first, pelvis = leg * (3 * _LEG + 1), 2 * (3 * _LEG + 1)
+        waves, trunk = self._legs[leg][held], self._trunk[held]
+        slopes = np.zeros((len(waves), len(self.prior)))
+        for number, angle in enumerate(("thigh", "knee", "pitch")):
+            if angle in by:
+                start = first + number * _LEG
+                slopes[:, start : start + _LEG] = by[angle][held, None] * waves
+        if "print" in by:
+            slopes[:, first + 3 * _LEG] = by["print"][held]
+        if "rise" in by:
+            slopes[:, pelvis : pelvis + _PELVIS] = trunk
+        if "ahead" in by:
+            slopes[:, pelvis + _PELVIS :] = trunk[:, 1:]
         return slopes
 
 

@@ -13,6 +13,7 @@ from joblib import Parallel, delayed
 from eigenwalker.decomposition import decompose_pca
 from eigenwalker.folds import one_blas_thread
 from eigenwalker.gait import in_place
+from eigenwalker.mocap import virtual_markers
 from eigenwalker.population import Population
 from eigenwalker.simulation.planting import Pattern, plant
 from eigenwalker.simulation.traits import EFFECTS, TRAITS, Effects, draw_people
@@ -75,21 +76,24 @@ def simulate_captures(
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
     for number in range(len(people)):
         person = people.iloc[number]
-        yield _capture(person, (seed, number), planted or {}, capture), person
+        walk = _walked(person, (seed, number), planted or {}, capture)
+        yield _planted(walk, person, planted or {}), person
 
 
-def _capture(
+def _walked(
     person: pd.Series, seed: tuple[int, int], planted: Mapping[str, Pattern],
     capture: Mapping[str, Any],
 ) -> xr.DataArray:  # fmt: skip
-    amounts = {trait: person[f"{trait}_score"] for trait in planted}
-    walks = {str(name): value for name, value in person.items()}
-    walks["frequency_hz"] += sum(
-        amount * planted[trait].frequency_hz for trait, amount in amounts.items()
+    own = {str(name): value for name, value in person.items()}
+    own["frequency_hz"] += sum(
+        person[f"{trait}_score"] * pattern.frequency_hz for trait, pattern in planted.items()
     )
-    walk = simulate_walk(walks, seed=seed, **{**CAPTURE, **capture})
-    for trait, amount in amounts.items():
-        walk = plant(walk, planted[trait], amount)
+    return simulate_walk(own, seed=seed, **{**CAPTURE, **capture})
+
+
+def _planted(walk: xr.DataArray, person: pd.Series, planted: Mapping[str, Pattern]) -> xr.DataArray:
+    for trait, pattern in planted.items():
+        walk = plant(walk, pattern, person[f"{trait}_score"])
     return walk
 
 
@@ -106,13 +110,14 @@ def simulate_population(
 ) -> Population:
     """Return a population of simulated walkers, every property of which is known.
 
-    Each person's capture goes the way of a real one: in place, decomposed, brought into
-    correspondence.
+    Each capture is made and goes on as in Troje (2002): 38 markers on the skin, the 15 joints
+    found from them, brought in place, decomposed, brought into correspondence.
 
     Parameters
     ----------
     n_women, n_men, seed, sex_effect, effects, planted, **capture
-        See `simulate_captures`.
+        See `simulate_captures`; with ``markers="joints"`` the true joints are taken. Effects are
+        planted in the 15 joints.
     n_jobs : int
         Processes that share the work of more than a hundred walkers; -1 for one a core.
 
@@ -150,12 +155,18 @@ def _walkers(
     capture: Mapping[str, Any],
 ) -> list[Walker]:  # fmt: skip
     """Return the walkers of some of the people; only these leave the process that walked them."""
-    # Planting needs the phase of each frame, which comes with the truth.
-    making = {"truth": bool(planted), **capture}
+    making = {"markers": "skin", "truth": bool(planted), **capture}
+    walkers = []
     with one_blas_thread():
-        return [
-            decompose_pca(
-                in_place(_capture(people.iloc[row], (seed, int(number)), planted, making))
-            )
-            for row, number in enumerate(numbers)
-        ]
+        for row, number in enumerate(numbers):
+            person = people.iloc[row]
+            walk = _walked(person, (seed, int(number)), planted, making)
+            if making["markers"] == "skin":
+                # Planting needs the phase of each frame, which virtual markers do not carry on.
+                walk = virtual_markers(walk).assign_coords(_phase_of(walk))
+            walkers.append(decompose_pca(in_place(_planted(walk, person, planted))))
+    return walkers
+
+
+def _phase_of(walk: xr.DataArray) -> dict[str, xr.DataArray]:
+    return {"phase": walk["phase"]} if "phase" in walk.coords else {}

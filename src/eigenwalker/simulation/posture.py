@@ -45,7 +45,9 @@ def turned(vector: np.ndarray, turns: Turns) -> np.ndarray:
     for axis, cos, sin in turns:
         a, b = (axis + 1) % 3, (axis + 2) % 3
         parts[a], parts[b] = cos * parts[a] - sin * parts[b], sin * parts[a] + cos * parts[b]
-    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+    place = np.empty((len(turns[0].cos), 3))
+    place[:, 0], place[:, 1], place[:, 2] = parts
+    return place
 
 
 def trunk_turns(angles: Mapping[str, np.ndarray], part: str) -> Turns:

@@ -77,9 +77,7 @@ def walked_strides(
 
     """
     n_strides = int(np.ceil(time[-1] * pace.frequency * 1.2)) + 3
-    wander = wander_mm * np.stack(
-        [slow_noise(chance, time, 4.0), 0.7 * slow_noise(chance, time, 4.0)], axis=1
-    )
+    wander = wander_mm * slow_noise(chance, time, 4.0, 2).T * [1.0, 0.7]
     steps = STEP_CV * variability * persistent_noise(chance, 2 * n_strides).reshape(n_strides, 2).T
     grid = np.arange((n_strides - 1) * _PER_STRIDE) / _PER_STRIDE - 0.5
     on_grid = _step_lengths(grid, cycle, pace, steps)
@@ -95,7 +93,7 @@ def walked_strides(
         body_longer=_handed_over(phase, cycle, pace, longer),
         placed=_placed(phase, cycle, pace, wander[:, 1], chance, variability),
         wander=wander,
-        moods=variability * np.stack([slow_noise(chance, phase, 1.5) for _ in range(N_STREAMS)]),
+        moods=variability * slow_noise(chance, phase, 1.5, N_STREAMS),
     )
 
 
@@ -155,10 +153,15 @@ def persistent_noise(chance: np.random.Generator, n: int) -> np.ndarray:
     return np.fft.irfft(spectrum, 4 * n)[:n] * 2 * n / np.linalg.norm(weights)
 
 
-def slow_noise(chance: np.random.Generator, at: np.ndarray, period: float) -> np.ndarray:
-    """Return smooth noise of unit SD with nothing faster than one swing a `period`."""
+def slow_noise(
+    chance: np.random.Generator, at: np.ndarray, period: float, n_streams: int
+) -> np.ndarray:
+    """Return smooth noise of unit SD with nothing faster than one swing a `period`.
+
+    Array of shape (stream, frame).
+    """
     span = max(at[-1] - at[0], period) * 1.3
     swings = np.arange(1, max(int(span / period), 1) + 1) / span
-    amplitudes = chance.standard_normal((len(swings), 2)) / np.sqrt(len(swings))
+    amplitudes = chance.standard_normal((n_streams, 2 * len(swings))) / np.sqrt(len(swings))
     angle = 2 * np.pi * np.outer(swings, at)
-    return amplitudes[:, 0] @ np.cos(angle) + amplitudes[:, 1] @ np.sin(angle)
+    return amplitudes @ np.concatenate([np.cos(angle), np.sin(angle)])
