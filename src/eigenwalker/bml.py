@@ -139,7 +139,12 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
             path.name, f"a list {_MEAN_KEY!r} of {_N_NUMBERS} numbers", "none", "is it the file?"
         )
     axes = {axis: _table(tables[key], key, path) for axis, key in _KEYS.items() if key in tables}
-    return BmlModel(_table(tables[_MEAN_KEY], _MEAN_KEY, path), axes)
+    model = BmlModel(_table(tables[_MEAN_KEY], _MEAN_KEY, path), axes)
+    try:
+        model.walker()
+    except ValueError as error:
+        raise UnreadableFile(path.name, "a mean walker that can walk", f"{error}") from error
+    return model
 
 
 def _tables(content: Any) -> dict[str, Any] | None:

@@ -118,7 +118,7 @@ class FeatureLayout:
                         "sums of them such as 'p1+p2'."
                     )
                 chosen.update(range(len(self))[self.blocks[block]])
-        return np.array(sorted(chosen))
+        return np.array(sorted(chosen), dtype=int)
 
     def vector(self, walker: Walker) -> np.ndarray:
         """Return the features of a walker of this layout, its phases between -pi and pi."""

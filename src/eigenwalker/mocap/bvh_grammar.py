@@ -27,6 +27,9 @@ USUAL_RATES_HZ = (
 )
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_DECLARED = re.compile(
+    r"\s*Frames\s*(?::\s*)?(\d{1,9})\s*Frame\s+Time\s*(?::\s*)?(\S+)", re.IGNORECASE
+)
 
 
 @dataclass
@@ -62,7 +65,7 @@ def parse_bvh(text: str, source: str) -> tuple[list[Joint], Motion]:
 
 def _split(text: str, source: str) -> tuple[str, str]:
     """Return the HIERARCHY and what follows the word MOTION."""
-    parts = re.split(r"(?im)^\s*MOTION\b", text, maxsplit=1)
+    parts = re.split(r"(?im)^[^\S\n]*MOTION\b", text, maxsplit=1)
     if len(parts) < 2:
         raise UnreadableFile(
             source, "a line MOTION after the skeleton", "none: the file is cut short"
@@ -139,7 +142,7 @@ def _number(word: str, where: str, source: str) -> float:
 
 def _motion(text: str, n_channels: int, source: str) -> Motion:
     """Return the table of channels and the rate, declared against delivered."""
-    declared = re.match(r"\s*Frames\s*:?\s*(\d{1,9})\s*Frame\s+Time\s*:?\s*(\S+)", text, re.I)
+    declared = _DECLARED.match(text)
     if not declared:
         raise UnreadableFile(
             source, "the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip())

@@ -137,11 +137,17 @@ def _header(content: bytes, source: str) -> Header:
 def _floats(raw: bytes, processor: str) -> np.ndarray:
     """Return 4-byte floats of any of the three machines."""
     if processor != "DEC":
-        return np.frombuffer(raw, ">f4" if processor == "MIPS" else "<f4").astype(float)
+        return _wide(np.frombuffer(raw, ">f4" if processor == "MIPS" else "<f4"))
     # A VAX float has its 16-bit halves exchanged and an exponent that is larger by two.
     halves = np.frombuffer(raw, "<u2").reshape(-1, 2)
     swapped = np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0]
-    return swapped.astype(float) / 4
+    return _wide(swapped) / 4
+
+
+def _wide(floats: np.ndarray) -> np.ndarray:
+    """Return 4-byte floats as 8-byte ones, without a word on NaN that a processor would signal."""
+    with np.errstate(invalid="ignore"):
+        return floats.astype(float)
 
 
 def _parameters(content: bytes, header: Header, source: str) -> Parameters:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 _UNIT = re.compile(r"[ _]*[\[(](mm|cm|m)[\])]$|_(mm|cm|m)$")
 _AXIS_AFTER = re.compile(
-    r"(?P<name>.+?)(?:[ _.:\-\[(]+[tp]?(?P<after>[xyzXYZ])[\])]?|(?P<glued>[XYZ]))"
+    r"(?P<name>.+?)(?:[ _.:\-\[(]{1,9}[tp]?(?P<after>[xyzXYZ])[\])]?|(?P<glued>[XYZ]))"
 )
 _AXIS_BEFORE = re.compile(r"(?P<axis>[xyzXYZ])[ _.](?P<name>.+)")
 

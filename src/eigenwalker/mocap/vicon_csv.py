@@ -22,9 +22,9 @@ BLOCKS = ("trajectories", "model outputs")
 """The blocks that hold positions; devices, events and joints are passed over."""
 
 _TITLE = re.compile(
-    rb'^(?:\xef\xbb\xbf)?[\s,;"]*(trajectories|model outputs)[\s,;"]*$', re.I | re.M
+    rb'^(?:\xef\xbb\xbf)?[ \t,;"]*(trajectories|model outputs)[ \t,;"]*$', re.I | re.M
 )
-_HEAD = re.compile(rb'^"?frame"?\s*[,;\t]\s*"?sub\s?frame', re.I | re.M)
+_HEAD = re.compile(rb'^"?frame"? *[,;\t][ \t]*"?sub\s?frame', re.I | re.M)
 
 
 class _Block(NamedTuple):
