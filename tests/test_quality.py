@@ -1,5 +1,7 @@
 """What is wrong with a capture is said, and nothing that is not."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -126,6 +128,28 @@ def test_any_markers_can_be_assessed(person):
     quality = assess(person.assign_coords(marker=[f"*{number}" for number in range(15)]))
     assert quality.bone_length_variation == {}
     assert quality.verdict == "use"
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1000, r"measures 1\.\d+ km, which no walking person does: the unit of length is wrong"),
+        (0.001, r"measures 1\.\d+ mm, which no walking person does"),
+        (2.54, r"measures [34]\.\d+ m, which no walking person does"),
+        (1 / 2.54, r"measures [56]\d+ mm: if this is no small child"),
+    ],
+)
+def test_a_body_that_no_person_has_tells_of_a_wrong_unit(person, factor, said):
+    quality = assess(person.copy(data=person.values * factor))
+    assert re.search(said, quality.flag)
+    assert quality.verdict != "use"
+    assert quality.height_mm == pytest.approx(factor * assess(person).height_mm)
+
+
+def test_a_body_upside_down_is_noticed(person):
+    quality = assess(person.copy(data=person.values * [1, -1, -1]))
+    assert quality.verdict == "do not use"
+    assert "head is not above the feet" in quality.flag
 
 
 def test_what_is_no_capture_is_refused():

@@ -13,6 +13,7 @@ from eigenwalker.gait import in_place
 from eigenwalker.gait.harmonics import share_explained
 from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.gait.placement import body_relative
+from eigenwalker.mocap.upright import body_height, head_and_feet
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
@@ -46,6 +47,13 @@ FREQUENCIES_HZ = (0.5, 1.4)
 
 MISSING_SHARE = 0.10
 """Share of the steady samples filled by splines above which the walk is partly ours."""
+
+HEIGHTS_MM = (500.0, 2500.0)
+"""From ankles or feet to the head, no walking person measures less or more: with the wrong unit
+they do."""
+
+CHILD_MM = 800.0
+"""Below this it is a small child, or centimetres were taken for inches."""
 
 LIMBS = tuple(
     (f"{side}_{upper}", f"{side}_{lower}")
@@ -102,6 +110,8 @@ class Quality:
         Whether the walk neither falls nor climbs.
     treadmill : bool
         Whether the body stays where it is.
+    height_mm : float
+        From the feet (or ankles) to the head; NaN where they are not known or not upright.
     unit_guessed : bool
         Whether the unit of length was guessed from the size of the body.
     verdict : {"use", "use with care", "do not use"}
@@ -129,6 +139,7 @@ class Quality:
     periodicity: float
     level: bool
     treadmill: bool
+    height_mm: float
     unit_guessed: bool
     verdict: Verdict
     reasons: tuple[str, ...]
@@ -182,7 +193,9 @@ def assess(trajectories: xr.DataArray) -> Quality:
     swaps = _swaps(judged.values, names)
     bones = _bone_length_variation(judged)
     swapped = walk is not None and sides_swapped(walk.values, names)
+    height_mm = _height(positions, names)
     faults = [
+        *_faults_of_body(height_mm, capture.attrs.get("unit")),
         *_faults_of_walk(walk, complaint, steady),
         *_faults_of_capture(jumps, names, swaps, bones, swapped=swapped),
     ]
@@ -199,6 +212,7 @@ def assess(trajectories: xr.DataArray) -> Quality:
         sides_swapped=swapped,
         bone_length_variation=bones,
         n_strides=0 if walk is None else int(walk.attrs["n_strides"]),
+        height_mm=np.nan if height_mm is None else height_mm,
         unit_guessed=bool(capture.attrs.get("unit_guessed", False)),
         verdict="do not use" if hopeless else "use with care" if faults else "use",
         reasons=tuple(fault.sentence for fault in faults),
@@ -252,6 +266,13 @@ def _steady_facts(walk: xr.DataArray | None, capture: xr.DataArray, rate_hz: flo
         level=bool(abs(climb) < LEVEL_CLIMB),
         treadmill=facts["treadmill"],
     )
+
+
+def _height(positions: np.ndarray, names: list[str]) -> float | None:
+    """Return how tall a body is, NaN if its head is not above its feet; None if that is unknown."""
+    if not all(np.isfinite(part).any() for part in head_and_feet(positions, names)):
+        return None
+    return body_height(positions, names)
 
 
 def _moving_frames(positions: np.ndarray, stride: float) -> int:
@@ -316,6 +337,29 @@ def _swaps(positions: np.ndarray, names: list[str]) -> int:
 
 def _distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.linalg.norm(one - other, axis=1)
+
+
+def _faults_of_body(height_mm: float | None, unit: object) -> list[_Fault]:
+    """Return what speaks against this being a person who stands upright, in the unit taken."""
+    if height_mm is None:
+        return []
+    if np.isnan(height_mm):
+        return [_Fault("The head is not above the feet: the wrong axis points up.", hopeless=True)]
+    smallest, tallest = HEIGHTS_MM
+    taken = f"the unit {unit} is wrong" if isinstance(unit, str) else "the unit of length is wrong"
+    measured = f"From feet to head the body measures {_length(height_mm)}"
+    if not smallest <= height_mm <= tallest:
+        sentence = f"{measured}, which no walking person does: {taken}. Read it with unit=..."
+        return [_Fault(sentence, hopeless=True)]
+    if height_mm < CHILD_MM:
+        return [_Fault(f"{measured}: if this is no small child, {taken}.")]
+    return []
+
+
+def _length(millimetres: float) -> str:
+    if millimetres >= 1e5:
+        return f"{millimetres / 1e6:.3g} km"
+    return f"{millimetres:.3g} mm" if millimetres < 1000 else f"{millimetres / 1000:.3g} m"
 
 
 def _faults_of_walk(walk: xr.DataArray | None, complaint: str, steady: _Steady) -> list[_Fault]:
