@@ -148,6 +148,20 @@ def _clearance(walk, side):
     return float(sole.values[(swing > 0.25) & (swing < 0.8)].min())
 
 
+def joints_from_skin(n_people):
+    misses = {}
+    for seed in range(n_people):
+        joints, skin = (
+            ew.simulate_walk(seed=seed, duration_s=6, markers=m) for m in ("joints", "skin")
+        )
+        miss = np.linalg.norm(ew.virtual_markers(skin).values - joints.values, axis=2).mean(axis=0)
+        for name, one in zip(ew.JOINTS.markers, miss, strict=True):
+            misses.setdefault(name.removeprefix("left_").removeprefix("right_"), []).append(one)
+    table("joint", "mean miss, mm", "of the worst person")
+    for name, found in misses.items():
+        row(name, f"{np.mean(found):.0f}", f"{max(found):.0f}")
+
+
 def signs(people):
     return np.where(people.traits["sex"] == "male", 1, -1)
 
@@ -245,6 +259,8 @@ def main():
     beside_the_norms(50)
     print("\n### On the ground, 40 people\n")
     on_the_ground(20)
+    print("\n### Joints found from the skin, 20 people\n")
+    joints_from_skin(20)
     print("\n### Told apart\n")
     body_only = ew.simulate_population(20, 20, seed=0, effects={})
     told_apart(
