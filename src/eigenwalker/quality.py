@@ -12,7 +12,7 @@ import xarray as xr
 from eigenwalker.gait import in_place
 from eigenwalker.gait.harmonics import share_explained
 from eigenwalker.gait.heading import sides_swapped
-from eigenwalker.gait.placement import body_relative
+from eigenwalker.gait.steady import body_relative
 from eigenwalker.mocap.upright import body_height, head_and_feet
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import check_trajectories, sampling_rate

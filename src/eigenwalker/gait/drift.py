@@ -5,9 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from eigenwalker.gait.harmonics import harmonic_basis, regress
+from eigenwalker.gait.steady import closing_step
 
 DRIFT_BELOW = 0.4
 """Cycles a stride below which movement of the whole body is drift and no part of the gait."""
+
+ONE_STRIDE = 1.5
+"""In less than this many strides a line cannot be told from harmonics: what is left after a stride
+that closes is the way."""
 
 N_HARMONICS = 4
 """Harmonics of the stride that are fitted beside the drift, so that it takes nothing of them."""
@@ -36,6 +41,8 @@ def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     [1400.0]
 
     """
+    if cycles[-1] - cycles[0] < ONE_STRIDE:
+        return _way_of_one_stride(path, cycles)
     basis = np.column_stack([cycles, harmonic_basis(cycles, N_HARMONICS)])
     return regress(basis, path)[0]
 
@@ -60,6 +67,9 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
         The drift; its mean is that of the path without its harmonics.
 
     """
+    if cycles[-1] - cycles[0] < ONE_STRIDE:
+        line = np.multiply.outer(cycles - cycles.mean(), _way_of_one_stride(path, cycles))
+        return line + path.mean(axis=0)
     n_frames = len(cycles)
     n_strides = cycles[-1] - cycles[0]
     orders = np.arange(1, int(2 * DRIFT_BELOW * n_strides) + 1)
@@ -69,3 +79,9 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     harmonics = harmonic_basis(cycles, N_HARMONICS)[:, 1:]
     weights = regress(np.column_stack([slow, harmonics]), path)
     return slow @ weights[: slow.shape[1]]
+
+
+def _way_of_one_stride(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
+    """Return how far a body gets in its only stride, at whose end it moves as at the beginning."""
+    way = path[-1] - path[0] + closing_step(path)
+    return way / (cycles[-1] + cycles[1] - 2 * cycles[0])

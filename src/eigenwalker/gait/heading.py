@@ -85,7 +85,8 @@ def find_heading(
     else:
         towards = feet_towards
         speed = np.nan if ground is None else speed
-    return Heading(_angle(towards), _angle(feet_towards), speed, treadmill)
+    angle = _angle(towards)
+    return Heading(angle, _angle(feet_towards) if feet_towards.any() else angle, speed, treadmill)
 
 
 def _forwards(velocity: np.ndarray, facing: np.ndarray | None) -> tuple[np.ndarray, float]:

@@ -11,15 +11,14 @@ from scipy.spatial.transform import Rotation
 from threadpoolctl import ThreadpoolController
 
 from eigenwalker.gait.drift import mean_velocity, slow_drift
-from eigenwalker.gait.gaps import MAX_GAP_S, Gap, fill_short_gaps, runs_of
+from eigenwalker.gait.gaps import MAX_GAP_S, Gap, fill_short_gaps
 from eigenwalker.gait.harmonics import regress
 from eigenwalker.gait.heading import find_heading
+from eigenwalker.gait.low_pass import low_passed
 from eigenwalker.gait.origin import find_origin
-from eigenwalker.gait.steady import SteadyPart, steady_part
+from eigenwalker.gait.passage import Passage, find_passage
+from eigenwalker.gait.steady import SteadyPart, body_relative, steady_part
 from eigenwalker.trajectories import check_trajectories, sampling_rate
-
-FEWEST_STRIDES = 0.9
-"""Below about one stride nothing repeats, and a walk cannot be told from its drift."""
 
 _WHOLE = 0.05
 """Strides that may lack to the next whole number: frames are discrete, frequencies estimates."""
@@ -27,16 +26,21 @@ _WHOLE = 0.05
 _MAX_ROUNDS = 10
 
 
-def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArray:
+def in_place(
+    walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S, low_pass_hz: float | None = None
+) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
     Short gaps are filled by cubic splines. Standing, starting, stopping and turning are left out,
-    and what is kept is trimmed to a whole number of strides, to the nearest frame. The direction
-    of walking is turned to +x. Forward progress and slow drift of the body are taken out
-    together, by regression beside the harmonics of the stride, which they therefore do not touch.
-    The pelvis (else the middle of the hips, else of all markers) is at x = y = 0 in the mean, and
-    z = 0 is the floor: where the lowest standing ankle is as high above it as ankles are for such
-    legs (0.084 of thigh and shank), or, where legs are not known, the level of the lowest marker.
+    and what is kept is trimmed to a whole number of strides, to the nearest frame. Of a walk there
+    and back the straight pass with most strides is taken; a walk with too few straight strides,
+    round in a circle or in a figure of eight, is unwound: each frame is seen from the body, whose
+    slow heading is taken out. The direction of walking is turned to +x. Forward progress and slow
+    drift of the body are taken out together, by regression beside the harmonics of the stride,
+    which they therefore do not touch. The pelvis (else the middle of the hips, else of all markers)
+    is at x = y = 0 in the mean, and z = 0 is the floor: where the lowest standing ankle is as high
+    above it as ankles are for such legs (0.084 of thigh and shank), or, where legs are not known,
+    the level of the lowest marker.
 
     Parameters
     ----------
@@ -45,6 +49,9 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
         joints' usual names, facing and standing feet are known, otherwise only the way travelled.
     max_gap_s : float
         Longest gap to be filled, in seconds.
+    low_pass_hz : float, optional
+        Cut-off of a low-pass filter (`low_passed`), for noisy captures; 6 Hz is usual for walking.
+        Left out, nothing is filtered.
 
     Returns
     -------
@@ -53,9 +60,12 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
         ``attrs`` tell ``speed_mm_s`` (NaN if it cannot be known; what the attributes of a walk in
         place already state is kept), ``heading_deg`` (direction of walking in the capture, from
         +x towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
+        ``straight_passes`` (from how many the strides were chosen; 1 without turns, 0 if unwound),
+        ``unwound_deg`` (how far the heading changed that was taken out),
         ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``,
         ``climb_mm`` (how far the body rose), ``wander_mm`` (how far it was, on the whole, from a
-        straight line at constant speed) and ``filled_samples``.
+        straight line at constant speed), ``filled_samples``, and ``low_pass_hz`` where a filter
+        was asked for.
 
     Raises
     ------
@@ -81,19 +91,26 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
     rate_hz = sampling_rate(walk)
     positions, gaps = fill_short_gaps(walk.values, rate_hz, max_gap_s)
     _refuse_unseen(walk, gaps)
+    filtered = {}
+    if low_pass_hz is not None:
+        positions = low_passed(positions, rate_hz, low_pass_hz)
+        filtered = {"low_pass_hz": float(low_pass_hz)}
     names = walk.marker.values.tolist()
     with _thread_pools().limit(limits=1, user_api="blas"):  # on a busy machine 20 times faster
-        part = _whole_strides(positions, _steady_run(walk, positions, gaps, rate_hz), rate_hz)
+        passage = find_passage(walk, positions, gaps, rate_hz)
+        part = _whole_strides(passage.positions, passage.part, rate_hz)
+        passage = passage._replace(part=part)
         kept = slice(part.start, part.stop)
         placed = _placed(
-            positions[kept], names, part.frequency_hz, rate_hz, walk.attrs.get("feet_deg")
+            passage.positions[kept], names, part.frequency_hz, rate_hz, walk.attrs.get("feet_deg")
         )
     result = walk.isel(time=kept).copy(data=placed.positions)
     if "rotation" in result.coords:
-        result = result.assign_coords(rotation=_turned(result.rotation, -placed.angle))
+        turns = passage.heading[0] - passage.heading[kept] - placed.angle
+        result = result.assign_coords(rotation=_turned(result.rotation, turns))
     filled = np.isnan(walk.values[kept]).any(axis=2).sum()
     return result.assign_attrs(
-        _facts(walk, placed, part, rate_hz),
+        _facts(walk, placed, passage, rate_hz) | filtered,
         filled_samples=int(filled) + int(walk.attrs.get("filled_samples", 0)),
     )
 
@@ -101,20 +118,6 @@ def in_place(walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S) -> xr.DataArra
 @cache
 def _thread_pools() -> ThreadpoolController:
     return ThreadpoolController()  # looks through all loaded libraries, which takes 2 ms
-
-
-def body_relative(positions: np.ndarray) -> np.ndarray:
-    """Return movement relative to the body, as columns, in which progress and drift do not show.
-
-    Relative to the middle of all markers; with less than three, to a straight path.
-    """
-    n_frames, n_markers, _ = positions.shape
-    if n_markers >= 3:
-        return (positions - positions.mean(axis=1, keepdims=True)).reshape(n_frames, -1)
-    frames = np.arange(n_frames) - (n_frames - 1) / 2
-    columns = positions.reshape(n_frames, -1)
-    columns = columns - columns.mean(axis=0)
-    return columns - np.multiply.outer(frames, frames @ columns / (frames @ frames))
 
 
 def _refuse_unseen(walk: xr.DataArray, gaps: list[Gap]) -> None:
@@ -125,67 +128,6 @@ def _refuse_unseen(walk: xr.DataArray, gaps: list[Gap]) -> None:
             f"The markers {walk.marker.values[unseen].tolist()} were never seen; leave them out, "
             "for instance with trajectories.drop_sel(marker=[...])."
         )
-
-
-def _steady_run(
-    walk: xr.DataArray, positions: np.ndarray, gaps: list[Gap], rate_hz: float
-) -> SteadyPart:
-    """Return the steady part with most strides among the runs of frames that are complete."""
-    parts, complaints = [], []
-    complete = np.isfinite(positions).all(axis=(1, 2))
-    for start, stop in runs_of(np.atleast_1d(complete)):
-        try:
-            part = steady_part(body_relative(positions[start:stop]), rate_hz)
-        except ValueError as error:
-            complaints.append((stop - start, str(error)))
-        else:
-            parts.append(part._replace(start=start + part.start, stop=start + part.stop))
-    parts = [part for part in parts if part.strides(rate_hz) >= FEWEST_STRIDES]
-    if not parts:
-        raise ValueError(_no_stride(walk, gaps, complaints))
-    best = max(parts, key=lambda part: part.strides(rate_hz))
-    if within := _gaps_within(best, parts, gaps, rate_hz):
-        raise ValueError(
-            f"Gaps in the midst of the walk are too long to be filled: {_told(walk, within)}. Fill "
-            "them where the capture was made, cut the capture before or after them, or leave "
-            "the markers out."
-        )
-    return best
-
-
-def _gaps_within(
-    best: SteadyPart, parts: list[SteadyPart], gaps: list[Gap], rate_hz: float
-) -> list[Gap]:
-    """Return gaps that alone part the best steady part from another: both reach up to them."""
-    stride = rate_hz / best.frequency_hz
-    around = [part for part in parts if -1 < part.start - best.stop < 2 * stride]
-    around += [part for part in parts if -1 < best.start - part.stop < 2 * stride]
-    spans = [sorted([best.start, best.stop, part.start, part.stop])[1:3] for part in around]
-    return [
-        gap
-        for gap in gaps
-        if any(low - 1 <= gap.start and gap.stop <= high + 1 for low, high in spans)
-    ]
-
-
-def _no_stride(walk: xr.DataArray, gaps: list[Gap], complaints: list[tuple[int, str]]) -> str:
-    if gaps:
-        return (
-            "No stride is seen whole: the longest stretch in which all markers are there is too "
-            f"short, as these are missing: {_told(walk, gaps)}. Leave out markers that were "
-            "hardly seen, or fill their gaps."
-        )
-    return max(complaints)[1] if complaints else "No stride repeats here: this is no steady walk."
-
-
-def _told(walk: xr.DataArray, gaps: list[Gap], most: int = 5) -> str:
-    time = walk.time.values
-    told = [
-        f"{walk.marker.values[gap.marker]} from {time[gap.start]:.2f} to "
-        f"{time[gap.stop - 1]:.2f} s (frames {gap.start} to {gap.stop - 1})"
-        for gap in sorted(gaps, key=lambda gap: gap.start - gap.stop)[:most]
-    ]
-    return ", ".join(told) + (f" and {len(gaps) - most} more" if len(gaps) > most else "")
 
 
 def _whole_strides(positions: np.ndarray, part: SteadyPart, rate_hz: float) -> SteadyPart:
@@ -237,7 +179,7 @@ def _placed(
     angle = heading.angle
     if heading.treadmill and feet_deg is not None:
         angle -= np.deg2rad(feet_deg)
-    still = still @ _about_z(-angle).as_matrix().T
+    still = still @ Rotation.from_euler("z", -angle).as_matrix().T
     still -= find_origin(still, markers)
     return _Placed(
         still,
@@ -257,24 +199,23 @@ def _wander(drift: np.ndarray, cycles: np.ndarray) -> float:
     return float(np.sqrt(np.einsum("ta,ta->t", aside, aside).mean()))
 
 
-def _about_z(angle: float) -> Rotation:
-    return Rotation.from_euler("z", angle)
-
-
-def _turned(rotation: xr.DataArray, angle: float) -> xr.DataArray:
-    """Return rotation vectors of shape (time, marker, axis) in a frame that is turned about z."""
+def _turned(rotation: xr.DataArray, angles: np.ndarray) -> xr.DataArray:
+    """Return rotation vectors of shape (time, marker, axis), each frame turned about z."""
     vectors = rotation.values.reshape(-1, 3)
+    turns = np.repeat(angles, rotation.shape[1])
     seen = ~np.isnan(vectors).any(axis=1)
     turned = np.full(vectors.shape, np.nan)
-    turned[seen] = (_about_z(angle) * Rotation.from_rotvec(vectors[seen])).as_rotvec()
+    about_z = Rotation.from_euler("z", turns[seen, None])
+    turned[seen] = (about_z * Rotation.from_rotvec(vectors[seen])).as_rotvec()
     return rotation.copy(data=turned.reshape(rotation.shape))
 
 
 def _facts(
-    walk: xr.DataArray, placed: _Placed, part: SteadyPart, rate_hz: float
+    walk: xr.DataArray, placed: _Placed, passage: Passage, rate_hz: float
 ) -> dict[str, float | bool | int]:
     """Return what is known of the walk; what its attributes state of it in place stays."""
-    time = walk.time.values
+    time, part = walk.time.values, passage.part
+    turned = np.ptp(np.rad2deg(passage.heading[part.start : part.stop]))
     before = walk.attrs if placed.treadmill else {}
     speed = before.get("speed_mm_s", np.nan)
     return {
@@ -287,6 +228,8 @@ def _facts(
         "n_strides": round(part.strides(rate_hz)),
         "frequency_hz": part.frequency_hz,
         "climb_mm": placed.climb_mm + float(before.get("climb_mm", 0.0)),
+        "straight_passes": int(before.get("straight_passes", passage.straight_passes)),
+        "unwound_deg": float(before.get("unwound_deg", turned)),
         "wander_mm": float(np.hypot(placed.wander_mm, before.get("wander_mm", 0.0))),
     }
 

@@ -32,6 +32,13 @@ MOST_CORES = 60
 SEARCH_RATE_HZ = 30.0
 """Enough for the harmonics above, three times over."""
 
+ONE_STRIDE_WITHIN = 0.25
+"""How far the estimate of a single stride's frequency may be off."""
+
+CLOSED_SHARE = 0.02
+"""Squared distance of end and beginning, as a share of the movement's variance, up to which a
+recording closes: an eightieth of a stride, or noise of a few millimetres."""
+
 _MAX_ROUNDS = 30
 
 
@@ -45,6 +52,20 @@ class SteadyPart(NamedTuple):
     def strides(self, rate_hz: float) -> float:
         """Return how many strides the part holds."""
         return (self.stop - self.start) * self.frequency_hz / rate_hz
+
+
+def body_relative(positions: np.ndarray) -> np.ndarray:
+    """Return movement relative to the body, as columns, in which progress and drift do not show.
+
+    Relative to the middle of all markers; with less than three, to a straight path.
+    """
+    n_frames, n_markers, _ = positions.shape
+    if n_markers >= 3:
+        return (positions - positions.mean(axis=1, keepdims=True)).reshape(n_frames, -1)
+    frames = np.arange(n_frames) - (n_frames - 1) / 2
+    columns = positions.reshape(n_frames, -1)
+    columns = columns - columns.mean(axis=0)
+    return columns - np.multiply.outer(frames, frames @ columns / (frames @ frames))
 
 
 def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
@@ -85,7 +106,29 @@ def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
     start, stop = window[0] * block, window[1] * block
     if window[1] == n_blocks:
         stop = len(movement)
-    return SteadyPart(start, stop, frequency_of_scores(movement[start:stop], rate_hz))
+    return SteadyPart(start, stop, _frequency(movement[start:stop], rate_hz))
+
+
+def _frequency(movement: np.ndarray, rate_hz: float) -> float:
+    """Return strides a second; of a recording that closes after one stride, what its length says.
+
+    A single stride tells its frequency badly, unless it goes over into its own beginning.
+    """
+    frequency_hz = frequency_of_scores(movement, rate_hz)
+    once = abs(len(movement) * frequency_hz / rate_hz - 1) < ONE_STRIDE_WITHIN
+    return rate_hz / len(movement) if once and closes(movement) else frequency_hz
+
+
+def closes(movement: np.ndarray) -> bool:
+    """Return whether movement goes on, after its last frame, as it began."""
+    gap = movement[-1] - movement[0] + closing_step(movement)
+    variance = movement.var(axis=0).sum()
+    return bool(gap @ gap < CLOSED_SHARE * variance)
+
+
+def closing_step(movement: np.ndarray) -> np.ndarray:
+    """Return the way from the last frame to the first of the next stride."""
+    return (movement[1] - movement[0] + movement[-1] - movement[-2]) / 2
 
 
 def _settle(

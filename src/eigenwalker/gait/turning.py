@@ -1,0 +1,150 @@
+"""Walks that turn: the slow heading of the body, and the walk as if it had gone straight on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from eigenwalker.gait.heading import SIDES
+from eigenwalker.gait.steady import steady_part
+
+TURNED = np.deg2rad(25)
+"""A capture in which the heading changes by less goes straight: of 175 acted straight
+walks it changes by 6 degrees, at most 15."""
+
+STRAIGHT_A_STRIDE = np.deg2rad(15)
+"""Change of heading within a stride from which on the stride belongs to a turn."""
+
+STRAIGHT_ON_THE_WHOLE = np.deg2rad(12)
+"""Change of heading that straight strides may add up to."""
+
+FLIPPED = np.deg2rad(60)
+"""Nobody turns so far from one frame to the next: where markers seem to, they do not tell."""
+
+_ROUNDS = 10
+
+
+def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) -> np.ndarray:
+    """Return the direction the body faces, without what repeats with every stride.
+
+    The direction square to hips and shoulders, or, where names do not tell these, the turn that
+    brings the markers nearest to their mean posture; its mean over a stride around each frame.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, axis)
+        Gaps filled where they are short.
+    markers : sequence of str
+        Their names.
+    rate_hz : float
+        Frames a second.
+
+    Returns
+    -------
+    array of shape (time,)
+        Radians, without jumps of a full turn; all 0 where it cannot be told, or hardly changes.
+
+    Examples
+    --------
+    Someone who goes round anticlockwise, once in 8 s:
+
+    >>> walk = ew.simulate_walk(seed=1, duration_s=8, rate_hz=60)
+    >>> around = np.linspace(0, 2 * np.pi, len(walk))
+    >>> turned = positions_turned(walk.values, around)
+    >>> heading = slow_heading(turned, ew.JOINTS.markers, 60)
+    >>> bool(np.abs(np.ptp(heading) - 2 * np.pi) < 0.1)
+    True
+
+    """
+    straight = np.zeros(len(positions))
+    facing = _facing(positions, list(markers))
+    seen = np.isfinite(facing)
+    if seen.sum() < 2:
+        return straight
+    frames = np.arange(len(positions))
+    angle = np.interp(frames, frames[seen], np.unwrap(np.angle(facing[seen])))
+    if np.ptp(angle) < TURNED or np.abs(np.diff(angle)).max() > FLIPPED:
+        return straight
+    whole = np.isfinite(positions).all(axis=(0, 2))
+    relative = positions[:, whole] - positions[:, whole].mean(axis=1, keepdims=True)
+    movement = positions_turned(relative, -angle).reshape(len(positions), -1)
+    try:
+        stride = rate_hz / steady_part(movement, rate_hz).frequency_hz
+    except ValueError:
+        return straight
+    heading = _mean_over(angle, round(stride))
+    return heading if np.ptp(heading) >= TURNED else straight
+
+
+def positions_turned(positions: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return positions turned about z by an angle in each frame, in radians."""
+    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    x, y, z = np.moveaxis(positions, 2, 0)
+    return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=2)
+
+
+def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Return a walk as if it had gone on in its first direction, each frame seen from the body.
+
+    The body is turned back by its slow heading, and so is each step of its path, so that progress
+    along a curve becomes progress along a line.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, axis)
+        In the room; frames in which a marker is missing are lost.
+    heading : array of shape (time,)
+        As `slow_heading` returns it.
+
+    Returns
+    -------
+    array of shape (time, marker, axis)
+
+    """
+    turn = heading[0] - heading
+    centre = positions.mean(axis=1, keepdims=True)
+    steps = np.nan_to_num(np.diff(centre, axis=0))
+    path = np.cumsum(positions_turned(steps, (turn[1:] + turn[:-1]) / 2), axis=0)
+    path = np.concatenate([np.zeros((1, 1, 3)), path]) + np.nan_to_num(centre[:1])
+    return positions_turned(positions - centre, turn) + path
+
+
+def straight_frames(heading: np.ndarray, stride: float) -> np.ndarray:
+    """Return which frames belong to straight passes; a stride has so many frames."""
+    return np.abs(np.gradient(heading)) * stride < STRAIGHT_A_STRIDE
+
+
+def _facing(positions: np.ndarray, names: list[str]) -> np.ndarray:
+    """Return the horizontal direction the body faces in each frame, as a complex number."""
+    flat = positions[..., 0] + 1j * positions[..., 1]
+    to_left = [
+        flat[:, names.index(f"left_{part}")] - flat[:, names.index(f"right_{part}")]
+        for part in ("hip", "shoulder")
+        if {f"{side}_{part}" for side in SIDES} <= set(names)
+    ]
+    if to_left:
+        return -1j * np.sum(to_left, axis=0)
+    flat = flat[:, np.isfinite(flat).all(axis=0)]
+    if flat.shape[1] < 3:
+        return np.full(len(positions), np.nan + 0j)
+    flat = flat - flat.mean(axis=1, keepdims=True)
+    posture = flat[len(flat) // 2]
+    for _ in range(_ROUNDS):
+        turn = flat @ posture.conj()
+        posture = (flat * np.exp(-1j * np.angle(turn))[:, None]).mean(axis=0)
+    return flat @ posture.conj()
+
+
+def _mean_over(values: np.ndarray, width: int) -> np.ndarray:
+    """Return running means over so many frames; at both ends they go on as they changed there."""
+    width = max(1, min(width, len(values) // 2))
+    inner = np.convolve(values, np.full(width, 1 / width), "valid")
+    first = (width - 1) / 2
+    frames = np.arange(len(values))
+    reach = min(width, len(inner) - 1)
+    slopes = (inner[reach] - inner[0]) / reach, (inner[-1] - inner[-1 - reach]) / reach
+    smooth = np.interp(frames, first + np.arange(len(inner)), inner)
+    last = first + len(inner) - 1
+    smooth += np.minimum(frames - first, 0) * slopes[0] + np.maximum(frames - last, 0) * slopes[1]
+    return smooth
