@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import av
+import numpy as np
+import pandas as pd
 import pytest
 
 from eigenwalker import cli
@@ -84,6 +88,45 @@ def test_fit_ends_with_1_when_some_were_refused_and_2_when_all_were(run, folder,
     assert code == 2
     assert "No capture of 1 could be used." in errors
     assert not (tmp_path / "none.nc").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
+def test_a_fit_that_is_killed_goes_on_where_it_stopped(folder, tmp_path, run) -> None:
+    captures, output = tmp_path / "captures", tmp_path / "people.nc"
+    captures.mkdir()
+    for path in folder.iterdir():
+        for copy in range(4):
+            (captures / f"{copy}_{path.name}").write_bytes(path.read_bytes())
+    command = [sys.executable, "-c", CALL, "fit", captures, "-o", output, "--jobs", "1"]
+    journal = tmp_path / "people.nc.part"
+    for how, lines in ((signal.SIGKILL, 2), (signal.SIGINT, 6)):
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as fit:
+            while fit.poll() is None and _lines(journal) < lines:
+                time.sleep(0.01)
+            fit.send_signal(how)
+            said = fit.communicate()[1]
+        assert fit.returncode == (130 if how == signal.SIGINT else -how), said
+        assert not output.exists()
+        kept = _lines(journal)
+        assert lines <= kept < 32
+    assert f"interrupted. What was read is kept in {journal}." in said
+    assert "The same command goes on where it stopped; with --fresh it starts anew." in said
+    assert "Traceback" not in said
+    code, said, errors = run(*command[3:])
+    assert code == 0
+    assert "Going on where an earlier run stopped" in errors
+    assert not journal.exists()
+    run("fit", captures, "-o", tmp_path / "at_once.nc", "--fresh")
+    resumed, at_once = Population.load(output), Population.load(tmp_path / "at_once.nc")
+    np.testing.assert_array_equal(resumed.X, at_once.X)
+    pd.testing.assert_frame_equal(resumed.traits, at_once.traits)
+
+
+CALL = "from eigenwalker.cli import main; main()"
+
+
+def _lines(path: Path) -> int:
+    return path.read_bytes().count(b"\n") if path.is_file() else 0
 
 
 def test_a_whole_study_can_be_rehearsed(run, tmp_path) -> None:

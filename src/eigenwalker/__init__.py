@@ -14,7 +14,7 @@ __version__ = "0.1.0"
 _HOME = {
     "assess": "quality",
     "classify": "classification",
-    "contrast": "contrast",
+    "contrast": "contrasts",
     "decompose_fourier": "decomposition",
     "decompose_pca": "decomposition",
     "direction": "caricature",
@@ -41,7 +41,7 @@ _HOME = {
     "load_population": "datasets",
     "nested_leave_one_out": "validation",
     "permutation_test": "validation",
-    "plausibility": "plausibility",
+    "plausibility": "extrapolation",
     "Population": "population",
     "project": "display.projection",
     "Quality": "quality",
@@ -60,7 +60,7 @@ _HOME = {
     "stance_speed": "gait",
     "to_movement": "interchange",
     "to_pyomeca": "interchange",
-    "trait_axis": "trait_axis",
+    "trait_axis": "trait_axes",
     "UnitGuessed": "mocap",
     "UnreadableFile": "mocap",
     "virtual_markers": "mocap",
@@ -84,7 +84,7 @@ if TYPE_CHECKING:
     from eigenwalker.caricature import direction as direction
     from eigenwalker.classification import classify as classify
     from eigenwalker.classification import regress as regress
-    from eigenwalker.contrast import contrast as contrast
+    from eigenwalker.contrasts import contrast as contrast
     from eigenwalker.datasets import load_population as load_population
     from eigenwalker.decomposition import decompose_fourier as decompose_fourier
     from eigenwalker.decomposition import decompose_pca as decompose_pca
@@ -117,7 +117,7 @@ if TYPE_CHECKING:
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.mocap.mat import read_mat as read_mat
-    from eigenwalker.plausibility import plausibility as plausibility
+    from eigenwalker.extrapolation import plausibility as plausibility
     from eigenwalker.population import Population as Population
     from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
@@ -130,7 +130,7 @@ if TYPE_CHECKING:
     from eigenwalker.space import WalkerSpace as WalkerSpace
     from eigenwalker.study import fit_folder as fit_folder
     from eigenwalker.study import walker_from_file as walker_from_file
-    from eigenwalker.trait_axis import trait_axis as trait_axis
+    from eigenwalker.trait_axes import trait_axis as trait_axis
     from eigenwalker.trajectories import label_trajectories as label_trajectories
     from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out
     from eigenwalker.validation import permutation_test as permutation_test

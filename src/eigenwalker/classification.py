@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.contrasts import Contrast, contrast
 from eigenwalker.features import NAMED_PARTS
 from eigenwalker.jackknife import (
     JackknifeCurves,

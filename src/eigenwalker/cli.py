@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eigenwalker.population import Population
-    from eigenwalker.trait_axis import TraitAxis
+    from eigenwalker.trait_axes import TraitAxis
 
 app = typer.Typer(
     rich_markup_mode=None,
@@ -37,6 +37,7 @@ app.add_typer(cli_data.app, name="data")
 T = TypeVar("T")
 SOME_REFUSED = 1
 FAILED = 2
+INTERRUPTED = 130
 
 People = Annotated[
     Path | None,
@@ -158,16 +159,23 @@ def fit(
     ] = "eigenposture",
     harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
     jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Read all anew, also what an interrupted run has read.")
+    ] = False,
 ) -> None:
     """Make a population of a folder of captures.
 
-    Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
+    Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used,
+    130 when it was interrupted; the same command then goes on where it stopped.
     """
     from eigenwalker.study import DECOMPOSE, fit_folder
 
     _one_of(form, DECOMPOSE, "--form")
     _population_path(output)
-    with _bar("Reading captures") as progress:
+    journal = output.with_name(f"{output.name}.part")
+    if fresh:
+        journal.unlink(missing_ok=True)
+    with _going_on(journal), _bar("Reading captures") as progress:
         study = fit_folder(
             folder,
             traits=traits,
@@ -175,6 +183,7 @@ def fit(
             form=form,  # pyright: ignore[reportArgumentType] - one of the two by now
             n_harmonics=harmonics,
             n_jobs=jobs,
+            journal=journal,
             progress=progress,
         )
     for status in ("flagged", "refused"):
@@ -186,6 +195,7 @@ def fit(
         print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
         raise typer.Exit(FAILED)
     study.population.save(output)
+    journal.unlink(missing_ok=True)
     read = study.files[study.files["status"] != "refused"]
     print(
         f"{len(read)} of {len(study.files)} captures read, "
@@ -212,7 +222,7 @@ def classify(
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
     from eigenwalker import classification
-    from eigenwalker.contrast import contrast
+    from eigenwalker.contrasts import contrast
     from eigenwalker.report.main_job import write_main_job
 
     population = _population(people, with_flagged)
@@ -262,7 +272,7 @@ def synthesize(
     import numpy as np
 
     from eigenwalker.display.films import write_film
-    from eigenwalker.trait_axis import trait_axis
+    from eigenwalker.trait_axes import trait_axis
 
     population = _population(people, with_flagged)
     vector = _start(population, start)
@@ -323,9 +333,26 @@ def simulate(
             print(f"Captures: {captures}; who is who: {table}")
 
 
+@contextmanager
+def _going_on(journal: Path) -> Iterator[None]:
+    """Say what was kept when work is interrupted, and how to go on."""
+    if journal.is_file():
+        said = "Going on where an earlier run stopped; --fresh starts anew."
+        print(said, file=sys.stderr)
+    try:
+        yield
+    except KeyboardInterrupt:
+        kept = f"What was read is kept in {journal}. " if journal.is_file() else ""
+        how = "The same command goes on where it stopped; with --fresh it starts anew."
+        print(f"eigenwalker: interrupted. {kept}{how}", file=sys.stderr)
+        raise typer.Exit(INTERRUPTED) from None
+
+
 def _population_path(path: Path) -> None:
     if path.suffix != ".nc":
         raise ValueError(f"{path}: a population is written as .nc; name it for instance people.nc.")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.parent} to write into; make it first.")
 
 
 def _counted(things: Iterable[T], total: int, progress: Callable[[int, int], None]) -> Iterator[T]:
@@ -374,7 +401,7 @@ def _wish(wish: str) -> tuple[str, float]:
 
 
 def _print_plausibility(population: Population, vector: np.ndarray) -> None:
-    from eigenwalker.plausibility import plausibility
+    from eigenwalker.extrapolation import plausibility
 
     found = plausibility(population, vector)
     print(

@@ -14,7 +14,7 @@ from eigenwalker.caricature import Kind
 from eigenwalker.classification import N_PANELS, Classification, Progress, Regression
 from eigenwalker.classification import classify as classify_inputs
 from eigenwalker.classification import regress as regress_inputs
-from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.contrasts import Contrast, contrast
 from eigenwalker.decomposition import decompose_pca
 from eigenwalker.display.bodies import figure_joints, figure_walkers
 from eigenwalker.display.components import figure_scores, figure_variance
@@ -23,7 +23,7 @@ from eigenwalker.display.eigenpostures import figure_eigenpostures
 from eigenwalker.display.films import Style, write_film
 from eigenwalker.display.populations import figure_space
 from eigenwalker.gait import gait_parameters
-from eigenwalker.plausibility import plausibility
+from eigenwalker.extrapolation import plausibility
 from eigenwalker.population import Population
 from eigenwalker.report.content import (
     Block,
@@ -38,7 +38,7 @@ from eigenwalker.report.content import (
 )
 from eigenwalker.report.page import write_report
 from eigenwalker.space import WalkerSpace
-from eigenwalker.trait_axis import TraitAxis, trait_axis
+from eigenwalker.trait_axes import TraitAxis, trait_axis
 from eigenwalker.walker import Walker
 
 _KINDS: dict[Kind, str] = {

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eigenwalker.caricature import Discriminant, Kind, Units, direction
-from eigenwalker.contrast import Contrast, contrast
+from eigenwalker.contrasts import Contrast, contrast
 from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor, Order
 from eigenwalker.population import Population
 from eigenwalker.space import WalkerSpace

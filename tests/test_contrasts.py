@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.contrast import contrast
+from eigenwalker.contrasts import contrast
 from eigenwalker.population import FLAG, Population
 from eigenwalker.simulation import simulate_population
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.plausibility import LIMBS, plausibility
+from eigenwalker.extrapolation import LIMBS, plausibility
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_population
-from eigenwalker.trait_axis import trait_axis
+from eigenwalker.trait_axes import trait_axis
 
 
 @pytest.fixture(scope="module")
