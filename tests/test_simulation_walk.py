@@ -232,6 +232,15 @@ def test_what_cannot_be_walked_is_refused():
         simulate_walk(gap_share=1.5)
     with pytest.raises(ValueError, match="markers='all' is not known"):
         simulate_walk(markers="all")
+    with pytest.raises(ValueError, match="sex='man' is not known"):
+        simulate_walk(sex="man")
+
+
+def test_one_can_ask_for_a_woman_or_a_man():
+    for sex in ("female", "male"):
+        assert {simulate_walk(seed=s, sex=sex, duration_s=1).attrs["sex"] for s in range(4)} == {
+            sex
+        }
 
 
 def curves(walk):

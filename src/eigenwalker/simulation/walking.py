@@ -31,6 +31,7 @@ def simulate_walk(
     person: Mapping[str, float] | None = None,
     *,
     seed: int | Sequence[int] = 0,
+    sex: Literal["female", "male"] | None = None,
     duration_s: float = 12.0,
     rate_hz: float = 120.0,
     markers: Literal["joints", "full", "skin"] = "joints",
@@ -56,6 +57,8 @@ def simulate_walk(
         Parameters of `PARAMETERS`, such as a row of `draw_people`. Left out, someone is drawn.
     seed : int or sequence of int
         The same seed gives the same walk, whatever markers, noise and gaps are asked for.
+    sex : {"female", "male"}, optional
+        Whom to draw; left out, either.
     duration_s, rate_hz : float
         Length in seconds, and frames a second.
     markers : {"joints", "full", "skin"}
@@ -102,10 +105,10 @@ def simulate_walk(
     0.9
 
     """
-    _check(duration_s, rate_hz, noise_mm, gap_share, markers)
+    _check(duration_s, rate_hz, noise_mm, gap_share, markers, sex)
     check_parameters(parameters)
     drawn, walked, shaken, slid, lost = (_chance(seed, stream) for stream in range(5))
-    person = {**(_anyone(drawn) if person is None else person), **parameters}
+    person = {**(_anyone(drawn, sex) if person is None else person), **parameters}
     time = np.arange(round(duration_s * rate_hz)) / rate_hz
     body = body_of(person)
     pace = pace_of(person, body)
@@ -165,8 +168,9 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
 
 
 def _check(
-    duration_s: float, rate_hz: float, noise_mm: float, gap_share: float, markers: str
-) -> None:
+    duration_s: float, rate_hz: float, noise_mm: float, gap_share: float, markers: str,
+    sex: str | None,
+) -> None:  # fmt: skip
     amiss = []
     if not (duration_s > 0 and rate_hz > 0 and duration_s * rate_hz >= 2):
         amiss.append(f"duration_s={duration_s} at rate_hz={rate_hz} holds fewer than two frames")
@@ -176,6 +180,8 @@ def _check(
         amiss.append(f"gap_share={gap_share} must be from 0 to below 1")
     if markers not in ("joints", "full", "skin"):
         amiss.append(f"markers={markers!r} is not known; give 'joints', 'full' or 'skin'")
+    if sex not in (None, "female", "male"):
+        amiss.append(f"sex={sex!r} is not known; give 'female' or 'male'")
     if amiss:
         raise ValueError("This walk cannot be simulated: " + "; ".join(amiss) + ".")
 
@@ -184,10 +190,9 @@ def _chance(seed: int | Sequence[int], stream: int) -> np.random.Generator:
     return np.random.default_rng([*np.atleast_1d(seed).tolist(), stream])
 
 
-def _anyone(chance: np.random.Generator) -> dict[str, Any]:
-    women = int(chance.random() < 0.5)
-    seed = int(chance.integers(2**31))
-    drawn = draw_people(women, 1 - women, seed=seed).iloc[0]
+def _anyone(chance: np.random.Generator, sex: str | None) -> dict[str, Any]:
+    women = int(chance.random() < 0.5) if sex is None else int(sex == "female")
+    drawn = draw_people(women, 1 - women, seed=int(chance.integers(2**31))).iloc[0]
     return {str(name): value for name, value in drawn.items()}
 
 
