@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from eigenwalker import study
 from eigenwalker.classification import classify
 from eigenwalker.simulation import simulate_captures
 from eigenwalker.study import fit_folder, walker_from_file
@@ -127,3 +128,62 @@ def test_real_captures_reach_the_share_explained_of_the_prototype(captures, name
     walker, facts = walker_from_file(captures / "cmu" / name, form="fourier")
     assert walker.fit is not None
     assert facts["r2"] == walker.fit.r2 >= r2
+
+
+def test_an_interrupted_run_goes_on_where_it_stopped(folder, tmp_path, monkeypatch) -> None:
+    journal = tmp_path / "people.nc.part"
+
+    def interrupted(done: int, _total: int) -> None:
+        if done == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fit_folder(folder, n_jobs=1, journal=journal, progress=interrupted)
+    with journal.open("a") as file:
+        file.write('{"file": "female_2.c3d", "state"')  # as a power cut leaves it
+    read = []
+    monkeypatch.setattr(
+        study, "walker_from_file", lambda path, **how: (read.append(path), made(path, **how))[1]
+    )
+    made = walker_from_file
+    again = fit_folder(folder, n_jobs=1, journal=journal)
+    assert [path.name for path in read] == [
+        "female_1.c3d", "female_2.c3d", "male_4.c3d", "male_5.c3d",
+    ]  # fmt: skip
+    monkeypatch.undo()
+    at_once = fit_folder(folder, n_jobs=1)
+    assert again.population is not None
+    assert at_once.population is not None
+    np.testing.assert_array_equal(again.population.X, at_once.population.X)
+    pd.testing.assert_frame_equal(again.files, at_once.files)
+    pd.testing.assert_frame_equal(again.population.traits, at_once.population.traits)
+
+
+def test_what_has_changed_is_read_again(folder, tmp_path) -> None:
+    journal, path = tmp_path / "people.nc.part", tmp_path / "in" / "a.c3d"
+    path.parent.mkdir()
+    path.write_bytes((folder / "female_0.c3d").read_bytes())
+    first = fit_folder(path.parent, n_jobs=1, journal=journal)
+    fourier = fit_folder(path.parent, n_jobs=1, journal=journal, form="fourier")
+    path.write_bytes((folder / "men" / "male_3.c3d").read_bytes())
+    changed = fit_folder(path.parent, n_jobs=1, journal=journal)
+    assert first.population is not None
+    assert fourier.population is not None
+    assert changed.population is not None
+    assert fourier.population.walkers[0].form == "fourier"
+    assert not np.array_equal(first.population.X, changed.population.X)
+
+
+@pytest.mark.parametrize("damage", ["", "[]\n", "{}\n", "\x00\xff\n", '{"file": "female_0.c3d"}\n'])
+def test_a_damaged_journal_costs_time_and_nothing_else(folder, tmp_path, damage) -> None:
+    journal = tmp_path / "people.nc.part"
+    journal.write_text(damage, encoding="latin-1")
+    names = pd.DataFrame({"file": ["female_0.c3d"]})
+    kept = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
+    lines = journal.read_text(encoding="latin-1").splitlines()
+    entry = lines[-1].replace('"p0": [[', '"p0": [["no number", ')
+    journal.write_text(entry + "\n")
+    again = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
+    assert kept.population is not None
+    assert again.population is not None
+    np.testing.assert_array_equal(kept.population.X, again.population.X)

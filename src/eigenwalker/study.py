@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,9 +13,11 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
+import eigenwalker
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.gait import in_place
-from eigenwalker.mocap import FORMATS, is_capture, read_mocap, virtual_markers
+from eigenwalker.journal import Journal
+from eigenwalker.mocap import FORMATS, explained_by, is_capture, read_mocap, virtual_markers
 from eigenwalker.population import FLAG, Population
 from eigenwalker.quality import assess
 from eigenwalker.walker import Form, Walker
@@ -107,6 +109,7 @@ def fit_folder(
     form: Form = "eigenposture",
     n_harmonics: int = 2,
     n_jobs: int = -1,
+    journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Study:
     r"""Return the population of the captures in a folder.
@@ -125,6 +128,10 @@ def fit_folder(
         See `walker_from_file`.
     n_jobs : int
         Processes to read with; -1 uses all cores.
+    journal : str or Path, optional
+        A file that keeps each walker as soon as it is made (`eigenwalker.journal`). If it is there
+        from an earlier run that was interrupted, captures that have not changed since are not
+        read again. Remove it when the population is saved.
     progress : callable, optional
         Called with the number of captures done and of all.
 
@@ -140,17 +147,46 @@ def fit_folder(
     """
     folder = Path(folder)
     table = _listed(folder, traits, trait_from_name)
-    tasks = [joblib.delayed(_attempt)(folder, name, form, n_harmonics) for name in table[FILE]]
+    names = table[FILE].tolist()
+    settings = {"version": eigenwalker.__version__, "form": form, "n_harmonics": n_harmonics}
+    kept = None if journal is None else Journal(Path(journal), settings)
+    done: dict[str, _Attempt] = {}
+    for name, attempt in _attempts(folder, names, form, n_harmonics, n_jobs, kept):
+        done[name] = attempt
+        if progress:
+            progress(len(done), len(names))
+    walkers = [done[name][0] for name in names]
+    return _gathered(table, walkers, pd.DataFrame([done[name][1] for name in names]), form)
+
+
+def _attempts(
+    folder: Path, names: list[str], form: Form, n_harmonics: int, n_jobs: int, kept: Journal | None
+) -> Iterator[tuple[str, _Attempt]]:
+    """Yield what became of each capture; first of those that an earlier run has made."""
+    waiting = []
+    for name in names:
+        if kept and (found := kept.find(name, _state(folder, name))):
+            yield name, found
+        else:
+            waiting.append(name)
+    if not waiting:
+        return
+    tasks = [joblib.delayed(_attempt)(folder, name, form, n_harmonics) for name in waiting]
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(tasks))
     attempts: Iterable[_Attempt] = joblib.Parallel(n_processes, return_as="generator")(tasks)  # pyright: ignore[reportAssignmentType] - typed as a list or None
-    walkers: list[Walker | None] = []
-    facts: list[Mapping[str, object]] = []
-    for walker, found in attempts:
-        walkers.append(walker)
-        facts.append(found)
-        if progress:
-            progress(len(walkers), len(tasks))
-    return _gathered(table, walkers, pd.DataFrame(facts), form)
+    for name, (walker, facts) in zip(waiting, attempts, strict=True):
+        if kept is not None and walker is not None:
+            kept.keep(name, _state(folder, name), walker, facts)
+        yield name, (walker, facts)
+
+
+def _state(folder: Path, name: str) -> list[int]:
+    """Return size and time of a capture and of the files that explain it."""
+    path = folder / name
+    if not path.is_file():
+        return []
+    stats = [file.stat() for file in (path, *explained_by(path))]
+    return [number for stat in stats for number in (stat.st_size, stat.st_mtime_ns)]
 
 
 def _attempt(folder: Path, name: str, form: Form, n_harmonics: int) -> _Attempt:

@@ -2,7 +2,7 @@
 
 from eigenwalker.mocap.joints import virtual_markers
 from eigenwalker.mocap.rate import RateAssumed
-from eigenwalker.mocap.read import FORMATS, is_capture, read_mocap
+from eigenwalker.mocap.read import FORMATS, explained_by, is_capture, read_mocap
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import UnitGuessed
 
@@ -11,6 +11,7 @@ __all__ = [
     "RateAssumed",
     "UnitGuessed",
     "UnreadableFile",
+    "explained_by",
     "is_capture",
     "read_mocap",
     "virtual_markers",

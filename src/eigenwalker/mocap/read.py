@@ -11,15 +11,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.mocap.asf_amc import looks_like_acclaim, read_asf_amc
+from eigenwalker.mocap.asf_amc import find_skeleton, looks_like_acclaim, read_asf_amc
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
-from eigenwalker.mocap.content import content_of
+from eigenwalker.mocap.content import beside, content_of
 from eigenwalker.mocap.mot import looks_like_mot, read_mot
 from eigenwalker.mocap.netcdf import holds_trajectories, looks_like_netcdf, read_netcdf
 from eigenwalker.mocap.pose_json import holds_poses, looks_like_json, read_pose_json
 from eigenwalker.mocap.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
-from eigenwalker.mocap.table import holds_points, looks_like_table, read_table
+from eigenwalker.mocap.table import DESCRIPTION, holds_points, looks_like_table, read_table
 from eigenwalker.mocap.trc import looks_like_trc, read_trc
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
@@ -180,6 +180,29 @@ def is_capture(path: Path) -> bool:
     except OSError:
         return True  # to be refused with the reason
     return any(form.among_others is None or form.among_others(beginning, path) for form in forms)
+
+
+def explained_by(path: Path) -> list[Path]:
+    """Return the files beside a capture without which it cannot be read as it is.
+
+    Parameters
+    ----------
+    path : Path
+        A capture.
+
+    Returns
+    -------
+    list of Path
+        The skeleton of an AMC file, the description of a table; for most captures none.
+
+    """
+    if path.suffix.lower() == ".amc":
+        try:
+            return [find_skeleton(path)]
+        except UnreadableFile:
+            return []
+    description = beside(path, DESCRIPTION)
+    return [description] if description else []
 
 
 def _at_rate(walk: xr.DataArray, rate_hz: float | None) -> xr.DataArray:
