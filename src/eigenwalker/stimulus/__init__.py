@@ -3,9 +3,9 @@
 Made with `make_stimulus`, changed with `Stimulus.then`.
 """
 
+from eigenwalker.stimulus.figure import Figure as Figure
+from eigenwalker.stimulus.making import make_stimulus as make_stimulus
 from eigenwalker.stimulus.stimulus import Display as Display
-from eigenwalker.stimulus.stimulus import Figure as Figure
 from eigenwalker.stimulus.stimulus import Stimulus as Stimulus
 from eigenwalker.stimulus.stimulus import Timing as Timing
 from eigenwalker.stimulus.stimulus import View as View
-from eigenwalker.stimulus.stimulus import make_stimulus as make_stimulus

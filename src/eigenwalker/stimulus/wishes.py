@@ -13,6 +13,7 @@ import numpy as np
 
 from eigenwalker.display.projection import observer_axes
 from eigenwalker.skeleton import JOINTS
+from eigenwalker.stimulus.figure import walker_to_dict
 from eigenwalker.stimulus.moving import Moving
 from eigenwalker.stimulus.playing import scene
 from eigenwalker.stimulus.transforms import TRANSFORMS
@@ -59,7 +60,7 @@ def granted(stimulus: Stimulus, name: str, wish: Mapping[str, Any]) -> Wish:
 
 def _figure(stimulus: Stimulus, asked: Wish) -> tuple[int, Moving]:
     number = (asked.get("figures") or [0])[0]
-    figures = scene(stimulus._content)
+    figures = scene(stimulus.content)
     if not 0 <= number < len(stimulus.figures):
         raise ValueError(f"There is no figure {number}; there are {len(stimulus.figures)}.")
     return number, figures[number]
@@ -116,8 +117,6 @@ def _reverse(stimulus: Stimulus, asked: Wish) -> tuple[str, Wish]:
 
 
 def _morph(stimulus: Stimulus, asked: Wish) -> tuple[str, Wish]:
-    from eigenwalker.stimulus.stimulus import walker_to_dict
-
     if isinstance(asked.get("walker"), Walker):
         asked["walker"] = walker_to_dict(asked["walker"])
     return "morph", {"start_s": 0.0, "end_s": stimulus.timing.duration_s, **asked}
