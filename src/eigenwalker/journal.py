@@ -10,6 +10,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -128,8 +129,9 @@ def _plain(value: object) -> object:
 def _walker(kept: dict) -> Walker:
     fit = kept["fit"]
     if fit is not None:
-        fit = CaptureFit(
-            **{key: np.array(value) if isinstance(value, list) else value
-               for key, value in fit.items()}
-        )  # fmt: skip
+        fit = CaptureFit(**{key: _array(value) for key, value in fit.items()})
     return Walker(**{**kept, "fit": fit})
+
+
+def _array(value: Any) -> Any:
+    return np.array(value) if isinstance(value, list) else value
