@@ -20,7 +20,7 @@ from eigenwalker.simulation import simulate_captures, simulate_population
 
 @pytest.fixture(scope="module")
 def people() -> Population:
-    return simulate_population(6, 6, seed=3)
+    return simulate_population(6, 6, seed=3, markers="joints")
 
 
 def test_built_in_population_is_the_papers_in_size() -> None:
