@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eigenwalker.display import films
+from eigenwalker.display import encoding
 from eigenwalker.display.films import write_film
 from eigenwalker.display.raster import draw_discs, draw_lines, lettering
 from eigenwalker.display.staging import positions_at, stage
@@ -117,7 +117,7 @@ def test_a_gif_of_whole_strides_keeps_the_tempo_to_a_hundredth_of_a_second(
     write_film(three_dots(frequency_hz), path, n_strides=n_strides, rate_hz=rate_hz, size_px=32)
     delays = gif_delays(path)
     assert abs(sum(delays) - 100 * n_strides / frequency_hz) <= 0.5
-    assert min(delays) >= films.CENTISECONDS[rate_hz]
+    assert min(delays) >= encoding.CENTISECONDS[rate_hz]
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".gif"])

@@ -2,59 +2,27 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal
 
-import av
 import numpy as np
 import xarray as xr
-from av.video.stream import VideoStream
 
+from eigenwalker.display.encoding import FilmFormat, encode_film, film_format, frame_delays
 from eigenwalker.display.links import LINKS
-from eigenwalker.display.staging import STYLES, Scene, Style, positions_at, stage
+from eigenwalker.display.staging import STYLES, Style, positions_at, stage
 from eigenwalker.skeleton import Skeleton
 from eigenwalker.trajectories import check_trajectories
 from eigenwalker.walker import Walker
 
 Background = Literal["dark", "light"]
-GREYS: dict[str, tuple[int, int]] = {"dark": (0, 255), "light": (255, 25)}
-"""Grey of the ground and of the walker, black 0 to white 255."""
+COLOURS = {"dark": ("#000000", "#ffffff"), "light": ("#ffffff", "#191919")}
+"""Of the ground and of the walker."""
 USUAL_S = 4.0
 """Seconds of a film whose duration is left open."""
-CENTISECONDS = {50: 2, 25: 4, 20: 5}
-"""Frame rates of a GIF, whose delays are whole hundredths of a second, and those delays."""
-
-
-@dataclass(frozen=True)
-class FilmFormat:
-    """How a suffix is written: container, codec, the codec's options, the usual frame rate."""
-
-    container: str
-    codec: str
-    pixels: str
-    rate_hz: float
-    options: dict[str, str] = field(default_factory=dict)
-    container_options: dict[str, str] = field(default_factory=dict)
-
-
-FORMATS = {
-    ".mp4": FilmFormat(
-        *("mp4", "libx264", "yuv420p", 60),
-        options={"crf": "24", "preset": "veryfast"},
-        container_options={"movflags": "+faststart"},
-    ),
-    ".webm": FilmFormat(
-        *("webm", "libvpx-vp9", "yuv420p", 60),
-        options={"crf": "30", "b": "0", "deadline": "realtime", "cpu-used": "6"},
-    ),
-    ".gif": FilmFormat("gif", "gif", "gray", 50, container_options={"loop": "0"}),
-}
 
 
 def write_film(
@@ -136,7 +104,7 @@ def write_film(
     """
     path = Path(path)
     shown = [walks] if isinstance(walks, Walker | xr.DataArray) else list(walks)
-    form = _form_of(path, rate_hz)
+    form = film_format(path, rate_hz)
     _check(shown, duration_s, n_strides, style, background, titles)
     delays, seconds = _moments(shown, duration_s, n_strides, rate_hz or form.rate_hz, form)
     scene = stage(
@@ -152,29 +120,16 @@ def write_film(
         titles=titles,
         skeleton=skeleton,
     )
-    whole = path.with_name(f".{path.name}.part")
-    try:
-        _encode(scene, whole, form, delays, GREYS[background], progress)
-        os.replace(whole, path)
-    finally:
-        whole.unlink(missing_ok=True)
+    encode_film(
+        scene.frames(),
+        path,
+        shape=scene.shape,
+        form=form,
+        delays=delays,
+        colours=COLOURS[background],
+        progress=progress,
+    )
     return path
-
-
-def _form_of(path: Path, rate_hz: float | None) -> FilmFormat:
-    if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path.name!r} must end in one of {sorted(FORMATS)} to become a film.")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
-    form = FORMATS[path.suffix.lower()]
-    if form.codec == "gif" and rate_hz is not None and rate_hz not in CENTISECONDS:
-        raise ValueError(
-            f"A GIF waits whole hundredths of a second between frames, so rate_hz={rate_hz:g} "
-            f"would change the tempo of the walk; choose one of {sorted(CENTISECONDS)}, or an MP4."
-        )
-    if rate_hz is not None and not 1 <= rate_hz <= 240:
-        raise ValueError(f"rate_hz={rate_hz:g} is no rate for a film; choose 1 to 240.")
-    return form
 
 
 def _check(
@@ -197,8 +152,8 @@ def _check(
         amiss.append("n_strides must be 1 or more, and is for walkers; a capture takes duration_s")
     if style not in STYLES:
         amiss.append(f"style={style!r} is none of {STYLES}")
-    if background not in GREYS:
-        amiss.append(f"background={background!r} is none of {tuple(GREYS)}")
+    if background not in COLOURS:
+        amiss.append(f"background={background!r} is none of {tuple(COLOURS)}")
     if len(titles) not in (0, len(shown)):
         amiss.append(f"there are {len(titles)} titles for {len(shown)} walkers")
     if amiss:
@@ -222,7 +177,7 @@ def _moments(
             captured = [np.ptp(w.time.values) for w in shown if not isinstance(w, Walker)]
             duration_s = float(min(captured, default=USUAL_S))
         lasts = [duration_s] * len(shown)
-    delays = _delays(duration_s, rate_hz, form, whole=n_strides is not None)
+    delays = frame_delays(duration_s, rate_hz, form, whole=n_strides is not None)
     starts = np.concatenate([[0.0], np.cumsum([float(delay) for delay in delays[:-1]])])
     length = float(sum(delays)) if n_strides is not None else duration_s
     return delays, [starts * (last / length) for last in lasts]
@@ -234,62 +189,3 @@ def _start(walk: Walker | xr.DataArray, shown: list[Walker | xr.DataArray]) -> f
         return float(walk.time.values[0])
     beside = [float(other.time.values[0]) for other in shown if not isinstance(other, Walker)]
     return beside[0] if beside else walk.time_origin_s
-
-
-def _delays(duration_s: float, rate_hz: float, form: FilmFormat, *, whole: bool) -> list[Fraction]:
-    """Seconds each frame stays; a film of whole strides lasts as long as they do."""
-    if form.codec == "gif":
-        hundredths = max(round(100 * duration_s), CENTISECONDS[int(rate_hz)])
-        n_frames = hundredths // CENTISECONDS[int(rate_hz)]
-        ends = [round(hundredths * frame / n_frames) for frame in range(n_frames + 1)]
-        return [Fraction(b - a, 100) for a, b in itertools.pairwise(ends)]
-    n_frames = max(round(duration_s * rate_hz), 1)
-    delay = Fraction(duration_s / n_frames if whole else 1 / rate_hz)
-    return [1 / (1 / delay).limit_denominator(1001)] * n_frames
-
-
-def _encode(
-    scene: Scene,
-    path: Path,
-    form: FilmFormat,
-    delays: list[Fraction],
-    greys: tuple[int, int],
-    progress: Callable[[int, int], object] | None,
-) -> None:
-    n_rows, n_columns = scene.shape
-    shades, planes, picture = _canvas(form, scene.shape, greys)
-    tick = delays[0] if form.codec != "gif" else Fraction(1, 100)
-    options = dict(form.container_options)
-    if form.codec == "gif":  # the last frame has no next one to tell how long it stays
-        options["final_delay"] = str(round(100 * delays[-1]))
-    with av.open(str(path), "w", format=form.container, options=options) as film:
-        stream = cast(VideoStream, film.add_stream(form.codec, rate=1 / tick, options=form.options))
-        stream.width, stream.height, stream.pix_fmt = n_columns, n_rows, form.pixels
-        stream.codec_context.time_base = tick
-        start = Fraction(0)
-        for done, (cover, delay) in enumerate(zip(scene.frames(), delays, strict=True), start=1):
-            np.take(shades, cover, out=picture, mode="clip")  # else it would be buffered
-            frame = av.VideoFrame.from_ndarray(planes, format=form.pixels)
-            frame.time_base, frame.pts = tick, round(start / tick)
-            frame.duration = round(delay / tick)
-            film.mux(stream.encode(frame))
-            start += delay
-            if progress is not None:
-                progress(done, len(delays))
-        film.mux(stream.encode())
-
-
-def _canvas(
-    form: FilmFormat, shape: tuple[int, int], greys: tuple[int, int]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The shade of each cover, what the encoder takes, and that part of it which is the picture.
-
-    Greys as they are, or as luma of 16 to 235 above empty planes of colour.
-    """
-    shades = np.linspace(*greys, 256)
-    if form.pixels == "gray":
-        planes = np.zeros(shape, np.uint8)
-        return np.rint(shades).astype(np.uint8), planes, planes
-    n_rows, n_columns = shape
-    planes = np.full((n_rows * 3 // 2, n_columns), 128, np.uint8)
-    return np.rint(16 + shades * (219 / 255)).astype(np.uint8), planes, planes[:n_rows]

@@ -1,0 +1,208 @@
+"""Frames as a film: containers, codecs, how long each frame stays, and shades as pixels."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import cast
+
+import av
+import numpy as np
+from av.video.stream import VideoStream
+
+CENTISECONDS = {50: 2, 25: 4, 20: 5}
+"""Frame rates of a GIF, whose delays are whole hundredths of a second, and those delays."""
+LUMA = np.array([0.299, 0.587, 0.114])
+"""Shares of red, green and blue in brightness (ITU-R BT.601)."""
+
+
+@dataclass(frozen=True)
+class FilmFormat:
+    """How a suffix is written: container, codec, the codec's options, the usual frame rate."""
+
+    container: str
+    codec: str
+    pixels: str
+    rate_hz: float
+    options: dict[str, str] = field(default_factory=dict)
+    container_options: dict[str, str] = field(default_factory=dict)
+
+
+FORMATS = {
+    ".mp4": FilmFormat(
+        *("mp4", "libx264", "yuv420p", 60),
+        options={"crf": "24", "preset": "veryfast"},
+        container_options={"movflags": "+faststart"},
+    ),
+    ".webm": FilmFormat(
+        *("webm", "libvpx-vp9", "yuv420p", 60),
+        options={"crf": "30", "b": "0", "deadline": "realtime", "cpu-used": "6"},
+    ),
+    ".gif": FilmFormat("gif", "gif", "pal8", 50, container_options={"loop": "0"}),
+}
+
+
+def film_format(path: Path, rate_hz: float | None) -> FilmFormat:
+    """Return how a film of this name is written, if it can be at this rate."""
+    if path.suffix.lower() not in FORMATS:
+        raise ValueError(f"{path.name!r} must end in one of {sorted(FORMATS)} to become a film.")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
+    form = FORMATS[path.suffix.lower()]
+    if form.codec == "gif" and rate_hz is not None and rate_hz not in CENTISECONDS:
+        raise ValueError(
+            f"A GIF waits whole hundredths of a second between frames, so rate_hz={rate_hz:g} "
+            f"would change the tempo of the walk; choose one of {sorted(CENTISECONDS)}, or an MP4."
+        )
+    if rate_hz is not None and not 1 <= rate_hz <= 240:
+        raise ValueError(f"rate_hz={rate_hz:g} is no rate for a film; choose 1 to 240.")
+    return form
+
+
+def frame_delays(
+    duration_s: float, rate_hz: float, form: FilmFormat, *, whole: bool
+) -> list[Fraction]:
+    """Seconds each frame stays; a film of whole strides lasts as long as they do."""
+    if form.codec == "gif":
+        hundredths = max(round(100 * duration_s), CENTISECONDS[int(rate_hz)])
+        n_frames = hundredths // CENTISECONDS[int(rate_hz)]
+        ends = [round(hundredths * frame / n_frames) for frame in range(n_frames + 1)]
+        return [Fraction(b - a, 100) for a, b in itertools.pairwise(ends)]
+    n_frames = max(round(duration_s * rate_hz), 1)
+    delay = Fraction(duration_s / n_frames if whole else 1 / rate_hz)
+    return [1 / (1 / delay).limit_denominator(1001)] * n_frames
+
+
+def encode_film(
+    frames: Iterable[np.ndarray],
+    path: Path,
+    *,
+    shape: tuple[int, int],
+    form: FilmFormat,
+    delays: list[Fraction],
+    colours: tuple[str, str],
+    progress: Callable[[int, int], object] | None = None,
+) -> None:
+    """Write frames as a film, which appears when it is whole.
+
+    Parameters
+    ----------
+    frames : iterable of array of uint8 of shape (row, column)
+        How much each pixel is covered, 0 to 255.
+    path : path
+        File to write.
+    shape : tuple of int
+        Rows and columns, both even.
+    form : FilmFormat
+        As `film_format` gives it.
+    delays : list of Fraction
+        Seconds each frame stays, as `frame_delays` gives them.
+    colours : tuple of str
+        Of the ground and of what covers it, as in ``"#000000"``.
+    progress : callable, optional
+        Called after each frame with the number of frames written and of all.
+
+    """
+    whole = path.with_name(f".{path.name}.part")
+    try:
+        _encode(frames, whole, shape, form, delays, colours, progress)
+        os.replace(whole, path)
+    finally:
+        whole.unlink(missing_ok=True)
+
+
+def _encode(
+    frames: Iterable[np.ndarray],
+    path: Path,
+    shape: tuple[int, int],
+    form: FilmFormat,
+    delays: list[Fraction],
+    colours: tuple[str, str],
+    progress: Callable[[int, int], object] | None,
+) -> None:
+    painted = _Gif(shape, colours) if form.codec == "gif" else _Video(shape, colours)
+    tick = delays[0] if form.codec != "gif" else Fraction(1, 100)
+    options = dict(form.container_options)
+    if form.codec == "gif":  # the last frame has no next one to tell how long it stays
+        options["final_delay"] = str(round(100 * delays[-1]))
+    with av.open(str(path), "w", format=form.container, options=options) as film:
+        stream = cast(VideoStream, film.add_stream(form.codec, rate=1 / tick, options=form.options))
+        stream.height, stream.width = shape
+        stream.pix_fmt = form.pixels
+        stream.codec_context.time_base = tick
+        start = Fraction(0)
+        for done, (cover, delay) in enumerate(zip(frames, delays, strict=True), start=1):
+            frame = painted.frame(cover)
+            frame.time_base, frame.pts = tick, round(start / tick)
+            frame.duration = round(delay / tick)
+            film.mux(stream.encode(frame))
+            start += delay
+            if progress is not None:
+                progress(done, len(delays))
+        film.mux(stream.encode())
+
+
+class _Gif:
+    """Covers as they are, and a palette of 256 shades."""
+
+    def __init__(self, shape: tuple[int, int], colours: tuple[str, str]) -> None:
+        shades = np.rint(_shades(colours)).astype(np.uint32)
+        argb = (255 << 24) | (shades[:, 0] << 16) | (shades[:, 1] << 8) | shades[:, 2]
+        self.palette = argb.astype(">u4").view(np.uint8).reshape(256, 4)
+
+    def frame(self, cover: np.ndarray) -> av.VideoFrame:
+        return av.VideoFrame.from_ndarray((cover, self.palette), format="pal8")  # pyright: ignore[reportArgumentType] - takes a pair for pal8
+
+
+class _Video:
+    """Brightness of 16 to 235 above planes of colour, of which only what changes is painted."""
+
+    def __init__(self, shape: tuple[int, int], colours: tuple[str, str]) -> None:
+        n_rows, n_columns = shape
+        red_green_blue = _shades(colours)
+        luma = red_green_blue @ LUMA
+        blue = (red_green_blue[:, 2] - luma) / (2 - 2 * LUMA[2])
+        red = (red_green_blue[:, 0] - luma) / (2 - 2 * LUMA[0])
+        self.luma = np.rint(16 + luma * (219 / 255)).astype(np.uint8)
+        self.chroma = np.rint(128 + np.stack([blue, red]) * (224 / 255)).astype(np.uint8)
+        self.planes = np.empty((n_rows * 3 // 2, n_columns), np.uint8)
+        self.planes[:n_rows] = self.luma[0]
+        colour = self.planes[n_rows:].reshape(2, n_rows // 2, n_columns // 2)
+        colour[:] = self.chroma[:, :1, None]
+        self.picture, self.colour = self.planes[:n_rows], colour
+        self.grey = bool((self.chroma == self.chroma[:, :1]).all())
+        self.painted = (slice(0, 0), slice(0, 0))
+
+    def frame(self, cover: np.ndarray) -> av.VideoFrame:
+        box = _box(cover)
+        for part in (self.painted, box):
+            self.picture[part] = self.luma[cover[part]]
+            if not self.grey:
+                rows, columns = part
+                half = (slice(rows.start // 2, rows.stop // 2),
+                        slice(columns.start // 2, columns.stop // 2))  # fmt: skip
+                corners = cover[part].reshape(half[0].stop - half[0].start, 2, -1, 2)
+                mean = corners.astype(np.uint16).sum(axis=(1, 3)) // 4
+                self.colour[:, half[0], half[1]] = self.chroma[:, mean]
+        self.painted = box
+        return av.VideoFrame.from_ndarray(self.planes, format="yuv420p")
+
+
+def _box(cover: np.ndarray) -> tuple[slice, slice]:
+    """Rows and columns, from even to even, outside which nothing is covered."""
+    rows = np.flatnonzero(cover.max(axis=1))
+    if not len(rows):
+        return slice(0, 0), slice(0, 0)
+    within = slice(rows[0] // 2 * 2, rows[-1] // 2 * 2 + 2)
+    columns = np.flatnonzero(cover[within].max(axis=0))
+    return within, slice(columns[0] // 2 * 2, columns[-1] // 2 * 2 + 2)
+
+
+def _shades(colours: tuple[str, str]) -> np.ndarray:
+    """Red, green and blue, 0 to 255, from the ground to full cover: array of shape (256, 3)."""
+    ground, ink = (np.array([int(name[i : i + 2], 16) for i in (1, 3, 5)]) for name in colours)
+    return ground + np.linspace(0, 1, 256)[:, None] * (ink - ground)

@@ -1,0 +1,115 @@
+"""Where every dot is in every frame, as numbers: CSV, NPZ, and MAT for Psychtoolbox."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.io import savemat
+
+from eigenwalker.stimulus.drawing import places_px
+from eigenwalker.stimulus.stimulus import Stimulus
+
+
+def positions_table(stimulus: Stimulus) -> pd.DataFrame:
+    """Return one row for each dot of each frame.
+
+    Returns
+    -------
+    DataFrame
+        ``frame, time_s, figure, dot, visible``; ``x_mm, y_mm, z_mm`` in the scene; ``right_mm,
+        up_mm`` in the picture at the walker's scale; ``x_px, y_px`` from the upper left; and,
+        where the stimulus knows its screen, ``right_deg, up_deg`` of visual angle from the middle.
+
+    Examples
+    --------
+    >>> from eigenwalker.stimulus import make_stimulus
+    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
+    >>> positions_table(make_stimulus(hop, rate_hz=4, duration_s=1))["z_mm"].round(6).tolist()
+    [50.0, 90.0, 50.0, 10.0]
+
+    """
+    arrays = frame_arrays(stimulus)
+    n_frames, n_dots = arrays["visible"].shape
+    table = {
+        "frame": np.repeat(np.arange(n_frames), n_dots),
+        "time_s": np.repeat(arrays["time_s"], n_dots),
+        "figure": np.tile(arrays["figure"], n_frames),
+        "dot": np.tile(arrays["dots"].astype(object), n_frames),
+        "visible": arrays["visible"].ravel().astype(int),
+    }
+    columns = {"mm": "xyz", "picture_mm": ("right_mm", "up_mm"), "px": ("x_px", "y_px")}
+    for name, axes in {**columns, "deg": ("right_deg", "up_deg")}.items():
+        if name in arrays:
+            for axis, values in zip(axes, np.moveaxis(arrays[name], -1, 0), strict=True):
+                table[f"{axis}_mm" if name == "mm" else axis] = values.ravel()
+    return pd.DataFrame(table)
+
+
+def frame_arrays(stimulus: Stimulus) -> dict[str, np.ndarray]:
+    """Return dots frame by frame, as arrays.
+
+    Returns
+    -------
+    dict
+        ``time_s`` (frame), ``dots`` and ``figure`` (dot), ``visible`` (frame, dot), ``mm`` (frame,
+        dot, 3) in the scene, ``picture_mm``, ``px`` and, if the screen is known, ``deg`` (frame,
+        dot, 2).
+
+    """
+    played = stimulus.play()
+    arrays = {
+        "time_s": played.time,
+        "dots": np.array(played.dots),
+        "figure": played.figures,
+        "visible": played.visible,
+        "mm": played.positions,
+        "picture_mm": played.picture,
+        "px": places_px(stimulus, played),
+    }
+    display = stimulus.display
+    if display.viewing_distance_mm is not None and display.px_per_cm is not None:
+        on_screen = played.picture * display.px_per_mm / display.px_per_cm * 10
+        arrays["deg"] = np.rad2deg(np.arctan2(on_screen, display.viewing_distance_mm))
+    return arrays
+
+
+def write_csv(stimulus: Stimulus, path: Path) -> None:
+    """Write `positions_table` with commas."""
+    positions_table(stimulus).to_csv(path, index=False, float_format="%.9g")
+
+
+def write_npz(stimulus: Stimulus, path: Path) -> None:
+    """Write `frame_arrays`, and the stimulus file as the text ``stimulus``."""
+    with path.open("wb") as file:
+        np.savez_compressed(file, **frame_arrays(stimulus), stimulus=np.array(stimulus.to_json()))  # pyright: ignore[reportArgumentType] - arrays by name
+
+
+def write_mat(stimulus: Stimulus, path: Path) -> None:
+    """Write `frame_arrays` as MATLAB reads them.
+
+    For Psychtoolbox there is ``xy`` (2, dot, frame), pixels right and down from the middle of the
+    picture, NaN where a dot is not seen: ``Screen('DrawDots', window, xy(:,ok,frame), dot_px,
+    colour, [xc yc], 1)`` draws a frame, where ``ok = ~isnan(xy(1,:,frame))``.
+    """
+    arrays = frame_arrays(stimulus)
+    display = stimulus.display
+    middle = np.array([display.width_px, display.height_px]) / 2
+    about = np.where(arrays["visible"][..., None], arrays["px"] - middle, np.nan)
+    rgb = [[int(name[i : i + 2], 16) for i in (1, 3, 5)] for name in (
+        display.colour, display.background)]  # fmt: skip
+    content = {
+        **arrays,
+        "dots": arrays["dots"].astype(object),
+        "figure": arrays["figure"] + 1.0,
+        "visible": arrays["visible"].astype(float),
+        "xy": about.transpose(2, 1, 0),
+        "dot_px": display.dot_px,
+        "rate_hz": stimulus.timing.rate_hz,
+        "colour": np.array(rgb[0], dtype=float),
+        "background": np.array(rgb[1], dtype=float),
+        "stimulus": stimulus.to_json(),
+    }
+    with path.open("wb") as file:
+        savemat(file, content, do_compression=True)
