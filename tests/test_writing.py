@@ -213,7 +213,7 @@ def test_walkers_of_two_harmonics_lie_near_a_body_with_constant_bones():
     for walker in ew.load_population().walkers[::4]:
         walk = walker.trajectories(np.arange(0, walker.period_s, 0.02))
         off = np.linalg.norm(constant_bones(walk) - walk, axis=2)
-        assert off.max() < 60  # skin moves over the bones, most of all on the thigh
+        assert off.max() < 75  # skin moves over the bones, most of all on the thigh
         assert np.sqrt((off**2).mean()) < 8
 
 
