@@ -12,7 +12,7 @@ import xarray as xr
 from eigenwalker.mocap.numbers import MOST_DISTANT
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import Unit
-from eigenwalker.trajectories import AXES, DIMS, trajectories_at
+from eigenwalker.trajectories import AXES, DIMS, sampling_rate, trajectories_at
 
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
@@ -55,9 +55,9 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
 
     """
     dataset = dataset_of(content, source, expected=_EXPECTED)
-    if (found := dataset.attrs.get("format")) != FORMAT:
+    if str(found := dataset.attrs.get("format")) != FORMAT:
         raise UnreadableFile(source, _EXPECTED, f"NetCDF of format {str(found)[:40]!r}", _OPEN)
-    if (version := dataset.attrs.get("format_version")) != VERSION:
+    if str(version := dataset.attrs.get("format_version")) != str(VERSION):
         raise UnreadableFile(
             source, f"version {VERSION} of the format", f"version {version}", "update eigenwalker"
         )
@@ -109,11 +109,14 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
     values = np.asarray(position.values, dtype=float)
     if (np.abs(values) > MOST_DISTANT).any():
         raise ValueError("infinite or absurd positions")
-    values = values * millimetres
+    with np.errstate(invalid="ignore"):  # of NaN that a processor would signal
+        values = values * millimetres
     time = np.asarray(position["time"].values, dtype=float)
     if len(time) < 1 or not (np.diff(time) > 0).all():
         raise ValueError("times that do not go on")
     walk = trajectories_at(time, values, [str(name) for name in position["marker"].values])
+    if len(time) > 1:
+        sampling_rate(walk)  # which refuses uneven times
     if "rotation" in dataset:
         rotation = np.asarray(dataset["rotation"].transpose(*DIMS).values, dtype=float)
         walk = walk.assign_coords(rotation=(DIMS, rotation))
