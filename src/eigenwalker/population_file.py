@@ -20,6 +20,7 @@ import xarray as xr
 
 import eigenwalker
 from eigenwalker.correspondence import Correspondence, Reference
+from eigenwalker.mocap.content import content_of
 from eigenwalker.mocap.netcdf import dataset_of, looks_like_netcdf
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.trajectories import AXES
@@ -103,17 +104,14 @@ def read_population(path: Path) -> Stored:
         If the file is none of ours, is damaged, or comes from a newer version.
 
     """
-    if not path.is_file():
-        came = "nothing of that name" if not path.exists() else "something else"
-        raise UnreadableFile(path.name, _EXPECTED, came, "check the path")
-    content = path.read_bytes()
+    content = content_of(path)
     if not looks_like_netcdf(content):
         came = f"a file that begins with {content[:16]!r}"
         raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
     dataset = dataset_of(content, path.name, expected=_EXPECTED)
-    if (found := dataset.attrs.get("format")) != FORMAT:
+    if str(found := dataset.attrs.get("format")) != FORMAT:
         raise UnreadableFile(path.name, _EXPECTED, f"NetCDF of format {found!r}", _MAKE)
-    if (version := dataset.attrs.get("format_version")) != VERSION:
+    if str(version := dataset.attrs.get("format_version")) != str(VERSION):
         raise UnreadableFile(
             path.name,
             f"version {VERSION} of the format",
@@ -170,6 +168,8 @@ def _storable(column: pd.Series) -> np.ndarray:
 
 
 def _stored(dataset: xr.Dataset) -> Stored:
+    if not dataset.sizes["walker"]:
+        raise ValueError("no walkers")
     markers = tuple(str(name) for name in dataset["marker"].values)
     harmonics = dataset["harmonics"].values
     form = dataset.attrs["form"]
