@@ -128,6 +128,10 @@ class LeaveOut:
         """Return the components of all walkers, with the scores of the same walkers."""
         return _by_svd(self.Y, self.R, self.Y)
 
+    def level_without(self, out: np.ndarray) -> np.ndarray:
+        """Return the mean of each trait over the walkers kept when those of rows `out` are not."""
+        return (self.R.sum(axis=0) - self.R[out].sum(axis=0)) / (len(self.R) - len(out))
+
     def leaving_out(
         self, folds: Iterable[np.ndarray]
     ) -> Iterator[tuple[np.ndarray, FoldComponents]]:
@@ -191,7 +195,7 @@ class LeaveOut:
         eigenvalues, vectors = np.linalg.eigh(moments)
         if not _clear(eigenvalues):
             return None
-        level = (self.R.sum(axis=0) - self.R[out].sum(axis=0)) / n_kept
+        level = self.level_without(out)
         agreements = self.agreements - gone.T @ self.R[out] + np.outer(total, level)
         c = vectors.T @ (agreements * weights[:, None]) / eigenvalues[:, None]
         return FoldComponents(np.sqrt(eigenvalues)[::-1], c[::-1], (vectors.T @ left_out.T)[::-1])
@@ -280,6 +284,21 @@ def checked_classes(
     walkers, folds = checked_walkers(X, classes, groups, least_folds)
     _, which = two_classes(classes)
     return walkers, 2.0 * which - 1, folds
+
+
+def checked_trait(
+    X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, least_folds: int = 3
+) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Return walkers, a trait that is a number, and the rows that each fold leaves out, or raise.
+
+    The same as `checked_classes` but for the trait.
+    """
+    refuse_missing(y)
+    trait = np.asarray(y, dtype=float)
+    walkers, folds = checked_walkers(X, trait, groups, least_folds)
+    if np.ptp(trait) == 0:
+        raise ValueError(f"The trait is {trait[0]:g} for all {len(trait)} walkers; it must vary.")
+    return walkers, trait, folds
 
 
 def checked_walkers(

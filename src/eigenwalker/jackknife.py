@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eigenwalker.discriminant import Order, refuse_missing
+from eigenwalker.discriminant import Order
 from eigenwalker.folds import (
     LeaveOut,
     Progress,
     checked_classes,
-    checked_walkers,
+    checked_trait,
     discriminant_sums,
     one_blas_thread,
     ticked,
@@ -156,7 +156,7 @@ def jackknife_curves(
     trained = trained[: len(held_out)]
     if fit_intercept:
         trained = trained + r.mean()
-        held_out = held_out + _levels_without(r, folds)
+        held_out = held_out + _levels_without(table, folds)
     return JackknifeCurves(y=r, trained=trained.T, held_out=held_out.T)
 
 
@@ -210,17 +210,17 @@ class RegressionCurves:
     @property
     def rmse(self) -> np.ndarray:
         """Root mean square error on walkers left out, in units of the trait."""
-        return np.sqrt(((self.predicted - self.y[:, None]) ** 2).mean(axis=0))
+        return root_mean_square_error(self.y, self.predicted)
 
     @property
     def r2(self) -> np.ndarray:
         """Share of variance told on walkers left out; below 0 where the mean tells more."""
-        return 1 - self.rmse**2 / self.y.var()
+        return share_told(self.y, self.predicted)
 
     @property
     def fitted_r2(self) -> np.ndarray:
         """Share of variance told on walkers trained on."""
-        return 1 - ((self.fitted - self.y[:, None]) ** 2).mean(axis=0) / self.y.var()
+        return share_told(self.y, self.fitted)
 
     @property
     def correlation(self) -> np.ndarray:
@@ -228,15 +228,33 @@ class RegressionCurves:
 
         Chance is below 0: leaving a walker out moves the mean of the others away from it.
         """
-        predicted = self.predicted - self.predicted.mean(axis=0)
-        spread = predicted.std(axis=0) * self.y.std()
-        product = (predicted * (self.y - self.y.mean())[:, None]).mean(axis=0)
-        return np.divide(product, spread, out=np.full(len(spread), np.nan), where=spread > 0)
+        return correlation_with(self.y, self.predicted)
 
     @property
     def best_n(self) -> int:
-        """Fewest components with the least error on walkers left out."""
+        """Fewest components with the least error on walkers left out.
+
+        Chosen on the curve itself, so the error there flatters: see `nested_regression`.
+        """
         return int(self.rmse.argmin()) + 1
+
+
+def root_mean_square_error(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Return the error of predictions of shape (walker, component), in units of the trait y."""
+    return np.sqrt(((predicted - y[:, None]) ** 2).mean(axis=0))
+
+
+def share_told(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Return the share of the variance of y that predictions of (walker, component) tell (R2)."""
+    return 1 - root_mean_square_error(y, predicted) ** 2 / y.var()
+
+
+def correlation_with(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
+    """Return how predictions of (walker, component) correlate with y; NaN if they are all alike."""
+    about = predicted - predicted.mean(axis=0)
+    spread = about.std(axis=0) * y.std()
+    product = (about * (y - y.mean())[:, None]).mean(axis=0)
+    return np.divide(product, spread, out=np.full(len(spread), np.nan), where=spread > 0)
 
 
 def regression_curves(
@@ -279,17 +297,13 @@ def regression_curves(
     (3, np.float64(1.0))
 
     """
-    refuse_missing(y)
-    trait = np.asarray(y, dtype=float)
-    walkers, folds = checked_walkers(X, trait, groups)
-    if np.ptp(trait) == 0:
-        raise ValueError(f"The trait is {trait[0]:g} for all {len(trait)} walkers; it must vary.")
+    walkers, trait, folds = checked_trait(X, y, groups)
     r = trait - trait.mean()
     with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         fitted = _trained_sums(table, order)
         predicted = _held_out_sums(table, folds, order, progress)
-    level = trait.mean() + _levels_without(r, folds)
+    level = trait.mean() + _levels_without(table, folds)
     n_components = len(predicted)
     return RegressionCurves(
         y=trait,
@@ -298,9 +312,9 @@ def regression_curves(
     )
 
 
-def _levels_without(r: np.ndarray, folds: Sequence[np.ndarray]) -> np.ndarray:
+def _levels_without(table: LeaveOut, folds: Sequence[np.ndarray]) -> np.ndarray:
     """Mean of r over the walkers kept when each is left out."""
-    levels = np.empty(len(r))
+    levels = np.empty(len(table.R))
     for out in folds:
-        levels[out] = (r.sum() - r[out].sum()) / (len(r) - len(out))
+        levels[out] = table.level_without(out)
     return levels

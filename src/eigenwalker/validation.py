@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -10,16 +11,20 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.discriminant import Order
 from eigenwalker.folds import (
-    FoldComponents,
     LeaveOut,
     Progress,
     checked_classes,
+    checked_trait,
     discriminant_sums,
     members,
     one_blas_thread,
     ticked,
 )
+from eigenwalker.jackknife import correlation_with, root_mean_square_error, share_told
 from eigenwalker.space import Scale
+
+_Loss = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+"""What sums of eq. 11 of shape (component, ...) cost, given r and the mean r of those kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +49,41 @@ class NestedErrors:
         return int(self.missed.sum())
 
 
+@dataclass(frozen=True, eq=False)
+class NestedRegression:
+    """A continuous trait, told with a number of components chosen without the walker judged.
+
+    Parameters
+    ----------
+    y : array of shape (walker,)
+        The trait.
+    predicted : array of shape (walker,)
+        As told by the others.
+    chosen_n : array of int of shape (walker,)
+        The number of components chosen by the jack-knife of the others.
+
+    """
+
+    y: np.ndarray
+    predicted: np.ndarray
+    chosen_n: np.ndarray
+
+    @property
+    def rmse(self) -> float:
+        """Root mean square error, in units of the trait."""
+        return float(root_mean_square_error(self.y, self.predicted[:, None])[0])
+
+    @property
+    def r2(self) -> float:
+        """Share of variance told; below 0 where the mean of all walkers tells more."""
+        return float(share_told(self.y, self.predicted[:, None])[0])
+
+    @property
+    def correlation(self) -> float:
+        """Correlation of trait and prediction; chance is below 0, as in `RegressionCurves`."""
+        return float(correlation_with(self.y, self.predicted[:, None])[0])
+
+
 def nested_leave_one_out(
     X: ArrayLike,
     y: ArrayLike,
@@ -64,7 +104,7 @@ def nested_leave_one_out(
     ----------
     X, y, scale, order, scale_in_fold, groups, progress
         As in `jackknife_curves`. Every pair of walkers is left out once, so n walkers take
-        n (n + 1) / 2 folds.
+        n (n + 1) / 2 folds; `progress` is told of the pairs.
 
     Returns
     -------
@@ -80,50 +120,119 @@ def nested_leave_one_out(
 
     """
     walkers, r, folds = checked_classes(X, y, groups, least_folds=4)
-    inner_errors = np.zeros((len(folds), min(walkers.shape)))
-    missed, chosen_n = np.zeros(len(r), dtype=bool), np.zeros(len(r), dtype=int)
-    pairs = list(combinations(range(len(folds)), 2))
     with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
-        both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
-        steps = ticked(table.leaving_out(both), len(pairs), progress)
-        for (first, second), (out, fold) in zip(pairs, steps, strict=True):
-            wrong = _misses(fold, table.R[out, 0], order)
-            n, of_first = len(wrong), len(folds[first])
-            inner_errors[first, :n] += wrong[:, of_first:].sum(axis=1)
-            inner_errors[second, :n] += wrong[:, :of_first].sum(axis=1)
-            inner_errors[[first, second], n:] = np.inf
-        for errors, (out, fold) in zip(inner_errors, table.leaving_out(folds), strict=True):
-            chosen_n[out] = errors.argmin() + 1
-            missed[out] = _misses(fold, table.R[out, 0], order)[errors.argmin()]
-    return NestedErrors(missed=missed, chosen_n=chosen_n)
+        sums, chosen_n = _nested(table, folds, order, _misses, progress)
+    return NestedErrors(missed=r * sums <= 0, chosen_n=chosen_n)
 
 
-def _misses(fold: FoldComponents, r: np.ndarray, order: Order) -> np.ndarray:
-    """Which of the walkers left out are misclassified: shape (component, walker)."""
-    return r * discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order) <= 0
+def nested_regression(
+    X: ArrayLike,
+    y: ArrayLike,
+    *,
+    scale: Scale = "sd",
+    order: Order = "standardised",
+    scale_in_fold: bool = True,
+    groups: ArrayLike | None = None,
+    progress: Progress | None = None,
+) -> NestedRegression:
+    """Return how well a trait is told of walkers with no say in the number of components (W8).
+
+    As `nested_leave_one_out`: for each walker left out the number with the least root mean square
+    error in a jack-knife of the others is taken (A14).
+
+    Parameters
+    ----------
+    X, y, scale, order, scale_in_fold, groups, progress
+        As in `regression_curves` and `nested_leave_one_out`.
+
+    Returns
+    -------
+    NestedRegression
+
+    Examples
+    --------
+    >>> walkers = np.random.default_rng(0).normal(size=(30, 3))
+    >>> weight_kg = 70 + walkers @ [10, 0, 0]
+    >>> nested = nested_regression(walkers, weight_kg)
+    >>> round(nested.r2, 6), set(nested.chosen_n.tolist())
+    (1.0, {3})
+
+    """
+    walkers, trait, folds = checked_trait(X, y, groups, least_folds=4)
+    r = (trait - trait.mean())[:, None]
+    with one_blas_thread():
+        table = LeaveOut.of(walkers, r, scale=scale, scale_in_fold=scale_in_fold)
+        sums, chosen_n = _nested(table, folds, order, _squared_errors, progress)
+    for out in folds:
+        sums[out] += trait.mean() + table.level_without(out)
+    return NestedRegression(y=trait, predicted=sums, chosen_n=chosen_n)
+
+
+def _nested(
+    table: LeaveOut,
+    folds: Sequence[np.ndarray],
+    order: Order,
+    loss: _Loss,
+    progress: Progress | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of eq. 11 of each walker over the components that the others chose, and their number."""
+    inner = np.zeros((len(folds), min(table.Y.shape)))
+    pairs = list(combinations(range(len(folds)), 2))
+    both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
+    steps = ticked(table.leaving_out(both), len(pairs), progress)
+    for (first, second), (out, fold) in zip(pairs, steps, strict=True):
+        sums = discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order)
+        losses = loss(sums, table.R[out, 0], table.level_without(out))
+        of_first = len(folds[first])
+        _add(losses[:, of_first:].sum(axis=1), inner[first])
+        _add(losses[:, :of_first].sum(axis=1), inner[second])
+    chosen_sums, chosen_n = np.zeros(len(table.R)), np.zeros(len(table.R), dtype=int)
+    for losses, (out, fold) in zip(inner, table.leaving_out(folds), strict=True):
+        sums = discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order)
+        chosen_n[out] = min(losses.argmin() + 1, len(sums))
+        chosen_sums[out] = sums[chosen_n[out[0]] - 1]
+    return chosen_sums, chosen_n
+
+
+def _add(losses: np.ndarray, total: np.ndarray) -> None:
+    """Add losses over 1, 2, ... components to a total; where a fold has no more, its last holds."""
+    total[: len(losses)] += losses
+    total[len(losses) :] += losses[-1]
+
+
+def _misses(sums: np.ndarray, r: np.ndarray, _level: np.ndarray) -> np.ndarray:
+    """Count a walker as missed whose sum has not the sign of its r."""
+    return r * sums <= 0
+
+
+def _squared_errors(sums: np.ndarray, r: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """Return the squared error of r as told by the sums and the mean of the walkers kept."""
+    return (level + sums - r) ** 2
 
 
 @dataclass(frozen=True, eq=False)
 class PermutationTest:
-    """The fewest errors of a generalisation curve, beside those of meaningless classes.
+    """The least error of a generalisation curve, beside those of meaningless traits.
 
     Parameters
     ----------
-    fewest_errors : int
-        Of the classes as they are.
-    null : array of int of shape (permutation,)
-        Of classes dealt out anew.
+    least_error : float
+        Of the trait as it is: misclassified walkers, or, of a continuous trait, the root mean
+        square error in standard deviations of the trait.
+    null : array of shape (permutation,)
+        Of the trait dealt out anew.
 
     """
 
-    fewest_errors: int
+    least_error: float
     null: np.ndarray
 
     @property
     def p(self) -> float:
-        """Chance of as few errors as found, the classes as they are counted among the deals."""
-        return (1 + int((self.null <= self.fewest_errors).sum())) / (1 + len(self.null))
+        """Chance of as small an error as found, the trait as it is counted among the deals."""
+        as_small = self.null <= self.least_error * (1 + 1e-9)  # the same deal may be rounded
+        return (1 + int(as_small.sum())) / (1 + len(self.null))
 
 
 def permutation_test(
@@ -167,31 +276,90 @@ def permutation_test(
     """
     walkers, r, folds = checked_classes(X, y, groups)
     deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(seed))
-    traits = np.column_stack([r, deals])
-    errors = np.zeros((min(walkers.shape), traits.shape[1]), dtype=int)
     with one_blas_thread():
-        table = LeaveOut.of(walkers, traits, scale=scale, scale_in_fold=scale_in_fold)
-        for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
-            for walker, scores in zip(out, fold.scores.T, strict=True):
-                sums = discriminant_sums(fold.lengths[:, None], fold.c, scores[:, None], order)
-                wrong = traits[walker] * sums <= 0
-                errors[: len(wrong)] += wrong
-                errors[len(wrong) :] += wrong[-1]
-    fewest = errors.min(axis=0)
-    return PermutationTest(fewest_errors=int(fewest[0]), null=fewest[1:])
+        table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
+        errors = _least_losses(table, folds, order, _misses, progress)
+    return PermutationTest(least_error=float(errors[0]), null=errors[1:])
+
+
+def regression_permutation_test(
+    X: ArrayLike,
+    y: ArrayLike,
+    *,
+    n_permutations: int = 1000,
+    seed: int = 0,
+    scale: Scale = "sd",
+    order: Order = "standardised",
+    scale_in_fold: bool = True,
+    groups: ArrayLike | None = None,
+    progress: Progress | None = None,
+) -> PermutationTest:
+    """Return how often a trait dealt out at random is told as well as the true one (W8).
+
+    As `permutation_test`, of the least root mean square error over all numbers of components. It is
+    in standard deviations, since these change where a trait is dealt to groups of unlike size.
+
+    Parameters
+    ----------
+    X, y, scale, order, scale_in_fold, groups, progress
+        As in `regression_curves`. With `groups`, values are dealt to whole groups where each group
+        has one value, and within groups otherwise.
+    n_permutations, seed
+        As in `permutation_test`.
+
+    Returns
+    -------
+    PermutationTest
+
+    Examples
+    --------
+    >>> walkers = np.random.default_rng(0).normal(size=(20, 3))
+    >>> weight_kg = 70 + walkers @ [10, 0, 0]
+    >>> regression_permutation_test(walkers, weight_kg, n_permutations=199).p
+    0.005
+
+    """
+    walkers, trait, folds = checked_trait(X, y, groups)
+    r = trait - trait.mean()
+    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(seed))
+    with one_blas_thread():
+        table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
+        squares = _least_losses(table, folds, order, _squared_errors, progress)
+    errors = np.sqrt(squares / len(r)) / deals.std(axis=0)
+    return PermutationTest(least_error=float(errors[0]), null=errors[1:])
+
+
+def _least_losses(
+    table: LeaveOut,
+    folds: Sequence[np.ndarray],
+    order: Order,
+    loss: _Loss,
+    progress: Progress | None,
+) -> np.ndarray:
+    """Loss over all walkers left out with the number of components that is best for each trait."""
+    total = np.zeros((min(table.Y.shape), table.R.shape[1]))
+    for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
+        level = table.level_without(out)
+        for walker, scores in zip(out, fold.scores.T, strict=True):
+            sums = discriminant_sums(fold.lengths[:, None], fold.c, scores[:, None], order)
+            _add(loss(sums, table.R[walker], level), total)
+    return total.min(axis=0)
 
 
 def _dealt_anew(
     r: np.ndarray, groups: ArrayLike | None, n_permutations: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Classes in random order: shape (walker, permutation)."""
-    if groups is None:
-        return rng.permuted(np.tile(r[:, None], n_permutations), axis=0)
-    _, first, group = np.unique(np.asarray(groups), return_index=True, return_inverse=True)
+    """Give r as it is, then in random orders: shape (walker, 1 + permutation)."""
+    _, first, group = np.unique(
+        np.arange(len(r)) if groups is None else np.asarray(groups),
+        return_index=True,
+        return_inverse=True,
+    )
     of_group = r[first]
     if (of_group[group] == r).all():
-        return rng.permuted(np.tile(of_group[:, None], n_permutations), axis=0)[group]
-    dealt = np.tile(r[:, None], n_permutations)
-    for rows in members(group):
-        dealt[rows] = rng.permuted(dealt[rows], axis=0)
-    return dealt
+        dealt = rng.permuted(np.tile(of_group[:, None], n_permutations), axis=0)[group]
+    else:
+        dealt = np.tile(r[:, None], n_permutations)
+        for rows in members(group):
+            dealt[rows] = rng.permuted(dealt[rows], axis=0)
+    return np.column_stack([r, dealt])
