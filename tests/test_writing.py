@@ -214,7 +214,7 @@ def test_walkers_of_two_harmonics_lie_near_a_body_with_constant_bones():
         walk = walker.trajectories(np.arange(0, walker.period_s, 0.02))
         off = np.linalg.norm(constant_bones(walk) - walk, axis=2)
         assert off.max() < 75  # skin moves over the bones, most of all on the thigh
-        assert np.sqrt((off**2).mean()) < 8
+        assert np.sqrt((off**2).mean()) < 11
 
 
 @pytest.mark.parametrize(
