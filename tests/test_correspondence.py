@@ -112,7 +112,7 @@ def test_a_stranger_is_flagged_and_shapes_no_average(orthogonal_walker) -> None:
     _, found = correspond([*family, stranger])
     assert [bool(flag) for flag in found.flags] == [False] * 8 + [True]
     assert found.similarity[-1].min() < MIN_SIMILARITY
-    assert "no correspondence: eigenposture" in found.flags[-1]
+    assert "No correspondence: eigenposture" in found.flags[-1]
     np.testing.assert_allclose(found.reference.axes, among_family.reference.axes, atol=1e-6)
 
 
@@ -130,3 +130,23 @@ def test_walkers_that_cannot_be_compared_are_refused(orthogonal_walker) -> None:
     walk = orthogonal_walker(1).trajectories(WHOLE_STRIDES)
     with pytest.raises(ValueError, match="decompose all the same way"):
         correspond([decompose_pca(walk), decompose_fourier(walk)])
+
+
+def test_walkers_that_were_changed_stay_changed(orthogonal_walker) -> None:
+    family = relatives(orthogonal_walker(1), 5, seed=4)
+    together, found = correspond(family)
+    louder = replace(together[0], p=2 * together[0].p)
+    again, _ = correspond([louder, *together[1:]])
+    loudness = np.linalg.norm(again[0].p) / np.linalg.norm(together[0].p)
+    assert loudness == pytest.approx(2)  # its axes may turn a little, as the average changed
+    alone, _, _ = correspond_to(louder, found.reference)
+    np.testing.assert_allclose(alone.p, louder.p, atol=1e-6)
+
+
+def test_a_posture_of_hardly_any_movement_flags_nobody(orthogonal_walker) -> None:
+    walkers = []
+    for seed, walk in enumerate(walks_of_relatives(orthogonal_walker(1), 8, seed=4)):
+        noise = np.random.default_rng(seed).normal(scale=2, size=walk.shape)
+        noisy = (walk + noise).assign_attrs(units="mm")
+        walkers.append(decompose_pca(noisy, n_harmonics=4))
+    assert not any(correspond(walkers)[1].flags)

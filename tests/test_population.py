@@ -15,12 +15,24 @@ from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.gait import in_place
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.population import FLAG, Population
-from eigenwalker.simulation import simulate_captures, simulate_population
+from eigenwalker.simulation import simulate_captures
 
 
 @pytest.fixture(scope="module")
-def people() -> Population:
-    return simulate_population(6, 6, seed=3, markers="joints")
+def captures() -> list[tuple[xr.DataArray, pd.Series]]:
+    return list(simulate_captures(6, 6, seed=3, truth=False))
+
+
+@pytest.fixture(scope="module")
+def walks(captures) -> list[xr.DataArray]:
+    return [in_place(capture) for capture, _ in captures]
+
+
+@pytest.fixture(scope="module")
+def people(captures, walks) -> Population:
+    traits = pd.DataFrame([person for _, person in captures]).reset_index(drop=True)
+    traits = traits.infer_objects()[["sex", "age_years", "weight_kg", "height_mm"]]
+    return Population([decompose_pca(walk) for walk in walks], traits)
 
 
 def test_built_in_population_is_the_papers_in_size() -> None:
@@ -58,12 +70,10 @@ def test_a_vector_walks_as_its_walker_does(people) -> None:
         )
 
 
-def test_a_walker_of_ones_own_finds_its_place(people) -> None:
-    captures = list(simulate_captures(6, 6, seed=3))
-    own = decompose_pca(in_place(captures[4][0]))
-    np.testing.assert_allclose(people.vector(own), people.X[4], atol=1e-6)
+def test_a_walker_of_ones_own_finds_its_place(people, walks) -> None:
+    np.testing.assert_allclose(people.vector(decompose_pca(walks[4])), people.X[4], atol=1e-6)
     with pytest.raises(ValueError, match="decompose it the same way"):
-        people.vector(decompose_fourier(captures[4][0]))
+        people.vector(decompose_fourier(walks[4]))
 
 
 def test_half_way_between_two_walkers_lies_half_way(people) -> None:
@@ -146,19 +156,23 @@ def test_selecting_and_adding_keep_the_numbers_of_those_who_stay(people) -> None
     assert more.traits["sex"].tolist() == [*fewer.traits["sex"], *people.traits["sex"].iloc[[0, 5]]]
 
 
-def test_flagged_walkers_stay_but_shape_no_average(people) -> None:
-    captures = list(simulate_captures(6, 6, seed=3))
-    rng = np.random.default_rng(0)
-    strange = captures[0][0] + rng.normal(scale=800, size=captures[0][0].shape)
-    strange.attrs["units"] = "mm"
-    walkers = [decompose_pca(in_place(walk)) for walk, _ in captures] + [decompose_pca(strange)]
-    traits = pd.DataFrame([person for _, person in captures] + [captures[0][1]])
+def test_flagged_walkers_stay_but_shape_no_average(people, walks) -> None:
+    noise = np.random.default_rng(0).normal(scale=800, size=walks[0].shape)
+    strange = decompose_pca((walks[0] + noise).assign_attrs(units="mm"))
+    walkers = [*(decompose_pca(walk) for walk in walks), strange]
+    traits = pd.concat([people.traits, people.traits[:1]], ignore_index=True)
     flags = [""] * 12 + ["said by the quality report"]
-    together = Population(walkers, traits.reset_index(drop=True).assign(**{FLAG: flags}))
+    together = Population(walkers, traits.assign(**{FLAG: flags}))
     assert together.flagged.tolist() == [False] * 12 + [True]
     np.testing.assert_allclose(together.average, people.average, atol=1e-6)
     np.testing.assert_allclose(together.sizes[:12], people.sizes)
     assert len(together.unflagged()) == 12
+
+
+def test_no_one_can_change_the_table_by_accident(people) -> None:
+    for table in (people.X, people.average, people.sizes):
+        with pytest.raises(ValueError, match="read-only"):
+            table[0] = 1e9
 
 
 def test_as_many_traits_as_walkers_are_asked_for(people) -> None:

@@ -59,3 +59,12 @@ def test_average_is_plausible_and_caricatures_less_and_less(people) -> None:
     # Men are taller: every limb grows with the step.
     assert np.all(np.diff([report.limb_change.mean() for report in reports]) > 0)
     assert reports[0].limb_stretch.max() < 0.1
+
+
+def test_positions_count_standard_deviations_along_the_axis(people) -> None:
+    axis = trait_axis(people, "sex")
+    positions = axis.positions(people.X)
+    assert positions.std(ddof=1) == pytest.approx(1)
+    assert positions.mean() == pytest.approx(0, abs=1e-9)
+    further = axis.positions(people.X + 2.5 * axis.step)
+    np.testing.assert_allclose(further - positions, 2.5)

@@ -100,6 +100,7 @@ if TYPE_CHECKING:
     from eigenwalker.display.populations import figure_space as figure_space
     from eigenwalker.display.projection import project as project
     from eigenwalker.downloads import fetch_captures as fetch_captures
+    from eigenwalker.extrapolation import plausibility as plausibility
     from eigenwalker.gait import fundamental_frequency as fundamental_frequency
     from eigenwalker.gait import gait_events as gait_events
     from eigenwalker.gait import gait_parameters as gait_parameters
@@ -117,7 +118,6 @@ if TYPE_CHECKING:
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.mocap.mat import read_mat as read_mat
-    from eigenwalker.extrapolation import plausibility as plausibility
     from eigenwalker.population import Population as Population
     from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
@@ -153,4 +153,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME])
+    return __all__

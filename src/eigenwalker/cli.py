@@ -203,6 +203,8 @@ def fit(
         f"share explained {read['r2'].median():.3f} (median), "
         f"frequency {read['frequency_hz'].median():.3f} Hz."
     )
+    if "units" in study.population.provenance:
+        print(f"Units were {study.population.provenance['units']}.")
     print(f"Population: {output}")
     if len(study.refused):
         raise typer.Exit(SOME_REFUSED)

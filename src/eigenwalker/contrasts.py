@@ -95,17 +95,29 @@ def contrast(population: Population, trait: str) -> Contrast:
             f"{population.traits[FLAG][0]} To use them all the same, take "
             "population.trusting_all(), or --with-flagged on the command line."
         )
-    known = values.notna() & (values.astype(str) != "") & ~population.flagged
+    known = values.notna() & (_words(values) != "") & ~population.flagged
     if pair:
         negative, positive = _two_poles(pair, column, values[known])
-        known &= values.astype(str).isin([negative, positive])
+        known &= _words(values).isin([negative, positive])
     elif _is_continuous(values[known]):
         return _continuous(population, column, np.flatnonzero(known))
     else:
         negative, positive = _both_values(column, values[known])
     rows = np.flatnonzero(known)
-    y = np.where(values.iloc[rows].astype(str) == positive, 1.0, -1.0)
+    y = np.where(_words(values.iloc[rows]) == positive, 1.0, -1.0)
     return Contrast(column, rows, y, negative, positive, True, _persons(population, rows))
+
+
+def _words(values: pd.Series) -> pd.Series:
+    """Values as they are typed: 1 for 1.0, nothing for what is missing."""
+    if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):
+        return values.fillna("").astype(str)
+    return values.map(lambda value: "" if pd.isna(value) else f"{value:.15g}")
+
+
+def _sorted(values: pd.Series) -> list[str]:
+    """Each value once, in words; numbers in the order of numbers."""
+    return _words(values.drop_duplicates().sort_values()).tolist()
 
 
 def trait_column(traits: pd.DataFrame, name: str) -> str:
@@ -127,8 +139,8 @@ def trait_column(traits: pd.DataFrame, name: str) -> str:
 
 
 def _two_poles(pair: str, column: str, values: pd.Series) -> tuple[str, str]:
-    negative, _, positive = pair.partition(":")
-    there = sorted(set(values.astype(str)))
+    there = _sorted(values)
+    negative, positive = _split(pair, there)
     if negative == positive or not {negative, positive} <= set(there):
         raise ValueError(
             f"{pair!r} does not name two values of {column}; it has {there}. "
@@ -137,8 +149,15 @@ def _two_poles(pair: str, column: str, values: pd.Series) -> tuple[str, str]:
     return negative, positive
 
 
+def _split(pair: str, there: list[str]) -> tuple[str, str]:
+    """The two values of ``negative:positive``, which may themselves hold a colon."""
+    parts = pair.split(":")
+    ways = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
+    return next((way for way in ways if set(way) <= set(there)), (pair, pair))
+
+
 def _both_values(column: str, values: pd.Series) -> tuple[str, str]:
-    there = sorted(set(values.astype(str)))
+    there = _sorted(values)
     if len(there) == 2:
         return there[0], there[1]
     if len(there) < 2:
@@ -158,6 +177,8 @@ def _is_continuous(values: pd.Series) -> bool:
 
 def _continuous(population: Population, column: str, rows: np.ndarray) -> Contrast:
     y = population.traits[column].to_numpy(dtype=float)[rows]
+    if np.isinf(y).any():
+        raise ValueError(f"The trait {column} is infinite for some walkers; leave it empty there.")
     stem = column.split("_")[0]
     negative, positive = _POLES.get(stem, (f"low {column}", f"high {column}"))
     return Contrast(column, rows, y, negative, positive, False, _persons(population, rows))

@@ -31,6 +31,9 @@ _MAX_ROUNDS = 50
 _SETTLED = 1e-10
 MIN_SIMILARITY = 0.3
 """Least cosine between an eigenposture and the average walker's that counts as the same thing."""
+MIN_SHARE = 0.002
+"""Share of a walker's movement below which a posture may mean anything: the fourth of a usual
+walker has 0.01."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +118,7 @@ def correspond(
         aligned, later = _align(coefficients, reference)
         coefficients = _on_later_clocks(coefficients, later)
         clocks = clocks + later
-        flags = tuple(_flag(row, reference) for row in aligned.similarity)
+        flags = _flags(aligned, reference)
         still = trusted & np.array([not flag for flag in flags])
         trusted = still if still.any() else trusted
         previous, reference = reference, _average_axes(coefficients[trusted], walkers[0])
@@ -147,7 +150,7 @@ def correspond_to(walker: Walker, reference: Reference) -> tuple[Walker, np.ndar
         )
     coefficients, clocks = _canonical([walker], len(reference.axes))
     aligned, later = _align(coefficients, reference)
-    flag = _flag(aligned.similarity[0], reference)
+    (flag,) = _flags(aligned, reference)
     return _replaced(walker, aligned, 0, clocks[0] + later[0]), aligned.similarity[0], flag
 
 
@@ -236,13 +239,24 @@ def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray,
     """
     coefficients, clocks = [], []
     for walker in walkers:
-        known = walker.fit.fourier if walker.fit is not None else np.empty(0)
-        if len(known) != 2 * n_harmonics:
-            known = fourier_coefficients(walker, n_harmonics)
+        known = _movement(walker, n_harmonics)
         clock = origin_angle(known, walker.markers)
         coefficients.append(shift_origin(known, clock).reshape(2 * n_harmonics, -1))
         clocks.append(clock)
     return np.stack(coefficients), np.array(clocks)
+
+
+def _movement(walker: Walker, n_harmonics: int) -> np.ndarray:
+    """Fourier coefficients of a walker on its own clock.
+
+    For a walker as it was decomposed they are regressed on its capture, which holds whole planes
+    even where components mix harmonics (A5); for any other they are what it plays.
+    """
+    fit = walker.fit
+    as_decomposed = fit is not None and np.array_equal(walker.p, fit.eigenpostures)
+    if fit is not None and as_decomposed and len(fit.fourier) == 2 * n_harmonics:
+        return fit.fourier
+    return fourier_coefficients(walker, n_harmonics)
 
 
 def _on_later_clocks(coefficients: np.ndarray, later: np.ndarray) -> np.ndarray:
@@ -306,15 +320,18 @@ def _cosines(postures: np.ndarray, others: np.ndarray) -> np.ndarray:
     return products / np.where(lengths > 0, lengths, np.inf)
 
 
-def _flag(similarity: np.ndarray, reference: Reference) -> str:
-    """Why correspondence does not hold for a walker; empty where it does."""
-    worst = int(similarity.argmin())
-    if similarity[worst] >= MIN_SIMILARITY:
-        return ""
+def _flags(aligned: _Aligned, reference: Reference) -> tuple[str, ...]:
+    """Why correspondence does not hold for each walker; empty where it does."""
+    power = (aligned.postures**2).sum(axis=-1)
+    counts = power > MIN_SHARE * power.sum(axis=1, keepdims=True)
+    similarity = np.where(counts, aligned.similarity, 1.0)
     name = "eigenposture" if reference.form == "eigenposture" else "Fourier posture"
-    return (
-        f"no correspondence: {name} {worst + 1} resembles the average walker's by a cosine of "
-        f"{similarity[worst]:.2f} only"
+    return tuple(
+        ""
+        if row.min() >= MIN_SIMILARITY
+        else f"No correspondence: {name} {row.argmin() + 1} and the average walker's have a cosine "
+        f"of only {row.min():.2f}."
+        for row in similarity
     )
 
 

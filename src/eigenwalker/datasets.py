@@ -8,6 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 from eigenwalker.gait import in_place
+from eigenwalker.mocap import virtual_markers
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_captures, simulate_population
 
@@ -57,5 +58,5 @@ def built_in_capture() -> xr.DataArray:
         Steady strides of the 15 joints in place, at 120 Hz.
 
     """
-    capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0))
-    return in_place(capture)
+    capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
+    return in_place(virtual_markers(capture))

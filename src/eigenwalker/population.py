@@ -73,15 +73,21 @@ class Population:
                 f"There are {len(walkers)} walkers and {len(traits)} rows of traits; "
                 "give one row for each walker, in the same order."
             )
-        flags = traits.get(FLAG, pd.Series("", index=traits.index)).fillna("").astype(str)
+        flags = flags_of(traits)
         if self.correspondence is None:
-            walkers, correspondence = correspond(walkers, leave_out=(flags != "").tolist())
+            walkers, correspondence = correspond(walkers, leave_out=[flag != "" for flag in flags])
             object.__setattr__(self, "correspondence", correspondence)
-            failed = pd.Series(correspondence.flags, dtype=str)
-            flags = flags + np.where((flags != "") & (failed != ""), "; ", "") + failed
+            flags = joined_flags(flags, correspondence.flags)
         object.__setattr__(self, "walkers", walkers)
         object.__setattr__(self, "traits", traits.assign(**{FLAG: flags}))
         object.__setattr__(self, "provenance", dict(self.provenance))
+
+    def __repr__(self) -> str:
+        traits = ", ".join(str(name) for name in self.traits if name != FLAG)
+        return (
+            f"Population({len(self)} walkers, {self.flagged.sum()} flagged, "
+            f"{len(self.feature_names)} features; traits: {traits})"
+        )
 
     def __len__(self) -> int:
         return len(self.walkers)
@@ -108,12 +114,12 @@ class Population:
         Phases are unwrapped around their circular mean, so that they can be averaged (A6).
         """
         table = np.stack([self.layout.vector(walker) for walker in self.walkers])
-        return self._unwrapped(table)
+        return _read_only(self._unwrapped(table))
 
     @cached_property
     def average(self) -> np.ndarray:
         """The average walker as a vector (w_0 of eq. 5): array of shape (feature,)."""
-        return self.X[self._trusted].mean(axis=0)
+        return _read_only(self.X[self._trusted].mean(axis=0))
 
     @cached_property
     def sizes(self) -> np.ndarray:
@@ -124,7 +130,7 @@ class Population:
         """
         postures = self.part("p0")
         mean = postures[self._trusted].mean(axis=0)
-        return postures @ mean / (mean @ mean)
+        return _read_only(postures @ mean / (mean @ mean))
 
     def part(self, name: str) -> np.ndarray:
         """Return some of the features of all walkers, to train a classifier on (J18).
@@ -204,11 +210,16 @@ class Population:
     def size_normalised(self) -> Population:
         """Return the population with the size of each walker divided out (J25).
 
-        Mean postures and eigenpostures are divided by s_j, frequency and phases are not.
+        Mean postures, eigenpostures and speed are divided by s_j, frequency and phases are not.
         Correspondence stays as it is.
         """
         walkers = tuple(
-            replace(walker, p0=walker.p0 / size, p=walker.p / size)
+            replace(
+                walker,
+                p0=walker.p0 / size,
+                p=walker.p / size,
+                speed_mm_s=walker.speed_mm_s / size,
+            )
             for walker, size in zip(self.walkers, self.sizes, strict=True)
         )
         return replace(self, walkers=walkers)
@@ -247,13 +258,14 @@ class Population:
 
         The numbers of the walkers that are here do not change.
         """
+        if not walkers:
+            return self
         found = self._correspondence
         joined = [correspond_to(walker, found.reference) for walker in walkers]
         traits = pd.DataFrame(traits).reset_index(drop=True)
         if len(traits) != len(joined):
             raise ValueError(f"There are {len(joined)} walkers and {len(traits)} rows of traits.")
-        given = traits.get(FLAG, pd.Series("", index=traits.index)).fillna("").astype(str)
-        flags = [flag or said for (_, _, flag), said in zip(joined, given, strict=True)]
+        flags = joined_flags(flags_of(traits), [flag for _, _, flag in joined])
         newcomers = np.stack([similarity for _, similarity, _ in joined])
         return replace(
             self,
@@ -325,6 +337,22 @@ class Population:
             columns = self.layout.columns("phases")
             table[:, columns] = wrap_phase(table[:, columns], around=self._phase_centre)
         return table
+
+
+def _read_only(values: np.ndarray) -> np.ndarray:
+    values.flags.writeable = False
+    return values
+
+
+def flags_of(traits: pd.DataFrame) -> list[str]:
+    """Return the flag of each row of traits, empty where there is none."""
+    flags = traits.get(FLAG, pd.Series("", index=traits.index))
+    return flags.fillna("").astype(str).tolist()
+
+
+def joined_flags(*flags: Iterable[str]) -> list[str]:
+    """Return all that several sources say of each walker, in one line a walker."""
+    return [" ".join(said for said in each if said) for each in zip(*flags, strict=True)]
 
 
 def _speed(walker: Walker) -> float:

@@ -164,7 +164,9 @@ def _dataset(
 def _storable(column: pd.Series) -> np.ndarray:
     if pd.api.types.is_bool_dtype(column) or not pd.api.types.is_numeric_dtype(column):
         return column.astype(object).where(column.notna(), "").astype(str).to_numpy(dtype=object)
-    return column.to_numpy(dtype=float)
+    whole = pd.api.types.is_integer_dtype(column) and not column.isna().any()
+    small = whole and column.abs().max() < 2**31
+    return column.to_numpy(dtype="int32" if small else float)
 
 
 def _stored(dataset: xr.Dataset) -> Stored:

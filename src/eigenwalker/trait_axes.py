@@ -8,7 +8,7 @@ import numpy as np
 
 from eigenwalker.caricature import Discriminant, Kind, Units, direction
 from eigenwalker.contrasts import Contrast, contrast
-from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor, Order
+from eigenwalker.discriminant import DiscriminantClassifier, DiscriminantRegressor
 from eigenwalker.population import Population
 from eigenwalker.space import WalkerSpace
 
@@ -31,6 +31,8 @@ class TraitAxis:
         Fitted on that part of the walkers' features.
     discriminant : DiscriminantClassifier or DiscriminantRegressor
         Fitted on their scores.
+    columns : array of int
+        The features that are this part.
 
     """
 
@@ -38,6 +40,30 @@ class TraitAxis:
     step: np.ndarray
     space: WalkerSpace
     discriminant: Discriminant
+    columns: np.ndarray
+
+    def __repr__(self) -> str:
+        asked = self.contrast
+        return f"TraitAxis({asked.trait}: {asked.negative} to {asked.positive})"
+
+    def positions(self, vectors: np.ndarray) -> np.ndarray:
+        """Return where walkers lie along the axis, in steps from the average of its walkers.
+
+        Parameters
+        ----------
+        vectors : array of shape (walker, feature)
+
+        Returns
+        -------
+        array of shape (walker,)
+
+        """
+        per_step = self._told(self.space.average_walker_ + self.step[self.columns])
+        middle = self._told(self.space.average_walker_)
+        return (self._told(vectors[:, self.columns]) - middle) / (per_step - middle)
+
+    def _told(self, walkers: np.ndarray) -> np.ndarray:
+        return self.space.transform(np.atleast_2d(walkers)) @ self.discriminant.coef_
 
 
 def trait_axis(
@@ -47,12 +73,12 @@ def trait_axis(
     part: str = "all",
     n_components: int = N_EIGENWALKERS,
     kind: Kind = "discriminant",
-    order: Order = "standardised",
     units: Units = "sd",
 ) -> TraitAxis:
     """Return the axis of a trait in a population.
 
-    Eq. 13 of Troje (2002): ``w = w_0 + alpha V c'``.
+    Eq. 13 of Troje (2002), ``w = w_0 + alpha V c'``: V holds the first few eigenwalkers, those of
+    most variance, so that a step leads where walkers differ (J30).
 
     Parameters
     ----------
@@ -63,11 +89,9 @@ def trait_axis(
     part : str
         What the classifier knows: ``"all"``, ``"structure"``, ``"dynamics"``, ``"p1+p2"`` (J31).
     n_components : int
-        Components of the discriminant to keep; fewer where the walkers span fewer.
+        Eigenwalkers to span the space with; fewer where the walkers span fewer.
     kind : {"discriminant", "mean_difference"}
         What tells the trait best, or what shows it best (A13).
-    order : {"standardised", "raw", "variance"}
-        Which components come first.
     units : {"sd", "raw", "classmean"}
         What alpha = 1 is: one standard deviation of the walkers along the axis (A12), eq. 13 as
         printed, or half the distance of the classes' means.
@@ -86,11 +110,10 @@ def trait_axis(
     asked = contrast(population, trait)
     columns = population.layout.columns(part)
     walkers = population.X[np.ix_(asked.rows, columns)]
-    space = WalkerSpace().fit(walkers)
-    n_kept = min(n_components, len(space.eigenwalkers_))
-    estimator = DiscriminantClassifier if asked.two_classes else DiscriminantRegressor
-    discriminant = estimator(n_components=n_kept, order=order)
+    n_spanned = len(WalkerSpace().fit(walkers).eigenwalkers_)
+    space = WalkerSpace(n_components=min(n_components, n_spanned)).fit(walkers)
+    discriminant = DiscriminantClassifier() if asked.two_classes else DiscriminantRegressor()
     discriminant.fit(space.transform(walkers), asked.y)
     step = np.zeros(population.X.shape[1])
     step[columns] = direction(space, discriminant, kind=kind, units=units)
-    return TraitAxis(asked, step, space, discriminant)
+    return TraitAxis(asked, step, space, discriminant, columns)

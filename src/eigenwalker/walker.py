@@ -125,9 +125,20 @@ class Walker:
         if amiss := self._amiss():
             raise ValueError("This cannot walk: " + "; ".join(amiss) + ".")
 
+    def __repr__(self) -> str:
+        explained = f", r2 {self.fit.r2:.3f}" if self.fit is not None else ""
+        return (
+            f"Walker({len(self.markers)} markers, {len(self.p)} postures in the {self.form} form, "
+            f"{self.frequency_hz:.3f} Hz{explained})"
+        )
+
     def _amiss(self) -> list[str]:
         n_markers, n_components = len(self.markers), len(self.harmonics)
         amiss = []
+        if len(set(self.markers)) < n_markers:
+            amiss.append("marker names come more than once")
+        if not n_markers:
+            amiss.append("it has no markers")
         if self.p0.shape != (n_markers, 3):
             amiss.append(
                 f"the mean posture has shape {self.p0.shape}, not (marker, axis) = {n_markers, 3}"
