@@ -9,7 +9,7 @@ from eigenwalker.mocap.unreadable import UnreadableFile
 MOST_BYTES = 2**31
 
 
-def content_of(path: Path, *, most_bytes: int = MOST_BYTES) -> bytes:
+def content_of(path: Path, *, most_bytes: int = MOST_BYTES, expected: str = "a capture") -> bytes:
     """Return the bytes of a file that is there and can be read.
 
     Parameters
@@ -18,6 +18,8 @@ def content_of(path: Path, *, most_bytes: int = MOST_BYTES) -> bytes:
         Where it is.
     most_bytes : int
         More is refused unread.
+    expected : str
+        What the file should hold, for the message on an empty one.
 
     Returns
     -------
@@ -48,7 +50,7 @@ def content_of(path: Path, *, most_bytes: int = MOST_BYTES) -> bytes:
             name, "a file that can be read", error.strerror or "an error", "check its permissions"
         ) from error
     if not content:
-        raise UnreadableFile(name, "a capture", "an empty file")
+        raise UnreadableFile(name, expected, "an empty file")
     return content
 
 
