@@ -104,7 +104,7 @@ def read_population(path: Path) -> Stored:
         If the file is none of ours, is damaged, or comes from a newer version.
 
     """
-    content = content_of(path)
+    content = content_of(path, expected=_EXPECTED)
     if not looks_like_netcdf(content):
         came = f"a file that begins with {content[:16]!r}"
         raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
