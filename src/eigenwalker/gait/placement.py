@@ -18,6 +18,8 @@ from eigenwalker.gait.low_pass import low_passed
 from eigenwalker.gait.origin import find_origin
 from eigenwalker.gait.passage import Passage, find_passage
 from eigenwalker.gait.steady import SteadyPart, body_relative, steady_part
+from eigenwalker.mending import mend
+from eigenwalker.mocap.marker_names import side_pairs
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 _WHOLE = 0.05
@@ -31,11 +33,14 @@ def in_place(
 ) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
-    Short gaps are filled by cubic splines. Standing, starting, stopping and turning are left out,
-    and what is kept is trimmed to a whole number of strides, to the nearest frame. Of a walk there
-    and back the straight pass with most strides is taken; a walk with too few straight strides,
-    round in a circle or in a figure of eight, is unwound: each frame is seen from the body, whose
-    slow heading is taken out. The direction of walking is turned to +x. Forward progress and slow
+    Left and right markers that change places are put right, and samples that are elsewhere for
+    moments are taken out (`mend`). Short gaps are filled by cubic splines. Standing, starting,
+    stopping and turning are left out, and what is kept is trimmed to a whole number of strides, to
+    the nearest frame. Of a walk there and back the straight pass with most strides is taken; a walk
+    with too few straight strides, round in a circle or in a figure of eight, is unwound: each frame
+    is seen from the body, whose slow heading is taken out.
+
+    The direction of walking is turned to +x. Forward progress and slow
     drift of the body are taken out together, by regression beside the harmonics of the stride,
     which they therefore do not touch. The pelvis (else the middle of the hips, else of all markers)
     is at x = y = 0 in the mean, and z = 0 is the floor: where the lowest standing ankle is as high
@@ -89,6 +94,7 @@ def in_place(
     """
     walk = check_trajectories(walk)
     rate_hz = sampling_rate(walk)
+    walk = mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
     positions, gaps = fill_short_gaps(walk.values, rate_hz, max_gap_s)
     _refuse_unseen(walk, gaps)
     filtered = {}

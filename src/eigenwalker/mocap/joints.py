@@ -8,11 +8,19 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.mending import mend
 from eigenwalker.mocap.joint_centres import HIP_REGRESSIONS
-from eigenwalker.mocap.marker_names import SIDES, MarkerNames, MarkerSet, known_sets, subjects
+from eigenwalker.mocap.marker_names import (
+    SIDES,
+    MarkerNames,
+    MarkerSet,
+    known_sets,
+    side_pairs,
+    subjects,
+)
 from eigenwalker.mocap.skin import WIDTH_OF_LEG, Measures, Points, joints_from_skin, midpoint
 from eigenwalker.skeleton import JOINTS
-from eigenwalker.trajectories import check_trajectories, trajectories_at
+from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
 
 MOST_WIDTH_MM = 300
 _SHOWN = 60
@@ -37,9 +45,10 @@ def virtual_markers(
 ) -> xr.DataArray:
     """Return the 15 joints of a walker (J3, J4), from markers on the skin or another skeleton.
 
-    Known are Plug-in Gait and its kin, the 41 markers of the CMU collection, landmarks after van
-    Sint Jan, OptiTrack's sets, and the usual skeletons of BVH files: see
-    ``mocap/marker_sets.toml``.
+    Before that, labels that change sides are put right and samples that are elsewhere for moments
+    are taken out (`mend`). Known are Plug-in Gait and its kin, the 41 markers of the CMU
+    collection, landmarks after van Sint Jan, OptiTrack's sets, and the usual skeletons of BVH
+    files: see ``mocap/marker_sets.toml``.
 
     Parameters
     ----------
@@ -64,7 +73,8 @@ def virtual_markers(
     DataArray of shape (time, marker, axis)
         Joints in the order of ``JOINTS.markers``, then the extra points. NaN where markers were
         missing and nothing rigid beside them tells where they were. Attributes of the capture
-        stay; ``attrs["marker_set"]`` names the set, and ``attrs["approximate"]`` the joints that
+        stay; ``attrs["swaps"]`` and ``attrs["flicker"]`` say what was mended,
+        ``attrs["marker_set"]`` names the set, and ``attrs["approximate"]`` the joints that
         rest on a regression, an assumed width or a stand-in.
 
     Raises
@@ -82,7 +92,7 @@ def virtual_markers(
     ValueError: No known marker set gives the joints ['head', 'sternum', 'left_shoulder', ...
 
     """
-    walk = check_trajectories(trajectories)
+    walk = _mended(check_trajectories(trajectories))
     if joints not in ("walker", "full"):
         raise ValueError(f"joints={joints!r} is not known; give 'walker' or 'full'.")
     if hip_regression not in HIP_REGRESSIONS:
@@ -105,6 +115,15 @@ def virtual_markers(
         "approximate": [joint for joint in order if joint in found.approximate],
     }
     return result
+
+
+def _mended(walk: xr.DataArray) -> xr.DataArray:
+    """Return the capture with its labels put right, where its frames are evenly spaced."""
+    try:
+        rate_hz = sampling_rate(walk)
+    except ValueError:
+        return walk
+    return mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
 
 
 def _seen(walk: xr.DataArray) -> list[str]:

@@ -153,6 +153,26 @@ def subjects(names: Sequence[str]) -> list[str]:
     return sorted({name.rpartition(":")[0] for name in names} - {""})
 
 
+def side_pairs(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the markers that are called alike but for their side, the left one first.
+
+    Examples
+    --------
+    >>> side_pairs(["LASI", "RASI", "C7", "Knee_R", "Knee_L", "left_hip", "right_hip"])
+    [('LASI', 'RASI'), ('Knee_L', 'Knee_R'), ('left_hip', 'right_hip')]
+
+    """
+    sides: dict[str, dict[str, str]] = {}
+    for name, own in zip(names, _without_common_start(names), strict=True):
+        keys = _side_first(own)
+        if own[:1] in ("l", "r"):
+            keys.append(f"{'left' if own[0] == 'l' else 'right'}|{_plain(own[1:])}")
+        for side, _, part in (key.partition("|") for key in keys):
+            sides.setdefault(part, {}).setdefault(side, name)
+    pairs = [(found["left"], found["right"]) for found in sides.values() if len(found) == 2]
+    return list(dict.fromkeys(pairs))
+
+
 def numbered(names: Sequence[str]) -> list[str]:
     """Return the names, numbered from the second of the same name on.
 

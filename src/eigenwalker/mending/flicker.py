@@ -1,0 +1,93 @@
+"""Markers that are for moments elsewhere: samples that are no part of a path."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+LONGEST_S = 0.1
+"""A marker that is elsewhere for longer than this has jumped: nothing tells which place
+is right."""
+
+SUDDEN_MM = 30.0
+SUDDEN_FACTOR = 4.0
+"""A sudden step departs from those around it by more than `SUDDEN_MM` and this many times what nine
+of ten steps of the marker do; those of real walks reach twice as much."""
+
+_AROUND = 7
+"""Steps whose median is the usual one: two of them may be sudden."""
+
+_FEWEST = 8
+
+
+class Flicker(NamedTuple):
+    """Frames in which each marker is elsewhere, and how often it jumps without coming back."""
+
+    elsewhere: np.ndarray
+    jumps: np.ndarray
+
+
+def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
+    """Return which samples of each marker are no part of its path.
+
+    A marker flickers if it leaves its path by a sudden step and comes back by the opposite one
+    within `LONGEST_S`; also if it comes only after its first few frames, or leaves before its last.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, axis)
+        NaN where a marker was not seen.
+    rate_hz : float
+        Frames a second.
+
+    Returns
+    -------
+    Flicker
+        ``elsewhere`` of shape (time, marker), ``jumps`` of shape (marker,).
+
+    Examples
+    --------
+    >>> path = np.linspace(0, 300, 31)[:, None, None] * [[1.0, 0, 0]]
+    >>> path[10:12] += 400
+    >>> flicker = find_flicker(path, 100)
+    >>> np.flatnonzero(flicker.elsewhere[:, 0]).tolist(), flicker.jumps.tolist()
+    ([10, 11], [0])
+
+    """
+    longest = max(1, round(LONGEST_S * rate_hz))
+    elsewhere = np.zeros(positions.shape[:2], dtype=bool)
+    jumps = np.zeros(positions.shape[1], dtype=int)
+    for marker in range(positions.shape[1]):
+        frames = np.flatnonzero(np.isfinite(positions[:, marker]).all(axis=1))
+        if len(frames) >= _FEWEST:
+            found, jumps[marker] = _of_path(positions[frames, marker], frames, longest)
+            for first, last in found:
+                elsewhere[frames[first:last], marker] = True
+    return Flicker(elsewhere, jumps)
+
+
+def _of_path(path: np.ndarray, frames: np.ndarray, longest: int) -> tuple[list[tuple], int]:
+    """Return from where to where a marker is elsewhere, and how many jumps are left."""
+    passed = np.diff(frames)[:, None]
+    steps = np.diff(path, axis=0) / passed
+    sudden = steps - median_filter(steps, size=(_AROUND, 1), mode="nearest")
+    size = np.linalg.norm(sudden, axis=1)
+    least = SUDDEN_MM + SUDDEN_FACTOR * np.quantile(size, 0.9)
+    places = (np.flatnonzero(size > least) + 1).tolist()
+    found, jumps = [], 0
+    while places:
+        here, there = places.pop(0), places[0] if places else None
+        if there is not None and frames[there - 1] - frames[here] < longest:
+            left, back = sudden[here - 1], sudden[there - 1]
+            if np.linalg.norm(left + back) < (np.linalg.norm(left) + np.linalg.norm(back)) / 2:
+                found.append((here, places.pop(0)))
+                continue
+        if frames[here - 1] - frames[0] < longest:
+            found.append((0, here))
+        elif frames[-1] - frames[here] < longest:
+            found.append((here, len(frames)))
+        else:
+            jumps += 1
+    return found, jumps

@@ -1,0 +1,136 @@
+"""Left and right markers that change places: found by where they were a frame before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+SWAP_MM = 25.0
+"""Two markers that change places seem to jump by more than this each; nearer ones are one."""
+
+CLEARER = 3.0
+"""How many times nearer the places are, with labels exchanged, to those expected."""
+
+CLEAR_SIDE_MM = 20.0
+"""Mean distance across the body from which on a pair shows which of its markers is the left one."""
+
+TOGETHER = 0.95
+"""Share of the frames in which two pairs agree that change places together."""
+
+RIGID = 0.1
+"""Coefficient of variation of the distance of two markers that belong to one part of the body."""
+
+TRAVEL_MM = 1000.0
+"""Way from which on progress tells the front of the body."""
+
+
+def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> np.ndarray:
+    """Return where the labels of each pair have to be exchanged so that both paths are smooth.
+
+    Of the two ways to make the paths of a pair smooth, the one is taken that puts the left marker
+    at the side at which those of the other pairs are; where all pairs change places, the one that
+    leaves most labels as they are, or, if the body gets along, lets it walk forwards.
+
+    Parameters
+    ----------
+    positions : array of shape (time, marker, axis)
+        NaN where a marker was not seen.
+    pairs : sequence of pairs of int
+        Places of left markers and their right counterparts.
+
+    Returns
+    -------
+    array of bool of shape (time, pair)
+
+    Examples
+    --------
+    >>> positions = np.zeros((6, 2, 3)) + [[0, 100, 0], [0, -100, 0]]
+    >>> positions[4:] = positions[4:, ::-1]
+    >>> exchanged_sides(positions, [(0, 1)])[:, 0].tolist()
+    [False, False, False, False, True, True]
+
+    """
+    exchanged = np.stack(
+        [_since_exchanged(positions[:, left], positions[:, right]) for left, right in pairs], axis=1
+    )
+    swapped = exchanged.any(axis=0)
+    if not swapped.any():
+        return exchanged
+    across = np.stack([positions[:, left] - positions[:, right] for left, right in pairs], axis=1)
+    across = (across[..., 0] + 1j * across[..., 1]) * np.where(exchanged, -1, 1)
+    across = np.where(np.isfinite(across), across, 0)
+    if swapped.all():
+        usual = _most_rigid(across).sum(axis=1)
+        return exchanged ^ _goes_backwards(positions, usual, exchanged.mean())
+    sides = _sides(across[:, swapped], _most_rigid(across[:, ~swapped]).sum(axis=1))
+    exchanged[:, swapped] = _decided(exchanged[:, swapped], sides)
+    return exchanged
+
+
+def _decided(exchanged: np.ndarray, sides: np.ndarray) -> np.ndarray:
+    """Return where labels are exchanged, by the side at which each pair's left marker then is.
+
+    Where that is unclear, as of heels, a pair goes with those that change places when it does, or
+    else most of its labels stay.
+    """
+    clear = np.abs(sides) > CLEAR_SIDE_MM
+    decided = exchanged ^ (clear & (sides < 0))
+    for pair in np.flatnonzero(~clear):
+        own = exchanged[:, [pair]]
+        alike = (decided[:, clear] == own).mean(axis=0)
+        with_it = alike[np.abs(alike - 0.5) > TOGETHER - 0.5]
+        decided[:, pair] ^= with_it[0] < 0.5 if len(with_it) else own.mean() > 0.5
+    return decided
+
+
+def _since_exchanged(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return where the labels of two markers are not those of the first frame."""
+    exchanged = np.zeros(len(left), dtype=bool)
+    frames = np.flatnonzero(np.isfinite(left).all(axis=1) & np.isfinite(right).all(axis=1))
+    one, other = left[frames], right[frames]
+    straight = _distance(one[1:], one[:-1]) + _distance(other[1:], other[:-1])
+    crossed = _distance(one[1:], other[:-1]) + _distance(other[1:], one[:-1])
+    for at in (np.flatnonzero(straight - crossed > 2 * SWAP_MM) + 1).tolist():
+        here = _expected(one, frames, at), _expected(other, frames, at)
+        straight_on = _distance(one[at], here[0]) + _distance(other[at], here[1])
+        crossed_over = _distance(one[at], here[1]) + _distance(other[at], here[0])
+        if straight_on > CLEARER * crossed_over:
+            one[at:], other[at:] = other[at:].copy(), one[at:].copy()
+            exchanged[frames[at] :] ^= True
+    return exchanged
+
+
+def _expected(path: np.ndarray, frames: np.ndarray, at: int) -> np.ndarray:
+    """Return where a path goes on, at the speed of its last two frames."""
+    if at < 2:
+        return path[at - 1]
+    speed = (path[at - 1] - path[at - 2]) / (frames[at - 1] - frames[at - 2])
+    return path[at - 1] + speed * (frames[at] - frames[at - 1])
+
+
+def _most_rigid(across: np.ndarray) -> np.ndarray:
+    """Return those lines across the body that hardly change length: of hips, shoulders, head."""
+    lengths = np.ma.masked_equal(np.abs(across), 0)
+    variation = (lengths.std(axis=0) / lengths.mean(axis=0)).filled(np.inf)
+    return across[:, variation <= max(RIGID, variation.min())]
+
+
+def _sides(across: np.ndarray, usual: np.ndarray) -> np.ndarray:
+    """Return how far, in the mean, each pair's left marker is to the left of its right one."""
+    known = (across != 0) & (usual != 0)[:, None]
+    left = np.real(across * np.conj(usual)[:, None]) / np.maximum(np.abs(usual), 1e-9)[:, None]
+    return np.where(known, left, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+
+
+def _goes_backwards(positions: np.ndarray, across: np.ndarray, share: float) -> bool:
+    """Return whether a body goes backwards, or, in place, whether more labels were exchanged."""
+    places = np.ma.masked_invalid(positions[..., 0] + 1j * positions[..., 1])
+    steps = np.diff(places.mean(axis=1)).filled(0)
+    forwards = -1j * across / np.maximum(np.abs(across), 1e-9)
+    way = float(np.real(steps * np.conj(forwards[1:])).sum())
+    return way < 0 if abs(way) > TRAVEL_MM else share > 0.5
+
+
+def _distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(one - other, axis=-1)
