@@ -24,8 +24,8 @@ def direction(
 ) -> np.ndarray:
     """Return the step that makes a walker more of a trait: ``w + alpha * step`` is the caricature.
 
-    Eq. 13 of Troje (2002), ``w_0 + alpha V c'``, holds for the average walker and for any other
-    (WDP2002). The step leads towards ``discriminant.positive_pole_``.
+    Eq. 13 of Troje (2002), ``w_0 + alpha V c'`` with c' a column (A11), holds for the average
+    walker and for any other (WDP2002). The step leads towards ``discriminant.positive_pole_``.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def direction(
         class means within the components kept (Moler's M - F, and the other way round than his:
         here the positive pole is at +1).
     units : {"sd", "raw", "classmean"}
-        What one step is. "sd": c k changes by its standard deviation over the walkers, so alpha is
+        What one step is (A12). "sd": c k changes by its standard deviation over the walkers, so alpha is
         a z-score. "raw": V c' as printed, or V cov(K) c. "classmean": c k changes by half the
         distance between the two classes, so that +1 and -1 lie where their means do.
 

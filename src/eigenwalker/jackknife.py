@@ -98,8 +98,8 @@ def jackknife_curves(
 ) -> JackknifeCurves:
     """Return the separation and generalisation curves of a classifier of walkers.
 
-    Each walker is left out in turn; average, standardisation, eigenwalkers, discriminant and the
-    order of components are found from the others, and the walker is classified by its sum over 1,
+    Each walker is left out in turn; average, standardisation, eigenwalkers (eq. 9), discriminant
+    and the order of components are found from the others, and the walker is classified by its sum over 1,
     2, ... components (Troje 2002, "single-elimination jack-knife").
 
     Parameters
@@ -115,8 +115,8 @@ def jackknife_curves(
     fit_intercept : bool
         As in `DiscriminantClassifier`.
     scale_in_fold : bool
-        Whether to standardise anew without the walker left out. Doing it once for all lets the
-        scale, though no class, of the walker left out leak in.
+        Whether to standardise anew without the walker left out (A8). Doing it once for all lets
+        the scale, though no class, of the walker left out leak in.
     groups : array of shape (walker,), optional
         Who each row is: persons with several trials are left out with all of them.
     progress : callable, optional

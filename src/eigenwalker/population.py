@@ -192,6 +192,9 @@ class Population:
     def hybrid(self, *, structure: np.ndarray, dynamics: np.ndarray) -> np.ndarray:
         """Return the structure of one walker with the dynamics of another (J35).
 
+        The papers' stimuli have size divided out first (A17), ``people.size_normalised()``, and an
+        average is the mean of walkers where the paper prints their sum (A16).
+
         Parameters
         ----------
         structure, dynamics : array of shape (feature,)

@@ -31,7 +31,7 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         Eigenwalkers to keep, those of most variance first; all that the walkers span if not given.
     scale : {"sd"}, None, or array of shape (feature,)
         What each feature is divided by before the decomposition: its standard deviation over the
-        walkers (J), nothing (W), or divisors of one's own, say one for each block of features.
+        walkers (J), nothing (W), or divisors of one's own, say one for each block of features (A7).
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         axes[:, constant] = 0
         kept = self._kept(len(axes), W.shape)
         variances = singular_values**2 / (len(W) - 1)
-        self.eigenwalkers_ = axes[:kept] * self.scale_
+        self.eigenwalkers_ = axes[:kept] * self.scale_  # eq. 7
         self.explained_variance_ = variances[:kept]
         self.explained_variance_ratio_ = variances[:kept] / variances.sum()
         return self

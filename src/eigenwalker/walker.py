@@ -18,6 +18,8 @@ Form = Literal["eigenposture", "fourier"]
 class CaptureFit:
     """What the decomposition of a capture found, and how well the walker explains it.
 
+    The papers quote shares of different things, so each has a name of its own (A24).
+
     Parameters
     ----------
     r2 : float
