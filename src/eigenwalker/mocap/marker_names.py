@@ -194,6 +194,18 @@ def numbered(names: Sequence[str]) -> list[str]:
     return unlike
 
 
+def repeated(names: Sequence[str]) -> list[str]:
+    """Return the names that come more than once.
+
+    Examples
+    --------
+    >>> repeated(["head", "hand", "hand"])
+    ['hand']
+
+    """
+    return [name for name, count in Counter(names).items() if count > 1]
+
+
 def _plain(name: str) -> str:
     return re.sub(r"[^a-z0-9*]", "", name.lower())
 
