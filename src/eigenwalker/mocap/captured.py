@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from eigenwalker.mocap.marker_names import numbered
+from eigenwalker.mocap.marker_names import numbered, repeated
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import (
     PLAUSIBLE_MM,
@@ -134,6 +134,7 @@ def as_captured(
         unit_reason=taken.reason,
         subject=subject,
         left_out=[name for i, name in enumerate(plain) if i not in set(kept)],
+        repeated=repeated([plain[i] for i in kept]),
     )
     return walk
 
