@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.mocap.c3d_sections import MAGIC, Header, Parameters, c3d_sections
-from eigenwalker.mocap.marker_names import numbered
+from eigenwalker.mocap.marker_names import numbered, repeated
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import Unit, guess_unit, turn_upright, up_axis
 from eigenwalker.trajectories import MILLIMETRES, label_trajectories
@@ -77,7 +77,8 @@ def read_c3d(content: bytes, *, source: str, unit: Unit | None = None) -> xr.Dat
     header, parameters, samples = c3d_sections(content, source)
     rate_hz = _rate(header, parameters, source)
     positions, names, left_out = _markers(samples, parameters, source)
-    names, subject = _without_subject(names)
+    twice = repeated(names)
+    names, subject = _without_subject(numbered(names))
     up, up_known = _up(positions, names, parameters)
     positions = positions @ turn_upright(up).T
     named = unit or _unit(parameters)
@@ -98,6 +99,7 @@ def read_c3d(content: bytes, *, source: str, unit: Unit | None = None) -> xr.Dat
         unit_reason=unit.reason,
         subject=subject,
         left_out=left_out,
+        repeated=twice,
         **_measures(parameters),
     )
     return walk
@@ -142,7 +144,7 @@ def _markers(
             f"{len(labels)} points, all unlabelled or no positions",
             "label them first in the program that captured them",
         )
-    return samples[:, kept], numbered(names), left_out
+    return samples[:, kept], names, left_out
 
 
 def _without_subject(names: list[str]) -> tuple[list[str], str]:
