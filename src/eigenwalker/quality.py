@@ -195,6 +195,7 @@ def assess(trajectories: xr.DataArray) -> Quality:
     swapped = walk is not None and sides_swapped(walk.values, names)
     height_mm = _height(positions, names)
     faults = [
+        *_faults_of_names(capture.attrs.get("repeated")),
         *_faults_of_body(height_mm, capture.attrs.get("unit")),
         *_faults_of_walk(walk, complaint, steady),
         *_faults_of_capture(jumps, names, swaps, bones, swapped=swapped),
@@ -337,6 +338,14 @@ def _swaps(positions: np.ndarray, names: list[str]) -> int:
 
 def _distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.linalg.norm(one - other, axis=1)
+
+
+def _faults_of_names(repeated: object) -> list[_Fault]:
+    """Return what speaks against names that come more than once."""
+    names = repeated if isinstance(repeated, str) else ", ".join(repeated or ())  # pyright: ignore[reportArgumentType] - names, or a line of them from a file
+    if not names:
+        return []
+    return [_Fault(f"Several markers are called alike, and the first of them is taken: {names}.")]
 
 
 def _faults_of_body(height_mm: float | None, unit: object) -> list[_Fault]:
