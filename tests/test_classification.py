@@ -11,6 +11,7 @@ from eigenwalker.classification import INPUTS, N_PANELS, classify, regress
 from eigenwalker.jackknife import jackknife_curves
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_population
+from eigenwalker.validation import nested_regression, regression_permutation_test
 
 
 def planted(part: str, shift: float, seed: int = 0) -> Population:
@@ -65,5 +66,46 @@ def test_a_trait_that_is_a_number_is_regressed() -> None:
     table = regress(people, "height").table().set_index("input")
     assert table["correlation"]["everything, with size"] > 0.8
     assert table["correlation"]["frequency alone"] < 0.8
+    assert table["nested correlation"]["everything, with size"] > 0.8
+    assert table["p"]["everything, with size"] < 0.01
     with pytest.raises(ValueError, match="height_mm is a number"):
         classify(people, "height")
+
+
+def test_a_weight_that_no_walk_shows_is_not_told() -> None:
+    people = simulate_population(10, 10, seed=1)
+    dealt = np.random.default_rng(3).normal(70, 10, 20)
+    people = replace(people, traits=people.traits.assign(weight_kg=dealt))
+    found = regress(people, "weight", n_permutations=40, seed=1)
+    table = found.table()
+    assert table["p"].median() > 0.1
+    assert table["nested R2"].mean() < table["R2"].mean() < 0
+    for result, row in zip(found.results, table.to_dict("records"), strict=True):
+        source = people.size_normalised() if result.input.size_normalised else people
+        X = source.part(result.input.part)
+        assert row["nested RMSE"] == nested_regression(X, dealt).rmse
+        null = regression_permutation_test(X, dealt, n_permutations=40, seed=1)
+        assert row["p"] == null.p
+    fewer = regress(people, "weight", n_permutations=0).table()
+    assert (fewer["p"] == 1).all()
+
+
+@pytest.mark.parametrize("trait", ["sex", "height"])
+@pytest.mark.parametrize("of_persons", [False, True])
+def test_progress_goes_on_within_an_input_and_ends_at_all(trait: str, of_persons: bool) -> None:
+    people = simulate_population(6, 6, seed=0)
+    if of_persons:
+        person = [str(row // 2) for row in range(12)]
+        people = replace(people, traits=people.traits.assign(person=person))
+    tell = classify if trait == "sex" else regress
+    told: list[tuple[int, int]] = []
+    tell(
+        people,
+        trait,
+        inputs=INPUTS[2:4],
+        n_permutations=3,
+        progress=lambda done, total: told.append((done, total)),
+    )
+    n = 6 if of_persons else 12
+    total = 2 * (2 * n + n * (n - 1) // 2)
+    assert told == [(done, total) for done in range(1, total + 1)]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence, Sized
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import count
+from math import comb
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 import pandas as pd
@@ -19,7 +21,14 @@ from eigenwalker.jackknife import (
     regression_curves,
 )
 from eigenwalker.population import Population
-from eigenwalker.validation import NestedErrors, nested_leave_one_out, permutation_test
+from eigenwalker.validation import (
+    NestedErrors,
+    NestedRegression,
+    nested_leave_one_out,
+    nested_regression,
+    permutation_test,
+    regression_permutation_test,
+)
 
 
 class Input(NamedTuple):
@@ -137,11 +146,26 @@ class Classification:
         return f"Always answering the more frequent class makes {rarer} errors."
 
 
-class RegressionResult(NamedTuple):
-    """What a regression makes of one input."""
+@dataclass(frozen=True, eq=False)
+class RegressionResult:
+    """What a regression makes of one input.
+
+    Parameters
+    ----------
+    input : Input
+    curves : RegressionCurves
+        How well the trait is told over the number of components.
+    nested : NestedRegression
+        How well when the number of components is chosen without the walker judged (A14).
+    p : float
+        Share of random deals of the trait that reach as small an error on the curve.
+
+    """
 
     input: Input
     curves: RegressionCurves
+    nested: NestedRegression
+    p: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,19 +191,23 @@ class Regression:
         -------
         DataFrame
             ``best n``, and there, over walkers left out, ``correlation`` of trait and prediction,
-            ``R2`` and ``RMSE`` in units of the trait.
+            ``R2`` and ``RMSE`` in units of the trait; the same ``nested`` (honest), and ``p``.
 
         """
         rows = []
-        for each, curves in self.results:
-            best = curves.best_n - 1
+        for result in self.results:
+            curves, nested, best = result.curves, result.nested, result.curves.best_n - 1
             rows.append(
                 {
-                    "input": each.title,
+                    "input": result.input.title,
                     "best n": curves.best_n,
                     "correlation": curves.correlation[best],
                     "R2": curves.r2[best],
                     "RMSE": curves.rmse[best],
+                    "nested correlation": nested.correlation,
+                    "nested R2": nested.r2,
+                    "nested RMSE": nested.rmse,
+                    "p": result.p,
                 }
             )
         return pd.DataFrame(rows)
@@ -217,7 +245,7 @@ def classify(
     seed : int
         Of the permutations.
     progress : callable, optional
-        Called with the number of inputs done and of all.
+        Called with the number of steps done and of all: the folds of all inputs.
 
     Returns
     -------
@@ -230,14 +258,18 @@ def classify(
             f"{asked.trait} is a number; regress on it, or choose two of its values, for instance "
             f"{asked.trait}=1:2."
         )
-    results = []
-    for each, X in _tables(population, asked, inputs, progress):
-        curves = jackknife_curves(X, asked.y, groups=asked.persons)
-        nested = nested_leave_one_out(X, asked.y, groups=asked.persons)
-        null = permutation_test(
-            X, asked.y, groups=asked.persons, n_permutations=n_permutations, seed=seed
+    tables = _tables(population, asked, inputs)
+    left_out: _LeftOut = {"groups": asked.persons, "progress": _steps(asked, tables, progress)}
+    deals: _Deals = {"n_permutations": n_permutations, "seed": seed}
+    results = [
+        InputResult(
+            input=each,
+            curves=jackknife_curves(X, asked.y, **left_out),
+            nested=nested_leave_one_out(X, asked.y, **left_out),
+            p=permutation_test(X, asked.y, **deals, **left_out).p,
         )
-        results.append(InputResult(each, curves, nested, null.p))
+        for each, X in tables.items()
+    ]
     return Classification(asked, tuple(results))
 
 
@@ -246,13 +278,15 @@ def regress(
     trait: str,
     *,
     inputs: Sequence[Input] = INPUTS,
+    n_permutations: int = 200,
+    seed: int = 0,
     progress: Progress | None = None,
 ) -> Regression:
     """Return how well a trait that is a number can be told, from everything and from parts (W8).
 
     Parameters
     ----------
-    population, trait, inputs, progress
+    population, trait, inputs, n_permutations, seed, progress
         As in `classify`.
 
     Returns
@@ -261,25 +295,53 @@ def regress(
 
     """
     asked = contrast(population, trait)
+    tables = _tables(population, asked, inputs)
+    left_out: _LeftOut = {"groups": asked.persons, "progress": _steps(asked, tables, progress)}
+    deals: _Deals = {"n_permutations": n_permutations, "seed": seed}
     results = [
-        RegressionResult(each, regression_curves(X, asked.y, groups=asked.persons))
-        for each, X in _tables(population, asked, inputs, progress)
+        RegressionResult(
+            input=each,
+            curves=regression_curves(X, asked.y, **left_out),
+            nested=nested_regression(X, asked.y, **left_out),
+            p=regression_permutation_test(X, asked.y, **deals, **left_out).p,
+        )
+        for each, X in tables.items()
     ]
     return Regression(asked, tuple(results))
 
 
 def _tables(
-    population: Population, asked: Contrast, inputs: Sequence[Input], progress: Progress | None
-) -> Iterator[tuple[Input, np.ndarray]]:
+    population: Population, asked: Contrast, inputs: Sequence[Input]
+) -> dict[Input, np.ndarray]:
     """Each input that the population has, with the features it stands for."""
     together = population.select(asked.rows)
     normalised = together.size_normalised()
-    there = [each for each in inputs if _has(together, each.part)]
-    for done, each in enumerate(there, start=1):
-        yield each, (normalised if each.size_normalised else together).part(each.part)
-        if progress:
-            progress(done, len(there))
+    return {
+        each: (normalised if each.size_normalised else together).part(each.part)
+        for each in inputs
+        if _has(together, each.part)
+    }
 
 
 def _has(population: Population, part: str) -> bool:
     return set(part.split("+")) <= {*population.layout.blocks, *NAMED_PARTS, "size"}
+
+
+class _LeftOut(TypedDict):
+    groups: np.ndarray | None
+    progress: Progress | None
+
+
+class _Deals(TypedDict):
+    n_permutations: int
+    seed: int
+
+
+def _steps(asked: Contrast, tables: Sized, progress: Progress | None) -> Progress | None:
+    """Make one count of the folds of all tables: the curve's, the pairs nested, the test's."""
+    if progress is None:
+        return None
+    n_folds = len(asked.y) if asked.persons is None else len(set(asked.persons))
+    total = len(tables) * (2 * n_folds + comb(n_folds, 2))
+    done = count(1)
+    return lambda _done, _of_one_loop: progress(next(done), total)
