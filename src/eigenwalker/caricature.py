@@ -39,9 +39,9 @@ def direction(
         class means within the components kept (Moler's M - F, and the other way round than his:
         here the positive pole is at +1).
     units : {"sd", "raw", "classmean"}
-        What one step is (A12). "sd": c k changes by its standard deviation over the walkers, so alpha is
-        a z-score. "raw": V c' as printed, or V cov(K) c. "classmean": c k changes by half the
-        distance between the two classes, so that +1 and -1 lie where their means do.
+        What one step is (A12). "sd": c k changes by its standard deviation over the walkers, so
+        alpha is a z-score. "raw": V c' as printed, or V cov(K) c. "classmean": c k changes by half
+        the distance between the two classes, so that +1 and -1 lie where their means do.
 
     Returns
     -------

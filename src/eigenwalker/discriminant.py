@@ -76,12 +76,12 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
     n_components : int, optional
         Components to keep, those that contribute most first; all if not given.
     order : {"standardised", "raw", "variance"}
-        What counts as contribution (A9): ``|c_i| sd(k_i)``, which goes with the correlation of score
-        and class; ``|c_i|`` as it is, which favours components that hardly vary; or the variance
-        of the scores, which leaves the order of the eigenwalkers as it is.
+        What counts as contribution (A9): ``|c_i| sd(k_i)``, which goes with the correlation of
+        score and class; ``|c_i|`` as it is, which favours components that hardly vary; or the
+        variance of the scores, which leaves the order of the eigenwalkers as it is.
     fit_intercept : bool
-        Whether to fit a constant too (A10). The paper has none; with one, leaving a walker out tilts
-        the constant towards the other class, so that chance looks worse than it is.
+        Whether to fit a constant too (A10). The paper has none; with one, leaving a walker out
+        tilts the constant towards the other class, so that chance looks worse than it is.
 
     Attributes
     ----------

@@ -99,8 +99,8 @@ def jackknife_curves(
     """Return the separation and generalisation curves of a classifier of walkers.
 
     Each walker is left out in turn; average, standardisation, eigenwalkers (eq. 9), discriminant
-    and the order of components are found from the others, and the walker is classified by its sum over 1,
-    2, ... components (Troje 2002, "single-elimination jack-knife").
+    and the order of components are found from the others, and the walker is classified by its sum
+    over 1, 2, ... components (Troje 2002, "single-elimination jack-knife").
 
     Parameters
     ----------
