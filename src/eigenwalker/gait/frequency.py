@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.gait.harmonics import share_explained
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 BOUNDS_HZ = (0.3, 2.0)
@@ -19,6 +20,9 @@ _COARSE_RATE_HZ = 12.0
 _OCTAVE = 0.99
 """When about twice a frequency explains this share of what the frequency explains, the lower one
 lives on its second harmonic alone: it is half the stride frequency."""
+
+_RIVAL = 0.9
+"""The same share on a coarse grid of velocities, at which the octave is looked into."""
 
 _CONVERGED = 1e-6
 """Relative size of the last step. The next would be its square where sines fit exactly, and under a
@@ -152,23 +156,43 @@ def frequency_of_centred(
     n_blocks = n_frames // block
     blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))
     angle = 2 * np.pi / rate_hz
-    frequency_hz = _coarse_frequency(blocks, rate_hz / block, (lowest, bounds_hz[1]))
+    candidates = _coarse_frequencies(blocks, rate_hz / block, (lowest, bounds_hz[1]))
     # Sums of a few frames keep the frequency of a sine: most of the way is gone on them.
-    start = frequency_hz * angle
-    reach = np.pi / n_frames
-    step = _gauss_newton_step(blocks, start * block, n_harmonics, trend=trend) / block
-    step = min(max(step, -reach / 2), reach / 2)
-    return _refined(centred, start + step, n_harmonics, trend=trend) / angle
+    starts = [_stepped(blocks, each * angle * block, n_harmonics, trend) for each in candidates]
+    return _refined(centred, _of_octaves(blocks, starts) / block, n_harmonics, trend=trend) / angle
 
 
 _FEWEST_STRIDES = 0.9
 """Below about one stride two harmonics fit anything."""
 
 
-def _coarse_frequency(
+def _stepped(values: np.ndarray, angle: float, n_harmonics: int, trend: bool) -> float:
+    """One careful step of variable projection from a coarse angle."""
+    step = _gauss_newton_step(values, angle, n_harmonics, trend=trend)
+    reach = np.pi / len(values) / 2
+    return angle + min(max(step, -reach), reach)
+
+
+def _of_octaves(values: np.ndarray, angles: list[float]) -> float:
+    """Which of angles an octave apart is that of the stride.
+
+    If a lower one is, it explains its own first harmonic, which a higher one cannot.
+    """
+    chosen, *higher = sorted(angles)
+    cycles = np.arange(len(values)) / (2 * np.pi)
+    for angle in higher:
+        shares = [share_explained(values, cycles * each) for each in (chosen, angle)]
+        if shares[1] >= _OCTAVE * shares[0]:
+            chosen = angle
+    return chosen
+
+
+def _coarse_frequencies(
     sums: np.ndarray, block_rate_hz: float, bounds_hz: tuple[float, float]
-) -> float:
+) -> list[float]:
     """Return the frequency that explains velocities best with two harmonics, on a grid.
+
+    Where about half or twice that frequency explains nearly as much, it is returned too.
 
     The least-squares spectrum (mean, sines and cosines fitted together) has no leakage, so two
     strides are enough; its normal equations are known in closed form.
@@ -183,13 +207,18 @@ def _coarse_frequency(
     explained = _normal_equations(len(velocity), size, first, last).explained(spectrum)
     best = int(explained.argmax())
     offset, top = _peak(explained, best)
-    doubles = slice(round(1.6 * (first + best)) - first, round(2.4 * (first + best)) - first + 1)
-    if explained[doubles].size:
-        higher = doubles.start + int(explained[doubles].argmax())
-        higher_offset, higher_top = _peak(explained, higher)
-        if higher_top >= _OCTAVE * top:
-            best, offset = higher, higher_offset
-    return (first + best + offset) * spacing_hz
+    found = [(first + best + offset) * spacing_hz]
+    for octave in (0.5, 2.0):
+        near = slice(
+            max(round(0.8 * octave * (first + best)) - first, 0),
+            max(round(1.2 * octave * (first + best)) - first + 1, 0),
+        )
+        if explained[near].size:
+            rival = near.start + int(explained[near].argmax())
+            rival_offset, rival_top = _peak(explained, rival)
+            if rival_top >= _RIVAL * top:
+                found.append((first + rival + rival_offset) * spacing_hz)
+    return found
 
 
 class _NormalEquations(NamedTuple):
