@@ -1,0 +1,61 @@
+"""A stimulus as one file of HTML, with the script that plays it inside."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from eigenwalker.stimulus import Stimulus
+
+PAGE = "player.html"
+"""Built from ``frontend/`` when the package is."""
+HELD = '<script id="stimulus" type="application/json">{}</script>'
+"""Where the page holds its stimulus."""
+
+
+def stand_alone_page(stimulus: Stimulus) -> str:
+    """Return a page that plays a stimulus, again and again, at the rate of the screen.
+
+    It holds script, style and stimulus, and loads nothing. With ``#t=0.5`` after its address it
+    stands still at that moment, with ``#bare`` it shows no controls, with ``#t=0.5&bare`` both.
+
+    Parameters
+    ----------
+    stimulus : Stimulus
+        What to play.
+
+    Returns
+    -------
+    str
+        HTML, to be written in UTF-8.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the package was installed without its built page.
+
+    Examples
+    --------
+    >>> from eigenwalker.stimulus import make_stimulus
+    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
+    >>> page = stand_alone_page(make_stimulus(hop))
+    >>> page[:15], '"frequency_hz":1.0' in page
+    ('<!doctype html>', True)
+
+    """
+    # In JSON a "<" stands in texts only, where it may be written as its number; so no text can end
+    # the script element that holds it.
+    content = stimulus.to_json().replace("<", "\\u003c")
+    before, after = _player().split(HELD.format("null"))
+    return before + HELD.format(content) + after
+
+
+def _player() -> str:
+    try:
+        return files("eigenwalker.page").joinpath(PAGE).read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise FileNotFoundError(
+            f"{PAGE} is not there: the package was installed without its built page. In the "
+            "project's folder run 'npm ci && npm run build' in frontend/, or install it again."
+        ) from None
