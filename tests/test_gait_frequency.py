@@ -103,3 +103,19 @@ def test_repeats_of_a_real_stride_have_its_frequency(captures, rate_hz, point):
         frames = np.arange(int(n_strides * 99)) % 99
         found = frequency_of_scores(stride[frames].reshape(len(frames), -1), rate_hz)
         assert found == pytest.approx(rate_hz / 99, rel=5e-3)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.1, 0.05, 0.03])
+def test_a_weak_first_harmonic_still_sets_the_stride(share: float) -> None:
+    rng = np.random.default_rng(int(1000 * share))
+    for _ in range(10):
+        stride_hz = rng.uniform(0.6, 1.1)
+        time = rng.uniform(0, 3) + np.arange(1440) / 120
+        first, second = rng.normal(size=(2, 2, 45))
+        first *= 300 * np.sqrt(share) / np.linalg.norm(first)
+        second *= 300 * np.sqrt(1 - share) / np.linalg.norm(second)
+        turn = 2 * np.pi * stride_hz * time
+        values = np.stack([np.sin(turn), np.cos(turn)], axis=1) @ first
+        values += np.stack([np.sin(2 * turn), np.cos(2 * turn)], axis=1) @ second
+        values += rng.normal(size=values.shape)
+        assert frequency_of_scores(values, 120) == pytest.approx(stride_hz, abs=1e-3)

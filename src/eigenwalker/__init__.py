@@ -20,6 +20,7 @@ _HOME = {
     "direction": "caricature",
     "DiscriminantClassifier": "discriminant",
     "DiscriminantRegressor": "discriminant",
+    "draw_people": "simulation",
     "fetch_captures": "downloads",
     "figure_curves": "display.curves",
     "figure_eigenpostures": "display.eigenpostures",
@@ -35,16 +36,19 @@ _HOME = {
     "gait_events": "gait",
     "gait_parameters": "gait",
     "in_place": "gait",
+    "is_capture": "mocap",
     "jackknife_curves": "jackknife",
     "JOINTS": "skeleton",
     "label_trajectories": "trajectories",
     "load_population": "datasets",
     "nested_leave_one_out": "validation",
+    "Pattern": "simulation",
     "permutation_test": "validation",
     "plausibility": "extrapolation",
     "Population": "population",
     "project": "display.projection",
     "Quality": "quality",
+    "random_pattern": "simulation",
     "RateAssumed": "mocap",
     "read_bml_axes": "bml",
     "read_mat": "mocap.mat",
@@ -53,6 +57,7 @@ _HOME = {
     "read_walkers_mat": "walker_files",
     "regress": "classification",
     "regression_curves": "jackknife",
+    "Route": "simulation",
     "simulate_captures": "simulation",
     "simulate_population": "simulation",
     "simulate_walk": "simulation",
@@ -61,6 +66,9 @@ _HOME = {
     "to_movement": "interchange",
     "to_pyomeca": "interchange",
     "trait_axis": "trait_axes",
+    "true_direction": "simulation",
+    "true_events": "simulation",
+    "truth_of": "simulation",
     "UnitGuessed": "mocap",
     "UnreadableFile": "mocap",
     "virtual_markers": "mocap",
@@ -71,6 +79,7 @@ _HOME = {
     "walker_to_mm": "walker_tables",
     "walker_to_table": "walker_tables",
     "WalkerSpace": "space",
+    "write_captures": "simulation",
     "write_film": "display.films",
     "write_mocap": "writing",
     "write_report": "report.page",
@@ -115,6 +124,7 @@ if TYPE_CHECKING:
     from eigenwalker.mocap import RateAssumed as RateAssumed
     from eigenwalker.mocap import UnitGuessed as UnitGuessed
     from eigenwalker.mocap import UnreadableFile as UnreadableFile
+    from eigenwalker.mocap import is_capture as is_capture
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.mocap.mat import read_mat as read_mat
@@ -122,9 +132,17 @@ if TYPE_CHECKING:
     from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
     from eigenwalker.report.page import write_report as write_report
+    from eigenwalker.simulation import Pattern as Pattern
+    from eigenwalker.simulation import Route as Route
+    from eigenwalker.simulation import draw_people as draw_people
+    from eigenwalker.simulation import random_pattern as random_pattern
     from eigenwalker.simulation import simulate_captures as simulate_captures
     from eigenwalker.simulation import simulate_population as simulate_population
     from eigenwalker.simulation import simulate_walk as simulate_walk
+    from eigenwalker.simulation import true_direction as true_direction
+    from eigenwalker.simulation import true_events as true_events
+    from eigenwalker.simulation import truth_of as truth_of
+    from eigenwalker.simulation import write_captures as write_captures
     from eigenwalker.skeleton import JOINTS as JOINTS
     from eigenwalker.skeleton import Skeleton as Skeleton
     from eigenwalker.space import WalkerSpace as WalkerSpace
