@@ -41,7 +41,7 @@ class Input(NamedTuple):
 
 INPUTS = (
     Input("everything, with size", "all", size_normalised=False),
-    Input("everything", "all"),
+    Input("everything, size divided out", "all"),
     Input("structure (p0)", "structure"),
     Input("dynamics", "dynamics"),
     Input("first eigenposture", "p1"),
@@ -89,11 +89,14 @@ class Classification:
         The trait and who took part.
     results : tuple of InputResult
         One for each input.
+    n_permutations : int
+        Random labels that each input was compared with.
 
     """
 
     contrast: Contrast
     results: tuple[InputResult, ...]
+    n_permutations: int = 0
 
     def table(self) -> pd.DataFrame:
         """Return the main table: one row an input.
@@ -122,6 +125,10 @@ class Classification:
         ]
         return pd.DataFrame(rows).astype({"separated at n": "Int64"})
 
+    def table_in_words(self) -> pd.DataFrame:
+        """Return the main table as it is printed: "-" where there is nothing, p with its floor."""
+        return _in_words(self.table(), self.n_permutations)
+
     def often_missed(self, least: int = 3) -> pd.Series:
         """Return the walkers that several classifiers miss, with how many of them do (J27).
 
@@ -142,8 +149,21 @@ class Classification:
     @property
     def chance(self) -> str:
         """What to hold the errors against, in a sentence."""
-        rarer = int(min((self.contrast.y > 0).sum(), (self.contrast.y < 0).sum()))
-        return f"Always answering the more frequent class makes {rarer} errors."
+        sizes = [int((self.contrast.y < 0).sum()), int((self.contrast.y > 0).sum())]
+        errors = "1 error" if min(sizes) == 1 else f"{min(sizes)} errors"
+        said = f"Always answering the more frequent class makes {errors}."
+        if sizes[0] == sizes[1]:
+            return said
+        return (
+            f"{said} The classes are of unequal size ({self.contrast.negative} {sizes[0]}, "
+            f"{self.contrast.positive} {sizes[1]}), and the discriminant has no constant (eq. 11), "
+            "which suits classes of equal size."
+        )
+
+    @property
+    def many_inputs(self) -> str:
+        """What to mind of so many values of p, in a sentence; empty where there is one."""
+        return _many_inputs(len(self.results), self.n_permutations)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,11 +198,14 @@ class Regression:
         The trait and who took part.
     results : tuple of RegressionResult
         One for each input.
+    n_permutations : int
+        Random deals of the trait that each input was compared with.
 
     """
 
     contrast: Contrast
     results: tuple[RegressionResult, ...]
+    n_permutations: int = 0
 
     def table(self) -> pd.DataFrame:
         """Return the main table: one row an input.
@@ -212,10 +235,19 @@ class Regression:
             )
         return pd.DataFrame(rows)
 
+    def table_in_words(self) -> pd.DataFrame:
+        """Return the main table as it is printed: "-" where there is nothing, p with its floor."""
+        return _in_words(self.table(), self.n_permutations)
+
     @property
     def chance(self) -> str:
         """What to hold the errors against, in a sentence."""
         return f"Always answering the mean has an RMSE of {self.contrast.y.std():.3g}."
+
+    @property
+    def many_inputs(self) -> str:
+        """What to mind of so many values of p, in a sentence; empty where there is one."""
+        return _many_inputs(len(self.results), self.n_permutations)
 
 
 def classify(
@@ -251,6 +283,21 @@ def classify(
     -------
     Classification
 
+    Raises
+    ------
+    ValueError
+        If the trait is a number, or as `contrast`.
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> found = classify(people, "sex", inputs=[Input("size alone", "size", False)])
+    >>> found.table()[["input", "errors", "nested errors"]]
+            input  errors  nested errors
+    0  size alone       8              8
+    >>> found.chance
+    'Always answering the more frequent class makes 20 errors.'
+
     """
     asked = contrast(population, trait)
     if not asked.two_classes:
@@ -270,7 +317,7 @@ def classify(
         )
         for each, X in tables.items()
     ]
-    return Classification(asked, tuple(results))
+    return Classification(asked, tuple(results), n_permutations)
 
 
 def regress(
@@ -293,6 +340,19 @@ def regress(
     -------
     Regression
 
+    Raises
+    ------
+    ValueError
+        As `contrast`.
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> found = regress(people, "height", inputs=[Input("size alone", "size", False)])
+    >>> found.table()[["input", "best n", "correlation"]].round(2)
+            input  best n  correlation
+    0  size alone       1         0.97
+
     """
     asked = contrast(population, trait)
     tables = _tables(population, asked, inputs)
@@ -307,7 +367,31 @@ def regress(
         )
         for each, X in tables.items()
     ]
-    return Regression(asked, tuple(results))
+    return Regression(asked, tuple(results), n_permutations)
+
+
+def _in_words(table: pd.DataFrame, n_permutations: int) -> pd.DataFrame:
+    """A table of results as it is read: each cell a string."""
+    least = 1 / (1 + n_permutations)
+
+    def p_in_words(p: float) -> str:
+        if not n_permutations:
+            return "-"
+        return f"<= {least:.1g}" if p <= least else f"{p:.2g}"
+
+    def cell(value: object) -> str:
+        if value is None or value is pd.NA or value != value:
+            return "-"
+        return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+    words = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
+    return words.assign(p=[p_in_words(p) for p in table["p"]])
+
+
+def _many_inputs(n_inputs: int, n_permutations: int) -> str:
+    if n_inputs < 2 or not n_permutations:
+        return ""
+    return f"There are {n_inputs} inputs: a p of 0.05 somewhere is to be expected by chance."
 
 
 def _tables(

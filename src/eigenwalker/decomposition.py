@@ -114,10 +114,10 @@ def decompose_fourier(
 ) -> Walker:
     """Return a walk as a Fourier series with vectors for coefficients.
 
-    Troje (2002), eq. 15, WDP2002, eq. 1, and Moler (2016), by least squares (W2, M2); postures ``p1`` to ``p4`` are the
-    coefficients of sin 1, cos 1, sin 2, cos 2. Neither paper states a time origin, which walkers
-    must share if they are to be compared: here the fundamental of left minus right ankle along the
-    walking direction is a pure sine (A4).
+    WDP2002, eq. 1, Troje (2002), eq. 15, and Moler (2016), by least squares (W2, J43, M2); postures
+    ``p1`` to ``p4`` are the coefficients of sin 1, cos 1, sin 2, cos 2. The papers state no time
+    origin, which walkers must share if they are to be compared: here the fundamental of left minus
+    right ankle along the walking direction is a pure sine (A4).
 
     Parameters
     ----------
