@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 from eigenwalker.decomposition import decompose_pca
 from eigenwalker.display.bodies import figure_joints, figure_walkers, view_name
 from eigenwalker.display.components import figure_scores, figure_variance, scores_of
-from eigenwalker.display.curves import figure_curves
+from eigenwalker.display.curves import figure_curves, figure_regression_curves
 from eigenwalker.display.eigenpostures import figure_eigenpostures
 from eigenwalker.display.populations import figure_space
 from eigenwalker.display.style import BLUE, RED
@@ -91,6 +91,40 @@ def test_the_ring_is_at_the_fewest_errors():
 def test_no_curves_are_refused():
     with pytest.raises(ValueError, match="no curves"):
         figure_curves({}, n_walkers=40)
+    with pytest.raises(ValueError, match="no curves"):
+        figure_regression_curves({})
+
+
+def trait_curves(told, fitted=None):
+    n = np.arange(1, len(told) + 1)
+    fitted = 1 - 0.8**n if fitted is None else fitted
+    return SimpleNamespace(n_components=n, fitted_r2=fitted, r2=np.array(told))
+
+
+def test_the_curves_of_a_trait_are_those_given_in_the_same_look():
+    given = {title: trait_curves([0.1 * k, 0.3, 0.0]) for k, title in enumerate("abcde")}
+    figure = figure_regression_curves(given)
+    drawn = [axes for axes in figure.axes if axes.get_visible()]
+    for axes, (title, curve) in zip(drawn, given.items(), strict=True):
+        separation, generalisation, ring = axes.get_lines()[:3]
+        assert axes.get_title(loc="left") == title
+        np.testing.assert_array_equal(separation.get_ydata(), curve.fitted_r2)
+        np.testing.assert_array_equal(generalisation.get_ydata(), curve.r2)
+        assert (separation.get_color(), generalisation.get_color()) == (BLUE, RED)
+        assert separation.is_dashed()
+        assert not generalisation.is_dashed()
+        assert ring.get_ydata()[0] == curve.r2.max()
+
+
+def test_a_trait_that_nothing_tells_leaves_the_panel_and_leaves_words():
+    figure = figure_regression_curves({"a": trait_curves([-1.4, -2, -9]), "b": trait_curves([1.0])})
+    low, high = figure.axes[0].get_ylim()
+    assert -1 < low < high < 2
+    words = [[text.get_text() for text in axes.texts] for axes in figure.axes]
+    assert "best: \N{MINUS SIGN}1.40 at 1" in words[0]
+    assert "best: 1.00 at 1" in words[1]
+    markers = [[line.get_marker() for line in axes.lines] for axes in figure.axes]
+    assert ("o" in markers[0], "o" in markers[1]) == (False, True)
 
 
 def test_bars_are_mean_and_sd_of_the_variance_shares(walker):

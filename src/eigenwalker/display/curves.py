@@ -1,9 +1,9 @@
-"""How well classifiers do with more and more components (J fig. 4)."""
+"""How well classifiers and regressions do with more and more components (J fig. 4)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Protocol
 
 import numpy as np
@@ -12,7 +12,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from eigenwalker.display.style import BLUE, INK, RED, SMALL, USUAL, head_line, new_figure, panels
+from eigenwalker.display.style import (
+    BLUE,
+    INK,
+    PALE,
+    RED,
+    SMALL,
+    USUAL,
+    head_line,
+    new_figure,
+    panels,
+)
 
 
 class Curves(Protocol):
@@ -24,6 +34,17 @@ class Curves(Protocol):
     def separation(self) -> np.ndarray: ...  # noqa: D102 - the class tells
     @property
     def generalisation(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+
+
+class TraitCurves(Protocol):
+    """Share of a trait's variance told by 1, 2, ... components, as of `regression_curves`."""
+
+    @property
+    def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+    @property
+    def fitted_r2(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+    @property
+    def r2(self) -> np.ndarray: ...  # noqa: D102 - the class tells
 
 
 def figure_curves(
@@ -56,44 +77,108 @@ def figure_curves(
     'structure'
 
     """
-    if not curves:
-        raise ValueError("There are no curves to draw; give one or more, by title.")
-    n_columns = n_columns or (3 if len(curves) > 4 else len(curves))
-    n_rows = math.ceil(len(curves) / n_columns)
-    figure = new_figure(max(2.3 * n_columns, 3.2) + 0.3, 1.75 * n_rows + 0.45)
-    grid = panels(figure, n_rows, n_columns, sharey=True)
-    axes = [axis for row in grid for axis in row]
-    for index, (axis, (title, curve)) in enumerate(zip(axes, curves.items(), strict=False)):
-        _draw(axis, curve)
-        _add_percent(axis, n_walkers, named=(index + 1) % n_columns == 0)
-        head_line(axis, title, letter=chr(ord("a") + index) if len(curves) > 1 else "")
-    for axis in axes[len(curves) :]:
-        axis.set_visible(False)
+    figure, axes, n_columns = _grid(curves, n_columns)
+    for index, (axis, curve) in enumerate(zip(axes, curves.values(), strict=True), start=1):
+        missed = np.asarray(curve.generalisation)
+        _draw(axis, curve.n_components, curve.separation, missed)
+        best, n = int(np.argmin(missed)), curve.n_components
+        _ring(axis, n[best], missed[best])
+        _say(axis, f"best: {missed[best]:g} at {n[best]}")
+        _add_percent(axis, n_walkers, named=index % n_columns == 0)
     most = max(np.max([curve.separation, curve.generalisation]) for curve in curves.values())
     axes[0].set_ylim(0, 1.25 * max(most, 1))  # the words at the top stay clear of the curves
     axes[0].yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
-    figure.supxlabel("Number of components", fontsize=USUAL, color=INK)
-    figure.supylabel("Misclassified walkers", fontsize=USUAL, color=INK)
-    lines = axes[0].get_lines()[:2]
-    figure.legend(handles=lines, loc="outside upper right", ncols=2, fontsize=SMALL, frameon=False)
+    _name(figure, "Misclassified walkers", axes[0])
     return figure
 
 
+def figure_regression_curves(
+    curves: Mapping[str, TraitCurves], *, n_columns: int | None = None
+) -> Figure:
+    """Return the share of a trait's variance told over the number of components (W8).
+
+    Panels as in `figure_curves`. Dashed blue is separation: what a regression tells of the walkers
+    it was fitted to. Solid red is generalisation: what one fitted to all others tells of walkers
+    left out. Below the thin line at 0 the mean of all walkers tells more; a curve that falls far
+    below leaves its panel, and with it the ring at its best.
+
+    Parameters
+    ----------
+    curves : mapping of str to curves
+        Title of each panel, such as ``"structure"``, and its curves; in the order of the panels.
+    n_columns : int, optional
+        Panels side by side; 3 where there are more than 4.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> curve = SimpleNamespace(n_components=[1, 2], fitted_r2=[0.3, 0.6], r2=[0.2, 0.1])
+    >>> figure_regression_curves({"structure": curve}).axes[0].get_title(loc="left")
+    'structure'
+
+    """
+    figure, axes, _ = _grid(curves, n_columns)
+    for axis, curve in zip(axes, curves.values(), strict=True):
+        told = np.asarray(curve.r2)
+        _draw(axis, curve.n_components, curve.fitted_r2, told)
+        best, n = int(np.argmax(told)), curve.n_components
+        if told[best] > _LOWEST_R2:
+            _ring(axis, n[best], told[best])
+        _say(axis, f"best: {told[best]:z.2f} at {n[best]}".replace("-", "\N{MINUS SIGN}"))
+        axis.axhline(0, color=PALE, lw=0.8, zorder=0)
+    axes[0].set_ylim(_LOWEST_R2, 1.5)
+    axes[0].set_yticks([-0.5, 0, 0.5, 1])
+    _name(figure, "Share of variance told, $R^2$", axes[0])
+    return figure
+
+
+_LOWEST_R2 = -0.6
+"""A regression that overshoots falls without limit; drawing all of it would flatten the rest."""
 _CORNER = {"ha": "right", "va": "top", "fontsize": SMALL, "color": RED}
 
 
-def _draw(axis: Axes, curve: Curves) -> None:
-    """Both curves, and a ring where generalisation is best."""
-    n = np.asarray(curve.n_components)
-    missed = np.asarray(curve.generalisation)
-    axis.plot(n, curve.separation, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="separation")
-    axis.plot(n, missed, color=RED, lw=1.1, label="generalisation (leave one out)")
-    best = int(np.argmin(missed))
-    axis.plot(n[best], missed[best], "o", mfc="white", mec=RED, mew=1.1, ms=4.5, clip_on=False)
-    words = f"best: {missed[best]:g} at {n[best]}"
-    axis.text(0.97, 0.97, words, transform=axis.transAxes, **_CORNER)
+def _grid(titles: Collection[str], n_columns: int | None) -> tuple[Figure, list[Axes], int]:
+    """A panel for each title, and how many stand side by side."""
+    if not titles:
+        raise ValueError("There are no curves to draw; give one or more, by title.")
+    n_columns = n_columns or (3 if len(titles) > 4 else len(titles))
+    n_rows = math.ceil(len(titles) / n_columns)
+    figure = new_figure(max(2.3 * n_columns, 3.2) + 0.3, 1.75 * n_rows + 0.45)
+    axes = [axis for row in panels(figure, n_rows, n_columns, sharey=True) for axis in row]
+    for index, (axis, title) in enumerate(zip(axes, titles, strict=False)):
+        head_line(axis, title, letter=chr(ord("a") + index) if len(titles) > 1 else "")
+    for axis in axes[len(titles) :]:
+        axis.set_visible(False)
+    return figure, axes[: len(titles)], n_columns
+
+
+def _draw(axis: Axes, n: np.ndarray, separation: np.ndarray, generalisation: np.ndarray) -> None:
+    """Both curves over the number of components."""
+    axis.plot(n, separation, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="separation")
+    axis.plot(n, generalisation, color=RED, lw=1.1, label="generalisation (leave one out)")
     axis.set_xlim(0, n[-1] + 0.5)
     axis.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
+
+
+def _ring(axis: Axes, n: int, height: float) -> None:
+    """A ring where generalisation is best."""
+    axis.plot(n, height, "o", mfc="white", mec=RED, mew=1.1, ms=4.5, clip_on=False)
+
+
+def _say(axis: Axes, words: str) -> None:
+    axis.text(0.97, 0.97, words, transform=axis.transAxes, **_CORNER)
+
+
+def _name(figure: Figure, height: str, axis: Axes) -> None:
+    """Say what the axes are, and, by those of a panel, what the lines are."""
+    figure.supxlabel("Number of components", fontsize=USUAL, color=INK)
+    figure.supylabel(height, fontsize=USUAL, color=INK)
+    lines = axis.get_lines()[:2]
+    figure.legend(handles=lines, loc="outside upper right", ncols=2, fontsize=SMALL, frameon=False)
 
 
 def _add_percent(axis: Axes, n_walkers: int, *, named: bool) -> None:
