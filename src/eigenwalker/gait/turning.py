@@ -22,6 +22,9 @@ STRAIGHT_ON_THE_WHOLE = np.deg2rad(12)
 FLIPPED = np.deg2rad(60)
 """Nobody turns so far from one frame to the next: where markers seem to, they do not tell."""
 
+FEWEST_MARKERS = 6
+"""Without names, fewer markers swing too much to show which way a body faces."""
+
 _ROUNDS = 10
 
 
@@ -126,7 +129,7 @@ def _facing(positions: np.ndarray, names: list[str]) -> np.ndarray:
     if to_left:
         return -1j * np.sum(to_left, axis=0)
     flat = flat[:, np.isfinite(flat).all(axis=0)]
-    if flat.shape[1] < 3:
+    if flat.shape[1] < FEWEST_MARKERS:
         return np.full(len(positions), np.nan + 0j)
     flat = flat - flat.mean(axis=1, keepdims=True)
     posture = flat[len(flat) // 2]

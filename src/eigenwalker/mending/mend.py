@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,6 +14,8 @@ from eigenwalker.mending.swaps import exchanged_sides
 
 SWAPS, FLICKER, JUMPS = "swaps", "flicker", "jumps"
 """Attributes that tell what was found; each entry names markers and frames."""
+
+_ENTRY = re.compile(r"(?P<marker>.*), frames? (?P<first>\d+)(?: to (?P<last>\d+))?")
 
 
 def mend(walk: xr.DataArray, pairs: Sequence[tuple[str, str]], rate_hz: float) -> xr.DataArray:
@@ -62,17 +66,22 @@ def mend(walk: xr.DataArray, pairs: Sequence[tuple[str, str]], rate_hz: float) -
         for name, flags in zip(names, flicker.elsewhere.T, strict=True)
         for run in _runs(flags)
     ]
-    jumps = [name for name, count in zip(names, flicker.jumps, strict=True) for _ in range(count)]
+    jumps = [name for name, count in zip(names, flicker.jumps, strict=True) if count]
     if not swaps and not gone and not jumps:
         return walk
     if gone:
         positions = np.where(flicker.elsewhere[..., None], np.nan, positions)
-    told = {SWAPS: swaps, FLICKER: gone, JUMPS: jumps}
-    before = {key: list(walk.attrs.get(key, [])) for key in told}
-    new = {key: before[key] + [one for one in told[key] if one not in before[key]] for key in told}
+    found = {SWAPS: swaps, FLICKER: gone, JUMPS: jumps}
+    entries = {key: list(dict.fromkeys([*told(walk, key), *found[key]])) for key in found}
     return walk.copy(data=positions).assign_attrs(
-        {key: entries for key, entries in new.items() if entries}
+        {key: some for key, some in entries.items() if some}
     )
+
+
+def told(walk: xr.DataArray, found: str) -> list[str]:
+    """Return the entries of an attribute that tells what was found; some files make them one."""
+    entries = walk.attrs.get(found, [])
+    return [entries] * bool(entries) if isinstance(entries, str) else list(entries)
 
 
 def markers_of(entries: Sequence[str]) -> list[str]:
@@ -84,7 +93,23 @@ def markers_of(entries: Sequence[str]) -> list[str]:
     ['left_knee', 'left_elbow']
 
     """
-    return [entry.rpartition(", frame")[0] or entry for entry in entries]
+    return [hit["marker"] if (hit := _ENTRY.fullmatch(entry)) else entry for entry in entries]
+
+
+def samples_of(entries: Sequence[str]) -> dict[str, int]:
+    """Return in how many frames each marker is, by the entries of an attribute.
+
+    Examples
+    --------
+    >>> samples_of(["left_knee, frames 100 to 101", "left_knee, frame 7"])
+    {'left_knee': 3}
+
+    """
+    samples: Counter[str] = Counter()
+    for entry in entries:
+        if hit := _ENTRY.fullmatch(entry):
+            samples[hit["marker"]] += int(hit["last"] or hit["first"]) - int(hit["first"]) + 1
+    return dict(samples)
 
 
 def _exchange(
