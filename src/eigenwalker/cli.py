@@ -19,8 +19,8 @@ from eigenwalker import cli_data
 
 if TYPE_CHECKING:
     import numpy as np
-    import pandas as pd
 
+    from eigenwalker.classification import Classification, Regression
     from eigenwalker.population import Population
     from eigenwalker.trait_axes import TraitAxis
 
@@ -98,8 +98,8 @@ def demo(
             example=built_in_capture() if people is None else None,
             progress=progress,
         )
-    print(_rows(found.table()))
-    print(f"\nReport: {page}")
+    _print_results(found)
+    print(f"Report: {page}")
     if open_page and _has_screen():
         typer.launch(str(page))
 
@@ -242,8 +242,7 @@ def classify(
         else:
             found = classification.regress(population, trait, progress=progress)
     print(f"{asked.trait}: {asked.negative} to {asked.positive}, {len(asked.rows)} walkers")
-    print(_rows(found.table()))
-    print(f"\n{found.chance}")
+    _print_results(found)
     if page is not None:
         print(f"Report: {page}")
 
@@ -416,13 +415,11 @@ def _print_plausibility(population: Population, vector: np.ndarray) -> None:
     )
 
 
-def _rows(table: pd.DataFrame) -> str:
-    import pandas as pd
-
-    def number(value: float) -> str:
-        return "-" if pd.isna(value) else f"{value:.3g}"
-
-    return table.to_string(index=False, float_format=number, na_rep="-")
+def _print_results(found: Classification | Regression) -> None:
+    print(found.table_in_words().to_string(index=False))
+    print(f"\n{found.chance}")
+    if found.many_inputs:
+        print(found.many_inputs)
 
 
 def _laid_out(value: object, indent: int) -> str:
