@@ -181,10 +181,23 @@ def test_classify_prints_the_table(run, people) -> None:
     assert code == 0
     assert "sex: female to male, 12 walkers" in said
     assert "first three eigenpostures" in said
-    code, said, _ = run("classify", people, "--trait", "weight")
+    code, said, _ = run("classify", people, "--trait", "weight", "--permutations", "0")
     assert code == 0
     assert "weight_kg: light to heavy" in said
-    assert "RMSE" in said
+    assert "nested RMSE" in said
+    ps = [line.split()[-1] for line in said.splitlines() if line.lstrip().startswith("dynamics")]
+    assert ps == ["1"]
+
+
+def test_classify_reports_on_a_trait_that_is_a_number(run, people, tmp_path) -> None:
+    code, _, _ = run(
+        "classify", people, "--trait", "weight", "--permutations", "20", "-o", tmp_path
+    )
+    assert code == 0
+    page = (tmp_path / "report.html").read_text()
+    assert "Share of the variance of weight_kg told" in page
+    assert "nested R2" in page
+    assert "when that number is chosen without them" in page
 
 
 def test_synthesize_films_a_walker_and_says_how_plausible_it_is(run, people, tmp_path) -> None:
@@ -230,7 +243,7 @@ def test_synthesize_starts_from_a_walker_or_a_capture(run, people, folder, tmp_p
         (("synthesize", "--trait", "sex"), "sex=+3"),
         (("synthesize", "--trait", "sex=much"), "sex=+3"),
         (("synthesize", "--from", "99"), "walkers 0 to 39"),
-        (("synthesize", "-o", "walker.xyz"), "must end in one of"),
+        (("synthesize", "-o", "walker.xyz"), "'.xyz' is not known"),
         (("synthesize", "--part", "p9"), "no part 'p9'"),
         (("fit", ".", "-o", "people.csv"), "written as .nc"),
         (("fit", ".", "-o", "people.nc", "--form", "wavelet"), "eigenposture"),

@@ -6,8 +6,10 @@ Nothing heavy is imported before a command runs, so that ``--help`` answers at o
 from __future__ import annotations
 
 import json
+import math
 import sys
 import textwrap
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from eigenwalker import cli_data
+from eigenwalker import cli_data, cli_stimulus
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,6 +35,7 @@ app = typer.Typer(
     help="How people walk: from captures to a model, classifiers, and walkers of any trait.",
 )
 app.add_typer(cli_data.app, name="data")
+app.command()(cli_stimulus.stimulus)
 
 T = TypeVar("T")
 SOME_REFUSED = 1
@@ -47,6 +50,10 @@ Folder = Annotated[Path, typer.Option("-o", "--output", help="Folder to write in
 Kind = Annotated[
     str, typer.Option(help="'discriminant' tells the trait best, 'mean_difference' shows it best.")
 ]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of length, for files that name none: mm, cm, m, in, asf.")
+]
+Rate = Annotated[float | None, typer.Option(help="Frames a second, for files that name none.")]
 Part = Annotated[
     str, typer.Option(help="What the axis may change: all, structure, dynamics, p1, p1+p2, ...")
 ]
@@ -57,11 +64,16 @@ WithFlagged = Annotated[bool, typer.Option("--with-flagged", help="Count flagged
 
 def main() -> None:
     """Run the command line; what goes wrong is said in a sentence, not in a traceback."""
+    warnings.showwarning = _say_warning
     try:
         app()
     except (ValueError, OSError) as error:
         print(f"eigenwalker: {error}", file=sys.stderr)
         sys.exit(FAILED)
+
+
+def _say_warning(message: Warning | str, *_: object, **__: object) -> None:
+    print(f"eigenwalker: {message}", file=sys.stderr)
 
 
 @app.callback(invoke_without_command=True)
@@ -108,11 +120,13 @@ def demo(
 def info(
     file: Annotated[Path, typer.Argument(help="A capture, or a population file (.nc).")],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    unit: Unit = None,
+    rate: Rate = None,
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.inspection import inspect_file
 
-    facts = inspect_file(file)
+    facts = inspect_file(file, unit=unit, rate_hz=rate)
     if as_json:
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
@@ -159,6 +173,8 @@ def fit(
     ] = "eigenposture",
     harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
     jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
+    unit: Unit = None,
+    rate: Rate = None,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Read all anew, also what an interrupted run has read.")
     ] = False,
@@ -171,6 +187,8 @@ def fit(
     from eigenwalker.study import DECOMPOSE, fit_folder
 
     _one_of(form, DECOMPOSE, "--form")
+    if not output.parent.is_dir():
+        raise ValueError(f"There is no folder {output.parent} to write {output.name} into.")
     _population_path(output)
     journal = output.with_name(f"{output.name}.part")
     if fresh:
@@ -182,6 +200,8 @@ def fit(
             trait_from_name=trait_from_name,
             form=form,  # pyright: ignore[reportArgumentType] - one of the two by now
             n_harmonics=harmonics,
+            unit=unit,
+            rate_hz=rate,
             n_jobs=jobs,
             journal=journal,
             progress=progress,
@@ -191,6 +211,9 @@ def fit(
         if len(chosen):
             print(f"{len(chosen)} {status}:")
             print("".join(f"  {row.file}: {row.reason}\n" for row in chosen.itertuples()))
+    if study.unlisted:
+        shown = ", ".join(study.unlisted[:5]) + (", ..." if len(study.unlisted) > 5 else "")
+        print(f"{len(study.unlisted)} captures of the folder are not in the table: {shown}")
     if study.population is None:
         print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
         raise typer.Exit(FAILED)
@@ -219,7 +242,9 @@ def classify(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
     ] = None,
-    permutations: Annotated[int, typer.Option(help="Random labels to compare with.")] = 200,
+    permutations: Annotated[
+        int, typer.Option(help="Random deals of the trait to compare with.")
+    ] = 200,
     with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
@@ -235,12 +260,9 @@ def classify(
             page, found = write_main_job(
                 output, population, trait, n_permutations=permutations, progress=progress
             )
-        elif asked.two_classes:
-            found = classification.classify(
-                population, trait, n_permutations=permutations, progress=progress
-            )
         else:
-            found = classification.regress(population, trait, progress=progress)
+            tell = classification.classify if asked.two_classes else classification.regress
+            found = tell(population, trait, n_permutations=permutations, progress=progress)
     print(f"{asked.trait}: {asked.negative} to {asked.positive}, {len(asked.rows)} walkers")
     _print_results(found)
     if page is not None:
@@ -259,7 +281,10 @@ def synthesize(
     ] = Path("walker.mp4"),
     view: Annotated[float, typer.Option(help="Azimuth in degrees: 0 frontal, 90 profile.")] = 30.0,
     elevation: Annotated[float, typer.Option(help="Degrees above the horizon.")] = 0.0,
-    duration: Annotated[float, typer.Option(help="Seconds.")] = 4.0,
+    duration: Annotated[
+        float | None,
+        typer.Option(help="Seconds; left out, whole strides of about 4, so that films loop."),
+    ] = None,
     style: Annotated[str, typer.Option(help="'dots' or 'sticks'.")] = "dots",
     kind: Kind = "discriminant",
     part: Part = "all",
@@ -272,25 +297,31 @@ def synthesize(
     """Film the average walker, or one's own, moved along traits, and say how plausible it is."""
     import numpy as np
 
+    from eigenwalker.display.encoding import FORMATS
     from eigenwalker.display.films import write_film
+    from eigenwalker.display.staging import STYLES
     from eigenwalker.trait_axes import trait_axis
 
+    wishes = [_wish(each) for each in trait or []]
+    _one_of(style, STYLES, "--style")
+    _one_of(output.suffix.lower(), FORMATS, "the suffix of the film,")
     population = _population(people, with_flagged)
     vector = _start(population, start)
-    axes: list[TraitAxis] = []
-    for wish in trait or []:
-        name, alpha = _wish(wish)
-        axis = trait_axis(population, name, part=part, n_components=components, kind=kind)  # pyright: ignore[reportArgumentType] - checked there
+    axes = [
+        trait_axis(population, name, part=part, n_components=components, kind=kind)  # pyright: ignore[reportArgumentType] - checked there
+        for name, _ in wishes
+    ]
+    for axis, (_, alpha) in zip(axes, wishes, strict=True):
         vector = vector + alpha * axis.step
-        axes.append(axis)
-        pole = axis.contrast.positive if alpha >= 0 else axis.contrast.negative
-        print(f"{axis.contrast.trait}: {abs(alpha):g} standard deviations towards {pole}")
+    for axis, (_, alpha) in zip(axes, wishes, strict=True):
+        print(_along_in_words(population, axis, vector, alpha))
     walker = population.walker(np.asarray(vector))
     with _bar("Filming") as progress:
         write_film(
             walker,
             output,
             duration_s=duration,
+            n_strides=max(round(4 * walker.frequency_hz), 1) if duration is None else None,
             view_deg=view,
             elevation_deg=elevation,
             style=style,  # pyright: ignore[reportArgumentType] - checked there
@@ -394,11 +425,27 @@ def _wish(wish: str) -> tuple[str, float]:
     """The trait and the standard deviations of ``sex=+3`` or ``style=feminine:masculine=2``."""
     name, _, alpha = wish.rpartition("=")
     try:
+        if not math.isfinite(float(alpha)):
+            raise ValueError
         return name, float(alpha)
     except ValueError:
         raise ValueError(
             f"{wish!r} does not say how far; write a trait and standard deviations: sex=+3."
         ) from None
+
+
+def _along_in_words(
+    population: Population, axis: TraitAxis, vector: np.ndarray, alpha: float
+) -> str:
+    asked = axis.contrast
+    pole = asked.positive if alpha >= 0 else asked.negative
+    place = float(axis.positions(vector[None])[0])
+    others = axis.positions(population.X[asked.rows])
+    beyond = "beyond all walkers, who reach" if abs(place) > abs(others).max() else "walkers reach"
+    return (
+        f"{asked.trait}: {abs(alpha):g} standard deviations towards {pole}, to {place:+.1f}; "
+        f"{beyond} {others.min():+.1f} to {others.max():+.1f}."
+    )
 
 
 def _print_plausibility(population: Population, vector: np.ndarray) -> None:

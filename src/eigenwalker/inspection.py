@@ -19,13 +19,17 @@ from eigenwalker.quality import assess
 Fact = str | float | int | bool | None | list[str]
 
 
-def inspect_file(path: str | Path) -> dict[str, Fact]:
+def inspect_file(
+    path: str | Path, *, unit: str | None = None, rate_hz: float | None = None
+) -> dict[str, Fact]:
     """Return what is in a capture or a population file, and what is wrong with it.
 
     Parameters
     ----------
     path : str or Path
         A capture of any format that `read_mocap` reads, or a population (``.nc``).
+    unit, rate_hz
+        As `read_mocap` takes them, for captures that name none.
 
     Returns
     -------
@@ -41,7 +45,7 @@ def inspect_file(path: str | Path) -> dict[str, Fact]:
     path = Path(path)
     if path.is_file() and looks_like_population(path):
         return _plain(_of_population(Population.load(path)))
-    return _plain(_of_capture(path))
+    return _plain(_of_capture(path, unit, rate_hz))
 
 
 def _of_population(population: Population) -> dict[str, object]:
@@ -76,11 +80,11 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
     return f"{name}: {shown}{', ...' if len(counts) > 8 else ''}"
 
 
-def _of_capture(path: Path) -> dict[str, object]:
+def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str, object]:
     problems: list[str] = []
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        capture = read_mocap(path)
+        capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
     problems += [str(each.message) for each in said]
     facts: dict[str, object] = {
         "kind": "capture",

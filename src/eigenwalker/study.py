@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import joblib
 import numpy as np
@@ -18,7 +20,7 @@ from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.gait import in_place
 from eigenwalker.journal import Journal
 from eigenwalker.mocap import FORMATS, explained_by, is_capture, read_mocap, virtual_markers
-from eigenwalker.population import FLAG, Population
+from eigenwalker.population import FLAG, Population, flags_of, joined_flags
 from eigenwalker.quality import assess
 from eigenwalker.walker import Form, Walker
 
@@ -47,6 +49,7 @@ class Study:
 
     population: Population | None
     files: pd.DataFrame
+    unlisted: tuple[str, ...] = ()
 
     @property
     def refused(self) -> pd.DataFrame:
@@ -55,7 +58,12 @@ class Study:
 
 
 def walker_from_file(
-    path: str | Path, *, form: Form = "eigenposture", n_harmonics: int = 2
+    path: str | Path,
+    *,
+    form: Form = "eigenposture",
+    n_harmonics: int = 2,
+    unit: str | None = None,
+    rate_hz: float | None = None,
 ) -> tuple[Walker, dict[str, object]]:
     """Return the walker of one capture, from file to model, and what is to be known of it.
 
@@ -67,6 +75,8 @@ def walker_from_file(
         How to take the walk apart.
     n_harmonics : int
         Multiples of the stride frequency.
+    unit, rate_hz
+        As `read_mocap` takes them, for captures that name none.
 
     Returns
     -------
@@ -81,7 +91,7 @@ def walker_from_file(
         If the file cannot be read, is no body or no walk.
 
     """
-    capture = read_mocap(path)
+    capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
     joints = virtual_markers(capture)
     walk = in_place(joints)
     walker = DECOMPOSE[form](walk, n_harmonics=n_harmonics)
@@ -94,6 +104,7 @@ def walker_from_file(
         "speed_mm_s": walker.speed_mm_s,
         "r2": walker.fit.fourier_r2 if walker.fit else float("nan"),
         "marker_set": joints.attrs.get("marker_set", ""),
+        "unit": str(capture.attrs.get("unit", "mm")),
         "unit_guessed": bool(capture.attrs.get("unit_guessed", False)),
         "verdict": quality.verdict,
         FLAG: quality.flag,
@@ -108,6 +119,8 @@ def fit_folder(
     trait_from_name: str | None = None,
     form: Form = "eigenposture",
     n_harmonics: int = 2,
+    unit: str | None = None,
+    rate_hz: float | None = None,
     n_jobs: int = -1,
     journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -124,7 +137,7 @@ def fit_folder(
     trait_from_name : str, optional
         A regular expression with named groups, searched for in each file's name, such as
         ``r"walk_(?P<style>[a-z]+)_"``.
-    form, n_harmonics
+    form, n_harmonics, unit, rate_hz
         See `walker_from_file`.
     n_jobs : int
         Processes to read with; -1 uses all cores.
@@ -148,19 +161,24 @@ def fit_folder(
     folder = Path(folder)
     table = _listed(folder, traits, trait_from_name)
     names = table[FILE].tolist()
-    settings = {"version": eigenwalker.__version__, "form": form, "n_harmonics": n_harmonics}
-    kept = None if journal is None else Journal(Path(journal), settings)
+    if n_harmonics < 1:
+        raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")
+    settings = {"form": form, "n_harmonics": n_harmonics, "unit": unit, "rate_hz": rate_hz}
+    version = {"version": eigenwalker.__version__}
+    kept = None if journal is None else Journal(Path(journal), settings | version)
     done: dict[str, _Attempt] = {}
-    for name, attempt in _attempts(folder, names, form, n_harmonics, n_jobs, kept):
+    for name, attempt in _attempts(folder, names, settings, n_jobs, kept):
         done[name] = attempt
         if progress:
             progress(len(done), len(names))
     walkers = [done[name][0] for name in names]
-    return _gathered(table, walkers, pd.DataFrame([done[name][1] for name in names]), form)
+    study = _gathered(table, walkers, pd.DataFrame([done[name][1] for name in names]), form)
+    unlisted = sorted(set(_captures_in(folder)) - set(names)) if traits is not None else ()
+    return replace(study, unlisted=tuple(unlisted))
 
 
 def _attempts(
-    folder: Path, names: list[str], form: Form, n_harmonics: int, n_jobs: int, kept: Journal | None
+    folder: Path, names: list[str], settings: dict[str, Any], n_jobs: int, kept: Journal | None
 ) -> Iterator[tuple[str, _Attempt]]:
     """Yield what became of each capture; first of those that an earlier run has made."""
     waiting = []
@@ -171,7 +189,7 @@ def _attempts(
             waiting.append(name)
     if not waiting:
         return
-    tasks = [joblib.delayed(_attempt)(folder, name, form, n_harmonics) for name in waiting]
+    tasks = [joblib.delayed(_attempt)(folder, name, settings) for name in waiting]
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(tasks))
     attempts: Iterable[_Attempt] = joblib.Parallel(n_processes, return_as="generator")(tasks)  # pyright: ignore[reportAssignmentType] - typed as a list or None
     for name, (walker, facts) in zip(waiting, attempts, strict=True):
@@ -189,13 +207,13 @@ def _state(folder: Path, name: str) -> list[int]:
     return [number for stat in stats for number in (stat.st_size, stat.st_mtime_ns)]
 
 
-def _attempt(folder: Path, name: str, form: Form, n_harmonics: int) -> _Attempt:
+def _attempt(folder: Path, name: str, settings: dict[str, Any]) -> _Attempt:
     """One capture in a process of its own; whatever goes wrong with it stays with it."""
     try:
         path = _within(folder, name)
         with threadpool_limits(1), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what they say stands in the facts
-            walker, facts = walker_from_file(path, form=form, n_harmonics=n_harmonics)
+            walker, facts = walker_from_file(path, **settings)
         return walker, {
             "status": "flagged" if facts[FLAG] else "used",
             "reason": facts[FLAG],
@@ -223,13 +241,20 @@ def _listed(
     if traits is not None:
         table = _traits_table(traits)
     else:
-        names = sorted(
-            path.relative_to(folder).as_posix() for path in folder.rglob("*") if is_capture(path)
-        )
+        names = sorted(_captures_in(folder))
         table = pd.DataFrame({FILE: names})
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
-    return table.join(_named_traits(table[FILE], pattern)) if pattern else table
+    if not pattern:
+        return table
+    named = _named_traits(table[FILE], pattern)
+    if both := [str(name) for name in named if name in table]:
+        raise ValueError(f"Both the traits table and the pattern name {both}; let one do so.")
+    return table.join(named)
+
+
+def _captures_in(folder: Path) -> list[str]:
+    return [path.relative_to(folder).as_posix() for path in folder.rglob("*") if is_capture(path)]
 
 
 def _known() -> str:
@@ -239,19 +264,28 @@ def _known() -> str:
 def _traits_table(traits: pd.DataFrame | str | Path) -> pd.DataFrame:
     if not isinstance(traits, pd.DataFrame):
         try:
-            traits = pd.read_csv(traits, dtype={FILE: str, "person": str})
-        except (OSError, ValueError) as error:
+            traits = pd.read_csv(
+                traits,
+                sep=None,
+                engine="python",
+                encoding="utf-8-sig",
+                converters={FILE: str, "person": str},
+            )
+        except (OSError, ValueError, csv.Error) as error:
             raise ValueError(f"The traits table {traits} could not be read: {error}") from error
+    tidy = {name: str(name).strip() for name in traits}
+    traits = traits.rename(columns=tidy).rename(columns={"File": FILE, "FILE": FILE})
     if FILE not in traits:
         raise ValueError(
             f"The traits table needs a column 'file' (relative to the folder); it has "
             f"{list(traits.columns)}."
         )
     table = traits.reset_index(drop=True)
-    if table[FILE].isna().any():
-        row = int(np.flatnonzero(table[FILE].isna())[0]) + 1
+    missing = table[FILE].isna() | (table[FILE].astype(str).str.strip() == "")
+    if missing.any():
+        row = int(np.flatnonzero(missing)[0]) + 1
         raise ValueError(f"Row {row} of the traits table names no file.")
-    table[FILE] = table[FILE].astype(str)
+    table[FILE] = [Path(str(name).strip()).as_posix() for name in table[FILE]]
     if (twice := table[FILE][table[FILE].duplicated()]).any():
         raise ValueError(f"The traits table lists {sorted(set(twice))[:5]} more than once.")
     return table
@@ -288,13 +322,25 @@ def _gathered(
     if not kept:
         return Study(None, files)
     traits = table.iloc[kept].reset_index(drop=True)
-    flags = facts[FLAG].iloc[kept].to_numpy()
+    flags = joined_flags(flags_of(traits), facts[FLAG].iloc[kept])
     population = Population(
         tuple(walker for walker in walkers if walker is not None),
         traits.assign(**{FLAG: flags}),
-        provenance={"source": f"{len(kept)} captures", "form": form},
+        provenance={"source": f"{len(kept)} captures", "form": form} | _guesses(facts.iloc[kept]),
     )
     said = population.traits[FLAG].to_numpy()
     files.loc[kept, "reason"] = said
     files.loc[kept, "status"] = np.where(said != "", "flagged", "used")
     return Study(population, files)
+
+
+def _guesses(facts: pd.DataFrame) -> dict[str, str]:
+    """What had to be guessed of the captures, in words."""
+    guessed = facts["unit"][facts["unit_guessed"].astype(bool)]
+    if guessed.empty:
+        return {}
+    units = ", ".join(f"{unit} {count}" for unit, count in guessed.value_counts().items())
+    return {
+        "units": f"guessed from the height of the body for {len(guessed)} of {len(facts)} "
+        f"captures, whose files name none ({units})"
+    }
