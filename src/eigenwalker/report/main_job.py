@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -18,11 +18,10 @@ from eigenwalker.contrasts import Contrast, contrast
 from eigenwalker.decomposition import decompose_pca
 from eigenwalker.display.bodies import figure_joints, figure_walkers
 from eigenwalker.display.components import figure_scores, figure_variance
-from eigenwalker.display.curves import figure_curves
+from eigenwalker.display.curves import figure_curves, figure_regression_curves
 from eigenwalker.display.eigenpostures import figure_eigenpostures
 from eigenwalker.display.films import Style, write_film
 from eigenwalker.display.populations import figure_space
-from eigenwalker.gait import gait_parameters
 from eigenwalker.extrapolation import plausibility
 from eigenwalker.population import Population
 from eigenwalker.report.content import (
@@ -35,6 +34,13 @@ from eigenwalker.report.content import (
     Section,
     Table,
     Text,
+)
+from eigenwalker.report.main_tables import (
+    gait_table,
+    missed_table,
+    names_of,
+    plausibility_table,
+    results_table,
 )
 from eigenwalker.report.page import write_report
 from eigenwalker.space import WalkerSpace
@@ -77,7 +83,7 @@ def write_main_job(
     example : DataArray of shape (time, marker, axis), optional
         A walk in place, to show how sines stand for its scores (J fig. 3).
     n_permutations : int
-        Random labels to compare a classifier with.
+        Random deals of the trait to compare with.
     progress : callable, optional
         Called with the number of steps done and of all.
 
@@ -90,10 +96,8 @@ def write_main_job(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     asked = contrast(population, trait)
-    if asked.two_classes:
-        found = classify_inputs(population, trait, n_permutations=n_permutations, progress=progress)
-    else:
-        found = regress_inputs(population, trait, progress=progress)
+    tell = classify_inputs if asked.two_classes else regress_inputs
+    found = tell(population, trait, n_permutations=n_permutations, progress=progress)
     axes: dict[Kind, TraitAxis] = {
         kind: trait_axis(population, trait, kind=kind) for kind in _KINDS
     }
@@ -121,15 +125,21 @@ def _lead(found: Classification | Regression) -> str:
     n = len(asked.rows)
     if isinstance(found, Classification):
         best = table.iloc[0]
+        are = "is" if best["errors"] == 1 else "are"
+        with_n = (
+            "component that does" if best["best n"] == 1 else f"{best['best n']} components that do"
+        )
         return (
-            f"Left out one at a time, {best['errors']} of {n} walkers are misclassified from "
-            f"everything that is known of them, with the {best['best n']} components that do best; "
+            f"Left out one at a time, {best['errors']} of {n} walkers {are} misclassified from "
+            f"everything that is known of them, with the {with_n} best; "
             f"{best['nested errors']} when that number is chosen without them. {found.chance}"
         )
     best = table.iloc[0]
     return (
         f"Told from everything, {asked.trait} of {n} walkers left out one at a time correlates "
-        f"with the truth at {best['correlation']:.2f} (R2 {best['R2']:.2f}). {found.chance}"
+        f"with the truth at {best['correlation']:.2f} (R2 {best['R2']:.2f}) with the number of "
+        f"components that does best; at {best['nested correlation']:.2f} "
+        f"(R2 {best['nested R2']:.2f}) when that number is chosen without them. {found.chance}"
     )
 
 
@@ -142,15 +152,16 @@ def _who(population: Population) -> list[Block]:
             f"{len(population.feature_names)} numbers describe a walk."
         )
     ]
-    if sources := [f"{key}: {value}" for key, value in population.provenance.items()]:
-        blocks.append(Items(sources))
+    told = {key: value for key, value in population.provenance.items() if key != "recipe"}
+    if told:
+        blocks.append(Items([f"{key}: {value}" for key, value in told.items()]))
     known = [row for row in rows if row is not None]
     if known:
         blocks.append(Table("Traits", ["trait", "values", "known of"], known))
     if population.flagged.any():
         named = population.traits[population.flagged]
-        names = named["file"] if "file" in named else [f"walker {row}" for row in named.index]
-        flagged = [[str(name), flag] for name, flag in zip(names, named["flag"], strict=True)]
+        names = names_of(population)
+        flagged = [[names[row], flag] for row, flag in zip(named.index, named["flag"], strict=True)]
         blocks.append(Table("Flagged, and left out of all that follows", ["walk", "why"], flagged))
     return blocks
 
@@ -194,7 +205,8 @@ def _model(population: Population, example: xr.DataArray | None) -> list[Block]:
         blocks.append(
             Figure(
                 figure_scores(example, decompose_pca(example)),
-                "One walk: scores of its eigenpostures over time, and the sines in their place.",
+                f"{_capital(str(example.attrs.get('source', 'one walk')))}: scores of the "
+                "eigenpostures over time, and below them the sines that take their place.",
                 "Four wavy curves over five seconds, and below them the same as pure sines.",
             )
         )
@@ -218,7 +230,10 @@ def _model(population: Population, example: xr.DataArray | None) -> list[Block]:
         ),
         Figure(
             figure_eigenpostures(average),
-            "What each eigenposture of the average walker adds to its mean posture.",
+            "What each eigenposture of the average walker does to its mean posture (grey). Blue: "
+            "the mean posture plus the eigenposture, with arrows from where each joint is on "
+            "average; red and dashed: minus the eigenposture. Left limbs are paler. Small "
+            "movements are drawn larger: 5-fold is five times what they are.",
             "Stick figures of the mean posture with each eigenposture added and taken away.",
         ),
     ]
@@ -226,11 +241,9 @@ def _model(population: Population, example: xr.DataArray | None) -> list[Block]:
 
 
 def _classifiers(population: Population, found: Classification | Regression) -> list[Block]:
-    table = found.table()
-    columns = [str(column) for column in table]
-    cells = [[None if pd.isna(cell) else cell for cell in row] for row in table.to_numpy(object)]
-    out = "persons" if found.contrast.persons is not None else "walkers"
-    blocks: list[Block] = [Table(f"Told of {out} left out one at a time", columns, cells)]
+    blocks: list[Block] = [results_table(found)]
+    if found.many_inputs:
+        blocks.append(Text(found.many_inputs))
     if isinstance(found, Classification):
         panels = {each.input.title: each.curves for each in found.results[:N_PANELS]}
         blocks.append(
@@ -242,14 +255,20 @@ def _classifiers(population: Population, found: Classification | Regression) -> 
                 "left out stay above.",
             )
         )
-        missed = found.often_missed().head(10)
-        if len(missed):
-            traits = population.traits
-            names = traits.get("file", traits.index.to_series()).loc[missed.index]
-            rows = [[str(name), int(count)] for name, count in zip(names, missed, strict=True)]
-            blocks.append(
-                Table("Walkers that several classifiers miss", ["walk", "inputs missing it"], rows)
+        if missed := missed_table(population, found):
+            blocks.append(missed)
+    else:
+        told = {each.input.title: each.curves for each in found.results[:N_PANELS]}
+        blocks.append(
+            Figure(
+                figure_regression_curves(told),
+                f"Share of the variance of {found.contrast.trait} told over the number of "
+                "components: of those trained on (dashed) and of those left out (solid). Below 0 "
+                "the mean tells more.",
+                "Panels of two curves each: on those trained on the share told rises to one, on "
+                "those left out it stays below.",
             )
+        )
     return blocks
 
 
@@ -268,8 +287,15 @@ def _looks(folder: Path, population: Population, axes: Mapping[Kind, TraitAxis])
                 "along the axis.",
                 "Stick figures from one pole of the trait to the other, front and side.",
             ),
-            _gait_table(walkers),
-            _plausibility_table(population, axis),
+            gait_table(walkers),
+            plausibility_table(
+                {
+                    _title(asked, alpha): plausibility(
+                        population, population.average + alpha * axis.step
+                    )
+                    for alpha in ALPHAS
+                }
+            ),
         ]
     if asked.two_classes:
         blocks.append(
@@ -322,29 +348,6 @@ def _title(asked: Contrast, alpha: float) -> str:
     if alpha == 0:
         return "average"
     return f"{asked.positive if alpha > 0 else asked.negative} {abs(alpha):g} SD"
-
-
-def _gait_table(walkers: Mapping[str, Walker]) -> Table:
-    columns = {title: gait_parameters(walker) for title, walker in walkers.items()}
-    names = next(iter(columns.values())).dropna().index
-    rows = [[str(name), *(float(column[name]) for column in columns.values())] for name in names]
-    return Table("Gait of the walkers shown", ["", *columns], rows)
-
-
-def _plausibility_table(population: Population, axis: TraitAxis) -> Table:
-    rows: list[list] = []
-    limbs: Iterable[str] = ()
-    for alpha in ALPHAS:
-        title = _title(axis.contrast, alpha)
-        found = plausibility(population, population.average + alpha * axis.step)
-        limbs = found.limb_change.index
-        changes = [f"{100 * change:+.0f} %" for change in found.limb_change]
-        rows.append([title, found.position.distance, *changes])
-    return Table(
-        "How plausible they are: distance from the average walker, 1 being usual; change of limbs",
-        ["walker", "distance", *limbs],
-        rows,
-    )
 
 
 def _films(folder: Path, name: str, walkers: Mapping[str, Walker]) -> list[Film]:

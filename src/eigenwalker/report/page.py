@@ -33,8 +33,12 @@ from eigenwalker.report.content import (
 FILMS = {".mp4": "video/mp4", ".webm": "video/webm", ".gif": "image/gif"}
 ALLOWED = "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'"
 """What a browser may load for the page: what the page itself holds."""
+_FEW_COLUMNS = 4
+"""As many as a telephone shows at once."""
 SCREEN_DPI = 125
 """CSS pixels an inch of a figure takes: letters of 8 points are as large as a footnote."""
+_NUMBER = re.compile(r"-|(<= )?[+-]?\d+(\.\d+)?(e[+-]?\d+)?( %)?")
+"""A cell of words that is a number all the same, or the dash that stands for none."""
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -145,7 +149,7 @@ def _(block: Code) -> Element:
 
 @_element.register
 def _(block: Table) -> Element:
-    scroll = Element("div", _scrolled(block.caption))
+    scroll = Element("div", _scrolled(block.caption, wide=len(block.columns) > _FEW_COLUMNS))
     table = SubElement(scroll, "table")
     _put(SubElement(table, "caption"), "span", block.caption)
     numeric = [_is_numeric(column) for column in zip(*block.rows, strict=True)]
@@ -210,13 +214,14 @@ def _clean(words: str) -> str:
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", words)
 
 
-def _scrolled(name: str) -> dict[str, str]:
+def _scrolled(name: str, *, wide: bool) -> dict[str, str]:
     """For what may be wider than a telephone: it scrolls in its own box, by keyboard too."""
-    return {"class": "scroll", "role": "region", "tabindex": "0", "aria-label": _clean(name)}
+    shape = "scroll wide" if wide else "scroll"
+    return {"class": shape, "role": "region", "tabindex": "0", "aria-label": _clean(name)}
 
 
 def _is_numeric(column: tuple[Cell, ...]) -> bool:
-    return all(cell is None or not isinstance(cell, str) for cell in column)
+    return all(not isinstance(cell, str) or _NUMBER.fullmatch(cell) for cell in column)
 
 
 def _aligned(numeric: bool) -> dict[str, str]:
@@ -228,10 +233,16 @@ def _in_words(cell: Cell) -> str:
     if cell is None or (isinstance(cell, float) and math.isnan(cell)):
         return "\N{EN DASH}"
     if isinstance(cell, str):
-        return cell
+        return _signed(cell) if _NUMBER.fullmatch(cell) else cell
     words = f"{cell:.3g}" if abs(cell) < 1000 and isinstance(cell, float) else f"{cell:.0f}"
-    words = "0" if abs(cell) < 1e-9 else words
-    return words.replace("-", "\N{MINUS SIGN}")
+    return _signed("0" if abs(cell) < 1e-9 else words)
+
+
+def _signed(number: str) -> str:
+    """A number with the signs that print has."""
+    if number == "-":
+        return "\N{EN DASH}"
+    return number.replace("-", "\N{MINUS SIGN}").replace("<=", "\N{LESS-THAN OR EQUAL TO}")
 
 
 def _picture(figure: matplotlib.figure.Figure) -> tuple[str, int, int]:
