@@ -18,7 +18,7 @@ import eigenwalker
 from eigenwalker.mocap.upright import turn_upright
 from eigenwalker.writing.bvh import Bones, fit_bones
 
-FLOAT, SHORT, INDEX = 5126, 5123, 5125
+FLOAT, SHORT, VERTICES = 5126, 5123, 34962
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 THICK = 0.09
 """Half the thickness of a bone beside its length."""
@@ -32,11 +32,21 @@ class _Buffer:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
 
-    def put(self, values: np.ndarray, kind: str, component: int, *, limits: bool = False) -> int:
-        code = {FLOAT: "<f4", SHORT: "<u2", INDEX: "<u4"}[component]
+    def put(
+        self,
+        values: np.ndarray,
+        kind: str,
+        component: int = FLOAT,
+        *,
+        limits: bool = False,
+        vertices: bool = False,
+    ) -> int:
+        code = {FLOAT: "<f4", SHORT: "<u2"}[component]
         raw = np.ascontiguousarray(values, dtype=code)
         self.data += b"\0" * (-len(self.data) % 4)
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": raw.nbytes}
+        if vertices:
+            view["target"] = VERTICES
         accessor = {
             "bufferView": len(self.views),
             "componentType": component,
@@ -70,11 +80,11 @@ def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = 
     buffer = _Buffer()
     first = 2  # the nodes before the joints: what scales them, and the body
     nodes: list[dict[str, Any]] = [
-        {"name": "walker", "scale": [0.01] * 3, "children": [1, first]},
+        {"name": "walker", "scale": [0.01] * 3, "children": [first]},
         {"name": "body", "mesh": 0, "skin": 0},
         *_joints(bones, first),
     ]
-    times = buffer.put(walk.time.values - walk.time.values[0], "SCALAR", FLOAT, limits=True)
+    times = buffer.put(walk.time.values - walk.time.values[0], "SCALAR", limits=True)
     content = {
         "asset": {
             "version": "2.0",
@@ -82,7 +92,7 @@ def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = 
             **({"extras": about} if about else {}),
         },
         "scene": 0,
-        "scenes": [{"nodes": [0]}],
+        "scenes": [{"nodes": [0, 1]}],
         "nodes": nodes,
         "meshes": [{"name": "body", "primitives": [_body(bones, buffer)]}],
         "materials": [
@@ -122,7 +132,7 @@ def _animation(bones: Bones, buffer: _Buffer, times: int, first: int) -> dict[st
     samplers, channels = [], []
 
     def channel(joint: int, path: str, values: np.ndarray, kind: str) -> None:
-        output = buffer.put(values, kind, FLOAT)
+        output = buffer.put(values, kind)
         channels.append({"sampler": len(samplers), "target": {"node": first + joint, "path": path}})
         samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
 
@@ -153,7 +163,7 @@ def _skin(bones: Bones, buffer: _Buffer, first: int) -> dict[str, Any]:
     return {
         "joints": [first + joint for joint in range(len(bones.names))],
         "skeleton": first,
-        "inverseBindMatrices": buffer.put(columns, "MAT4", FLOAT),
+        "inverseBindMatrices": buffer.put(columns, "MAT4"),
     }
 
 
@@ -190,10 +200,10 @@ def _body(bones: Bones, buffer: _Buffer) -> dict[str, Any]:
     joints = np.zeros((len(carriers), 4))
     joints[:, 0] = carriers
     attributes = {
-        "POSITION": buffer.put(places, "VEC3", FLOAT, limits=True),
-        "NORMAL": buffer.put(normals, "VEC3", FLOAT),
-        "JOINTS_0": buffer.put(joints, "VEC4", SHORT),
-        "WEIGHTS_0": buffer.put(np.tile([1.0, 0, 0, 0], (len(carriers), 1)), "VEC4", FLOAT),
+        "POSITION": buffer.put(places, "VEC3", limits=True, vertices=True),
+        "NORMAL": buffer.put(normals, "VEC3", vertices=True),
+        "JOINTS_0": buffer.put(joints, "VEC4", SHORT, vertices=True),
+        "WEIGHTS_0": buffer.put(np.tile([1.0, 0, 0, 0], (len(carriers), 1)), "VEC4", vertices=True),
     }
     return {"attributes": attributes, "material": 0, "mode": 4}
 
