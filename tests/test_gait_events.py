@@ -1,9 +1,11 @@
 """Events and gait parameters against what was put into simulated walks."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from eigenwalker.gait import gait_events, gait_parameters, in_place
+from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.simulation import simulate_walk
 from eigenwalker.walker import Walker
 
@@ -125,3 +127,8 @@ def test_what_too_few_strides_cannot_tell_is_nan(walks):
     told = gait_parameters(walks[0][:160])
     assert np.isnan(told.stride_time_cv)
     assert told.cadence_steps_min > 60
+
+
+def test_a_capture_that_travels_has_the_parameters_of_its_walk_in_place(captures) -> None:
+    joints = virtual_markers(read_mocap(captures / "cmu" / "02_01.c3d"))
+    pd.testing.assert_series_equal(gait_parameters(joints), gait_parameters(in_place(joints)))

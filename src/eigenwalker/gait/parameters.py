@@ -12,10 +12,13 @@ import xarray as xr
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF, gait_events
 from eigenwalker.gait.frequency import fundamental_frequency
 from eigenwalker.gait.heading import SIDES, stance_speed
+from eigenwalker.gait.placement import in_place
 from eigenwalker.trajectories import check_trajectories
 from eigenwalker.walker import Walker
 
 _STRIDES_PLAYED = 3
+_TRAVELS_MM = 800.0
+"""Way that nobody goes on a treadmill without falling off."""
 _FRAMES_A_STRIDE = 200
 
 
@@ -31,7 +34,8 @@ def gait_parameters(walk: xr.DataArray | Walker) -> pd.Series:
     ----------
     walk : DataArray of shape (time, marker, axis), or Walker
         A walk in place, facing +x, whose ``attrs["speed_mm_s"]`` says how fast it was; otherwise
-        the standing feet tell the speed (`stance_speed`). A walker is played for some strides.
+        the standing feet tell the speed (`stance_speed`). A capture that travels goes through
+        `in_place` first. A walker is played for some strides.
 
     Returns
     -------
@@ -71,6 +75,10 @@ def gait_parameters(walk: xr.DataArray | Walker) -> pd.Series:
         n_frames = _STRIDES_PLAYED * _FRAMES_A_STRIDE
         walk = walk.trajectories(np.arange(n_frames) * walk.period_s / _FRAMES_A_STRIDE)
     else:
+        walk = check_trajectories(walk)
+        place = walk.mean("marker").sel(axis=["x", "y"])
+        if float((place.max("time") - place.min("time")).max()) > _TRAVELS_MM:
+            walk = in_place(walk)
         walk = check_trajectories(walk, complete=True)
         frequency_hz = fundamental_frequency(walk)
         speed = float(walk.attrs.get("speed_mm_s", np.nan))
@@ -161,7 +169,8 @@ def _variation(values: np.ndarray) -> float:
 
 
 def _asymmetry(left: float, right: float) -> float:
-    return 2 * (left - right) / (left + right)
+    both = left + right
+    return 2 * (left - right) / both if both else float("nan")
 
 
 def _mean(values: list[float]) -> float:
