@@ -1,0 +1,99 @@
+// @vitest-environment jsdom
+// The jsPsych plugin in a made-up browser; what is drawn is tested in a real one.
+
+import { initJsPsych } from "jspsych";
+import { beforeEach, expect, it, vi } from "vitest";
+
+import golden from "../../tests/golden/stimulus_plain.json";
+import WalkerPlugin from "../plugin-walker/src/index";
+
+const { stimulus } = golden;
+
+const drawn = vi.fn<(what: string) => void>();
+
+beforeEach(() => {
+  drawn.mockClear();
+  const context = new Proxy({}, { get: (_, name) => () => drawn(String(name)), set: () => true });
+  // The frames of jsdom are on another clock than performance.now(); those of browsers are not.
+  vi.stubGlobal("requestAnimationFrame", (draw: FrameRequestCallback) =>
+    setTimeout(() => draw(performance.now()), 1000 / 60),
+  );
+  vi.stubGlobal("cancelAnimationFrame", clearTimeout);
+  HTMLCanvasElement.prototype.getContext = (() => context) as never;
+});
+
+/** Run one trial; `act` is called once it is on the screen. */
+async function run(
+  parameters: object,
+  act: (display: HTMLElement) => void = () => {},
+): Promise<Record<string, any>> {
+  const jsPsych = initJsPsych({ on_trial_start: () => setTimeout(() => act(jsPsych.getDisplayElement()), 150) });
+  await jsPsych.run([{ type: WalkerPlugin, stimulus, ...parameters }]);
+  return jsPsych.data.get().values()[0] as Record<string, any>;
+}
+
+const press = (key: string): void => {
+  document.activeElement!.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+};
+
+it("takes a key and counts from the first frame", async () => {
+  const data = await run({ choices: ["f", "m"] }, () => {
+    press("x");
+    press("m");
+  });
+  expect(data).toMatchObject({ response: "m", response_by: "key" });
+  expect(data["rt"]).toBeGreaterThan(50);
+  expect(data["rt"]).toBeLessThan(150);
+  expect(data["frame_times"][0]).toBe(0);
+  expect(data["frame_times"].length).toBeGreaterThan(2);
+  expect(data["frame_interval"]).toBeGreaterThan(5);
+});
+
+it("takes a button, which waits for the first frame", async () => {
+  let waited = false;
+  const data = await run(
+    {
+      choices: "NO_KEYS",
+      buttons: ["woman", "man"],
+      on_load: () => (waited = document.querySelector("button")!.disabled),
+    },
+    (display) => display.querySelectorAll("button")[1]!.click(),
+  );
+  expect(waited).toBe(true);
+  expect(data).toMatchObject({ response: 1, response_by: "button" });
+});
+
+it("shows the stimulus for its time and ends without a response", async () => {
+  const data = await run({ stimulus_duration: 100, trial_duration: 300 });
+  expect(data).toMatchObject({ response: null, response_by: null, rt: null });
+  expect(Math.max(...data["frame_times"])).toBeLessThan(100);
+});
+
+it("goes on after a response where that does not end the trial", async () => {
+  const data = await run({ trial_duration: 400, response_ends_trial: false }, () => {
+    press("a");
+    press("b");
+  });
+  expect(data["response"]).toBe("a");
+  expect(Math.max(...data["frame_times"])).toBeGreaterThan(300);
+});
+
+it("says what is wrong with a stimulus", async () => {
+  await expect(run({ stimulus: { format: "film" } })).rejects.toThrow("no stimulus");
+});
+
+it("can be simulated", async () => {
+  const jsPsych = initJsPsych();
+  await jsPsych.simulate([{ type: WalkerPlugin, stimulus, choices: ["f", "m"] }], "data-only");
+  expect(["f", "m"]).toContain(jsPsych.data.get().values()[0].response);
+});
+
+it("can be simulated on the screen", async () => {
+  const jsPsych = initJsPsych();
+  const trial = { type: WalkerPlugin, stimulus, choices: "NO_KEYS", buttons: ["a", "b"] };
+  const wish = { default: { data: { response: 1, rt: 120 } } };
+  await jsPsych.simulate([trial], "visual", wish);
+  const [data] = jsPsych.data.get().values();
+  expect(data).toMatchObject({ response: 1, response_by: "button" });
+  expect(data.rt).toBeGreaterThan(50);
+});
