@@ -41,6 +41,15 @@ def inspect_file(
     UnreadableFile
         If the file cannot be read at all.
 
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = ew.write_mocap(ew.simulate_walk(seed=1), f"{folder}/walk.c3d")
+    ...     facts = inspect_file(file)
+    >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
+    ('C3D', 'use', 10, [])
+
     """
     path = Path(path)
     if path.is_file() and looks_like_population(path):

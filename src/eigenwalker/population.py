@@ -146,6 +146,12 @@ class Population:
         -------
         array of shape (walker, feature)
 
+        Examples
+        --------
+        >>> people = ew.load_population()
+        >>> people.part("structure").shape, people.part("p1+p2").shape, people.part("size").shape
+        ((40, 45), (40, 90), (40, 1))
+
         """
         if name == "size":
             return self.sizes[:, None]
@@ -168,6 +174,12 @@ class Population:
         ------
         ValueError
             If the vector does not describe anything that could walk.
+
+        Examples
+        --------
+        >>> people = ew.load_population()
+        >>> people.walker((people.X[0] + people.X[1]) / 2)
+        Walker(15 markers, 4 postures in the eigenposture form, 0.848 Hz)
 
         """
         walker = self.layout.walker(vector)
@@ -203,6 +215,15 @@ class Population:
         Returns
         -------
         array of shape (feature,)
+
+        Examples
+        --------
+        The body of the first walker, moving as walkers do on average:
+
+        >>> people = ew.load_population().size_normalised()
+        >>> mixed = people.walker(people.hybrid(structure=people.X[0], dynamics=people.average))
+        >>> bool((mixed.p0 == people.walkers[0].p0).all())
+        True
 
         """
         columns = self.layout.columns("structure")

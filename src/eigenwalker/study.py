@@ -90,6 +90,17 @@ def walker_from_file(
     UnreadableFile, ValueError
         If the file cannot be read, is no body or no walk.
 
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = ew.write_mocap(ew.simulate_walk(seed=1), f"{folder}/walk.c3d")
+    ...     walker, facts = walker_from_file(file)
+    >>> walker
+    Walker(15 markers, 4 postures in the eigenposture form, 0.870 Hz, r2 0.995)
+    >>> facts["strides"], facts["flag"]
+    (10, '')
+
     """
     capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
     joints = virtual_markers(capture)
@@ -156,6 +167,19 @@ def fit_folder(
     ------
     ValueError
         If folder, table or pattern make no sense; never because of a single capture.
+
+    Examples
+    --------
+    Three captures whose names say the sex:
+
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     for seed, sex in enumerate(["female", "male", "female"]):
+    ...         walk = ew.simulate_walk(sex=sex, seed=seed)
+    ...         _ = ew.write_mocap(walk, f"{folder}/{sex}_{seed}.c3d")
+    ...     study = fit_folder(folder, trait_from_name=r"(?P<sex>[a-z]+)_", n_jobs=1)
+    >>> study.population.traits["sex"].tolist(), len(study.refused)
+    (['female', 'female', 'male'], 0)
 
     """
     folder = Path(folder)

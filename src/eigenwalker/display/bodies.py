@@ -203,6 +203,15 @@ def figure_walkers(
     -------
     Figure
 
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> sex = ew.trait_axis(people, "sex")
+    >>> poles = {"woman": people.average - sex.step, "man": people.average + sex.step}
+    >>> figure = figure_walkers({name: people.walker(each) for name, each in poles.items()})
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['woman', 'man']
+
     """
     if not walkers:
         raise ValueError("There is no walker to draw; give one or more, by title.")

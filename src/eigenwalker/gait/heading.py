@@ -151,6 +151,12 @@ def stance_speed(walk: xr.DataArray) -> float:
     float
         Millimetres a second along +x; NaN without both ankles.
 
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1)
+    >>> round(walk.attrs["speed_mm_s"]), round(stance_speed(walk))
+    (1221, 1181)
+
     """
     walk = check_trajectories(walk, complete=True)
     ground = ground_velocity(walk.values, walk.marker.values.tolist(), sampling_rate(walk))

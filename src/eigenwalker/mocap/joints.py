@@ -84,12 +84,15 @@ def virtual_markers(
 
     Examples
     --------
-    >>> points = np.zeros((3, 3, 3))
-    >>> capture = ew.label_trajectories(points, markers=["hip", "KneeIn", "KneeOut"], rate_hz=60)
-    >>> virtual_markers(capture, mapping={"left_knee": ["KneeIn", "KneeOut"], "pelvis": "hip"})
-    Traceback (most recent call last):
-    ...
-    ValueError: No known marker set gives the joints ['head', 'sternum', 'left_shoulder', ...
+    A capture with names of its own; its pelvis is the middle between two of its points:
+
+    >>> walk = ew.simulate_walk(seed=1)
+    >>> capture = walk.assign_coords(marker=[f"point {i}" for i in range(15)])
+    >>> mapping = {joint: f"point {i}" for i, joint in enumerate(ew.JOINTS.markers)}
+    >>> mapping["pelvis"] = ["point 9", "point 12"]
+    >>> joints = virtual_markers(capture, mapping=mapping)
+    >>> joints.attrs["marker_set"], joints.marker.values[8].item()
+    ('own mapping', 'pelvis')
 
     """
     walk = _mended(check_trajectories(trajectories))
