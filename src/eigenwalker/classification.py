@@ -377,7 +377,7 @@ def _in_words(table: pd.DataFrame, n_permutations: int) -> pd.DataFrame:
     def p_in_words(p: float) -> str:
         if not n_permutations:
             return "-"
-        return f"<= {least:.1g}" if p <= least else f"{p:.2g}"
+        return f"<= {least:.2g}" if p <= least else f"{p:.2g}"
 
     def cell(value: object) -> str:
         if value is None or value is pd.NA or value != value:

@@ -179,7 +179,7 @@ class Population:
         --------
         >>> people = ew.load_population()
         >>> people.walker((people.X[0] + people.X[1]) / 2)
-        Walker(15 markers, 4 postures in the eigenposture form, 0.848 Hz)
+        Walker(15 markers, 4 postures in the eigenposture form, 0.856 Hz)
 
         """
         walker = self.layout.walker(vector)
