@@ -264,7 +264,7 @@ def _classifiers(population: Population, found: Classification | Regression) -> 
                 figure_regression_curves(told),
                 f"Share of the variance of {found.contrast.trait} told over the number of "
                 "components: of those trained on (dashed) and of those left out (solid). Below 0 "
-                "the mean tells more.",
+                "the mean tells more; a curve that falls far below leaves its panel.",
                 "Panels of two curves each: on those trained on the share told rises to one, on "
                 "those left out it stays below.",
             )
