@@ -25,6 +25,7 @@ _HOME = {
     "figure_curves": "display.curves",
     "figure_eigenpostures": "display.eigenpostures",
     "figure_joints": "display.bodies",
+    "figure_regression_curves": "display.curves",
     "figure_scores": "display.components",
     "figure_space": "display.populations",
     "figure_variance": "display.components",
@@ -42,6 +43,7 @@ _HOME = {
     "label_trajectories": "trajectories",
     "load_population": "datasets",
     "nested_leave_one_out": "validation",
+    "nested_regression": "validation",
     "Pattern": "simulation",
     "permutation_test": "validation",
     "plausibility": "extrapolation",
@@ -57,6 +59,7 @@ _HOME = {
     "read_walkers_mat": "walker_files",
     "regress": "classification",
     "regression_curves": "jackknife",
+    "regression_permutation_test": "validation",
     "Route": "simulation",
     "simulate_captures": "simulation",
     "simulate_population": "simulation",
@@ -104,6 +107,7 @@ if TYPE_CHECKING:
     from eigenwalker.display.components import figure_scores as figure_scores
     from eigenwalker.display.components import figure_variance as figure_variance
     from eigenwalker.display.curves import figure_curves as figure_curves
+    from eigenwalker.display.curves import figure_regression_curves as figure_regression_curves
     from eigenwalker.display.eigenpostures import figure_eigenpostures as figure_eigenpostures
     from eigenwalker.display.films import write_film as write_film
     from eigenwalker.display.populations import figure_space as figure_space
@@ -151,7 +155,9 @@ if TYPE_CHECKING:
     from eigenwalker.trait_axes import trait_axis as trait_axis
     from eigenwalker.trajectories import label_trajectories as label_trajectories
     from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out
+    from eigenwalker.validation import nested_regression as nested_regression
     from eigenwalker.validation import permutation_test as permutation_test
+    from eigenwalker.validation import regression_permutation_test as regression_permutation_test
     from eigenwalker.walker import Walker as Walker
     from eigenwalker.walker_files import read_mm as read_mm
     from eigenwalker.walker_files import read_walkers_mat as read_walkers_mat
