@@ -173,6 +173,29 @@ def test_numbers_read_as_one_would_write_them(number, words):
     assert Page(render_report(Report("T", "L", [Section("S", [table])]))).words["td"] == [words]
 
 
+@pytest.mark.parametrize(
+    ("said", "shown"),
+    [
+        ("<= 0.005", "\N{LESS-THAN OR EQUAL TO} 0.005"),
+        ("-12 %", "\N{MINUS SIGN}12 %"),
+        ("+3 %", "+3 %"),
+        ("-", DASH),
+    ],
+)
+def test_numbers_that_come_as_words_are_set_as_numbers(said, shown):
+    table = Table("Limbs", ["of", "value"], [["a walker", said]])
+    page = Page(render_report(Report("T", "L", [Section("S", [table])])))
+    assert page.words["td"] == [shown]
+    assert page.all("td")[0]["class"] == "number"
+
+
+def test_words_stay_at_the_left_and_as_they_are():
+    table = Table("Traits", ["of", "value"], [["walk-1", "-6 or so"]])
+    page = Page(render_report(Report("T", "L", [Section("S", [table])])))
+    assert page.words["td"] == ["-6 or so"]
+    assert "class" not in page.all("td")[0]
+
+
 def test_a_table_with_a_short_row_is_refused():
     with pytest.raises(ValueError, match=r"2 columns .* a row of 1 cells"):
         Table("Errors", ["input", "errors"], [["structure"]])

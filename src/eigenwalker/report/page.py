@@ -33,7 +33,7 @@ from eigenwalker.report.content import (
 FILMS = {".mp4": "video/mp4", ".webm": "video/webm", ".gif": "image/gif"}
 ALLOWED = "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'"
 """What a browser may load for the page: what the page itself holds."""
-_FEW_COLUMNS = 4
+_FEW_COLUMNS = 6
 """As many as a telephone shows at once."""
 SCREEN_DPI = 125
 """CSS pixels an inch of a figure takes: letters of 8 points are as large as a footnote."""
