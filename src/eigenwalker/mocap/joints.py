@@ -24,14 +24,18 @@ from eigenwalker.trajectories import check_trajectories, sampling_rate, trajecto
 
 MOST_WIDTH_MM = 300
 _SHOWN = 60
+_LONGEST = 60
 
 
 class _Joints(NamedTuple):
-    """Joints, which of them are approximate, and the marker set that gave them."""
+    """Joints, which of them are approximate, what was rebuilt, and the set that gave them."""
 
     joints: Points
     approximate: set[str]
     name: str
+    rebuilt: tuple[str, ...] = ()
+    share: float = 1.0
+    runner_up: str = ""
 
 
 def virtual_markers(
@@ -74,8 +78,10 @@ def virtual_markers(
         Joints in the order of ``JOINTS.markers``, then the extra points. NaN where markers were
         missing and nothing rigid beside them tells where they were. Attributes of the capture
         stay; ``attrs["swaps"]`` and ``attrs["flicker"]`` say what was mended,
-        ``attrs["marker_set"]`` names the set, and ``attrs["approximate"]`` the joints that
-        rest on a regression, an assumed width or a stand-in.
+        ``attrs["marker_set"]`` names the set, ``attrs["marker_set_share"]`` says for which share
+        of what it asks there are markers, ``attrs["marker_set_runner_up"]`` which other set is
+        nearest, ``attrs["approximate"]`` which joints rest on a regression, an assumed width or a
+        stand-in, and ``attrs["rebuilt"]`` what stands for markers that were never seen.
 
     Raises
     ------
@@ -115,7 +121,10 @@ def virtual_markers(
     result = trajectories_at(walk.time.values, values, order)
     result.attrs = walk.attrs | {
         "marker_set": found.name,
+        "marker_set_share": found.share,
+        "marker_set_runner_up": found.runner_up,
         "approximate": [joint for joint in order if joint in found.approximate],
+        "rebuilt": list(found.rebuilt),
     }
     return result
 
@@ -199,7 +208,13 @@ def _best_set(points: Points, own: Points, measures: Measures, marker_set: str |
         missing[known.name] = [joint for joint in JOINTS.markers if joint not in joints]
         if not missing[known.name]:
             name = f"{known.name}, with own mapping" if own else known.name
-            return _Joints(joints, found.approximate - set(own), name)
+            return found._replace(
+                joints=joints,
+                approximate=found.approximate - set(own),
+                name=name,
+                share=known.share_found(names),
+                runner_up=_runner_up(known, names),
+            )
     nearest = min(missing, key=lambda name: len(missing[name]))
     raise ValueError(
         f"No known marker set gives the joints {missing[nearest]} (the nearest is {nearest!r}). "
@@ -209,14 +224,25 @@ def _best_set(points: Points, own: Points, measures: Measures, marker_set: str |
     )
 
 
+def _runner_up(taken: MarkerSet, names: MarkerNames) -> str:
+    """Return which other set has most of its markers in the capture, and the share it has."""
+    others = [known for known in known_sets()[:-1] if known is not taken]
+    nearest = max(others, key=lambda known: known.share_found(names))
+    return f"{nearest.name}, {nearest.share_found(names):.0%}"
+
+
 def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: Measures) -> _Joints:
     """Return what one marker set makes of the capture: joints as they are, others from the skin."""
     direct: Points = {}
     stand_ins: set[str] = set()
+    rebuilt: list[str] = []
     for joint, entry in (*known.joints.items(), *known.extras.items()):
         if hit := names.find(entry):
             direct[joint] = midpoint([points[marker] for marker in hit.markers])
             stand_ins |= {joint} if hit.stand_in else set()
+            if hit.lacking:
+                there, gone = " and ".join(hit.markers), " and ".join(hit.lacking)
+                rebuilt.append(f"{joint}: from {there}, without {gone}")
     skin = {
         landmark: midpoint([points[marker] for marker in hit.markers])
         for landmark, entry in known.landmarks.items()
@@ -224,10 +250,15 @@ def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: M
     }
     if not skin:
         return _Joints(direct, stand_ins, known.name)
-    joints, approximate = joints_from_skin(skin | direct, measures)
-    return _Joints(joints | direct, approximate | stand_ins, known.name)
+    joints, approximate, mirrored = joints_from_skin(skin | direct, measures)
+    return _Joints(
+        joints | direct,
+        (approximate - set(direct)) | stand_ins,
+        known.name,
+        (*rebuilt, *mirrored),
+    )
 
 
 def _shortened(names: Sequence[str]) -> str:
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return f"{list(names[:_SHOWN])}{more}"
+    return f"{[name[:_LONGEST] for name in names[:_SHOWN]]}{more}"

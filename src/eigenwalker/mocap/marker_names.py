@@ -14,6 +14,10 @@ from typing import NamedTuple
 SIDES = ("left", "right")
 COMMON = 0.6
 """Share of the names that must begin alike for the beginning to be the name of a subject."""
+MOST_STARTS = 20
+"""So many beginnings are taken off, as in ``Study_03_Anna_LKNE``."""
+LONGEST = 200
+"""Letters of a name that are looked at."""
 
 _SIDE_AND_PART = (
     re.compile(r"(?P<side>left|right)[ _.-]*(?P<part>.+)", re.IGNORECASE),
@@ -34,6 +38,21 @@ class MarkerSet:
     landmarks: Mapping[str, str]
     joints: Mapping[str, str]
     extras: Mapping[str, str]
+
+    def share_found(self, names: MarkerNames) -> float:
+        """Return for which share of what the set asks for the capture has markers.
+
+        Of a set on the skin, inner markers and joint centres are left out, as most captures do
+        without them, and a sacrum where the back of the pelvis has markers of its own.
+        """
+        asked = {**self.landmarks, **self.joints, **self.extras}
+        found = {name for name, entry in asked.items() if names.find(entry)}
+        wanted = {name for name in asked if not name.endswith("_inner")}
+        if self.landmarks:
+            wanted -= set(self.joints) - {"head", "left_wrist", "right_wrist"} - set(self.landmarks)
+        backs = {f"{side}_back_waist" for side in SIDES}
+        wanted -= {"sacrum"} if backs <= found else backs if "sacrum" in found else set()
+        return len(wanted & found) / len(wanted)
 
 
 @cache
@@ -89,10 +108,15 @@ def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
 
 
 class Found(NamedTuple):
-    """Markers of a capture whose midpoint is what was asked for, and whether as a stand-in."""
+    """Markers of a capture whose midpoint is what was asked for, and whether as a stand-in.
+
+    ``lacking`` are markers that the capture would need to have it in a better way, for which it
+    has others already.
+    """
 
     markers: tuple[str, ...]
     stand_in: bool
+    lacking: tuple[str, ...] = ()
 
 
 class MarkerNames:
@@ -111,7 +135,7 @@ class MarkerNames:
     >>> names.find("{left}WRA + {left}WRB").markers
     ('Anna:LWRA', 'Anna:LWRB')
     >>> MarkerNames(["mixamorig:LeftUpLeg", "thigh.R"]).find("{right}UpLeg | ~ {right}Thigh")
-    Found(markers=('thigh.R',), stand_in=True)
+    Found(markers=('thigh.R',), stand_in=True, lacking=())
 
     """
 
@@ -123,11 +147,18 @@ class MarkerNames:
 
     def find(self, entry: str) -> Found | None:
         """Return the markers of the first alternative of an entry that the capture has in full."""
+        lacking: tuple[str, ...] = ()
         for alternative in entry.split("|"):
-            words = alternative.strip().removeprefix("~").split("+")
-            markers = [marker for word in words if (marker := self._find_one(word.strip()))]
+            words = [word.strip() for word in alternative.strip().removeprefix("~").split("+")]
+            hits = [self._find_one(word) for word in words]
+            markers = tuple(hit for hit in hits if hit)
             if len(markers) == len(words):
-                return Found(tuple(markers), stand_in=alternative.strip().startswith("~"))
+                stand_in = alternative.strip().startswith("~")
+                return Found(markers, stand_in, lacking)
+            if markers and not lacking:
+                lacking = tuple(
+                    _spelled(word) for word, hit in zip(words, hits, strict=True) if not hit
+                )
         return None
 
     def _find_one(self, word: str) -> str | None:
@@ -139,6 +170,13 @@ class MarkerNames:
         if word.startswith(mark):
             keys.insert(0, f"{side}|{_plain(word.removeprefix(mark))}")
         return next((self._known[key] for key in keys if key in self._known), None)
+
+
+def _spelled(word: str) -> str:
+    """Return a word of a marker set as captures spell it: ``LKNE`` for ``{left}KNE``."""
+    for side in SIDES:
+        word = word.replace(f"{{{side}}}", side[0].upper())
+    return word
 
 
 def subjects(names: Sequence[str]) -> list[str]:
@@ -225,12 +263,12 @@ def _of_midline(name: str) -> list[str]:
 
 def _without_common_start(names: Sequence[str]) -> list[str]:
     """Return the names without the subject or character that stands before most of them."""
-    names = [re.split(r"[:|]", name)[-1].strip() for name in names]
-    starts = Counter(hit[0] for name in names if (hit := re.match(r"[^ _.-]+[ _.-]+(?=.)", name)))
-    if not starts:
-        return names
-    start, count = starts.most_common(1)[0]
     sides = {"l", "r", *SIDES}
-    if count < COMMON * len(names) or start.rstrip(" _.-").lower() in sides:
-        return names
-    return _without_common_start([name.removeprefix(start) for name in names])
+    names = [re.split(r"[:|]", name)[-1].strip()[-LONGEST:] for name in names]
+    for _ in range(MOST_STARTS):
+        hits = (re.match(r"[^ _.-]+[ _.-]+(?=.)", name) for name in names)
+        start, count = next(iter(Counter(hit[0] for hit in hits if hit).most_common(1)), ("", 0))
+        if count < COMMON * len(names) or start.rstrip(" _.-").lower() in sides or not start:
+            break
+        names = [name.removeprefix(start) for name in names]
+    return names

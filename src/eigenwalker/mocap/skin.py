@@ -30,6 +30,10 @@ SHOULDER_OF_LEG = (0.043, 0.027)
 """How far the shoulder centre is below and inwards of the acromion, as shares of the leg."""
 SHOULDERS_TO_STERNUM = 0.15
 """How far the sternum is along the line from amid the acromia to the pelvis."""
+HEAD_OF_LEG = 0.18
+"""How far the head's centre is above the middle between seventh cervical vertebra and clavicles, as
+a share of the leg (ANSUR II, 2014: tragion 0.926, cervicale 0.863, suprasternale 0.815 of height).
+"""
 CLEAR_MM = 15.0
 """A marker on thigh or shank nearer than this to the line between the joints shows no plane."""
 CLEAR_BEND = 0.2
@@ -53,8 +57,8 @@ class Measures:
     lengths_mm: Mapping[str, float] = field(default_factory=dict)
 
 
-def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str]]:
-    """Return the joints that markers on the skin give, and which of them are approximate.
+def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str], list[str]]:
+    """Return the joints that markers on the skin give, and how sure they are.
 
     Parameters
     ----------
@@ -70,6 +74,8 @@ def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str]
         Only those for which there are markers.
     approximate : set of str
         Those that rest on a regression, an assumed width or a stand-in.
+    rebuilt : list of str
+        What stands for markers that were never seen, in words.
 
     """
     body = _Body(dict(skin), measures)
@@ -80,7 +86,7 @@ def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str]
         for side, outward in (("left", pelvis.left), ("right", -pelvis.left)):
             body.leg(side, outward)
             body.arm(side, outward)
-    return body.joints, body.approximate
+    return body.joints, body.approximate, body.rebuilt
 
 
 class _Body:
@@ -91,6 +97,7 @@ class _Body:
         self.measures = measures
         self.joints: Points = {}
         self.approximate: set[str] = set()
+        self.rebuilt: list[str] = []
         self.leg_mm = _leg_length(skin, measures.lengths_mm)
 
     def trunk(self) -> None:
@@ -104,6 +111,16 @@ class _Body:
             below = SHOULDERS_TO_STERNUM * (self.joints["pelvis"] - shoulders)
             self.joints["sternum"] = shoulders + below
             self.approximate.add("sternum")
+        self._head()
+
+    def _head(self) -> None:
+        """The head, where it has no markers: above the root of the neck, as if it never nodded."""
+        neck = self._midpoint("c7", "clavicle")
+        if "head" in self.skin or neck is None:
+            return
+        self.joints["head"] = neck + HEAD_OF_LEG * self.leg_mm * unit(neck - self.joints["pelvis"])
+        self.approximate.add("head")
+        self.rebuilt.append("head: above the neck, without any marker on it")
 
     def pelvis(self) -> Pelvis | None:
         """The pelvis from its iliac spines; one may be missing, the back ones be one sacrum."""
@@ -196,8 +213,10 @@ class _Body:
         normal = unit(self.skin[axis[0]] - self.skin[axis[1]])
         point = self.skin[present[0]]
         across_it = ((point - middle) * normal).sum(axis=1, keepdims=True) * normal
-        self.skin[pair[1 - pair.index(present[0])]] = point - 2 * across_it
+        gone = pair[1 - pair.index(present[0])]
+        self.skin[gone] = point - 2 * across_it
         self.approximate.add("pelvis")
+        self.rebuilt.append(f"{gone}: mirrored from {present[0]}")
 
 
 _FRONT = ("left_front_waist", "right_front_waist")
