@@ -45,7 +45,7 @@ class MarkerSet:
         Of a set on the skin, inner markers and joint centres are left out, as most captures do
         without them, and a sacrum where the back of the pelvis has markers of its own.
         """
-        asked = {**self.landmarks, **self.joints, **self.extras}
+        asked = {**self.joints, **self.landmarks, **self.extras}
         found = {name for name, entry in asked.items() if names.find(entry)}
         wanted = {name for name in asked if not name.endswith("_inner")}
         if self.landmarks:
