@@ -1,17 +1,16 @@
 """How many components tell the sexes apart (Troje 2002, figure 4).
 
-With more components a classifier separates the walkers it was fitted to (dashed) without error;
-those it has not seen (solid) it tells best with few. That structure and dynamics each tell
-something was put into these simulated walkers; with captures of your own the figure shows what
-people are like.
+Dashed, the walkers that a classifier was fitted to: with enough components it misses none of them.
+Solid, walkers that it had not seen: it goes on to miss some, and the ring marks the fewest. Always
+answering one sex would miss 20 of the 40. These walkers are simulated, so the curves tell what was
+put into them; with captures of your own they tell what people are like.
 """
 
 import eigenwalker as ew
-from eigenwalker.display.curves import figure_curves
 
 people = ew.load_population().size_normalised()
 parts = {
-    "everything": "all",
+    "everything, size divided out": "all",
     "structure": "structure",
     "dynamics": "dynamics",
     "first eigenposture": "p1",
@@ -20,5 +19,5 @@ curves = {
     title: ew.jackknife_curves(people.part(part), people.traits["sex"])
     for title, part in parts.items()
 }
-figure = figure_curves(curves, n_walkers=len(people), n_columns=2)
+figure = ew.figure_curves(curves, n_walkers=len(people), n_columns=2)
 figure.savefig("classifier_curves.png")

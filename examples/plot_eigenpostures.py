@@ -6,9 +6,8 @@ do the same to them. Blue is the mean posture plus the eigenposture, red minus.
 """
 
 import eigenwalker as ew
-from eigenwalker.display.eigenpostures import figure_eigenpostures
 
 walk = ew.simulate_walk(seed=1)
 walker = ew.decompose_pca(walk)
-figure = figure_eigenpostures(walker)
+figure = ew.figure_eigenpostures(walker)
 figure.savefig("eigenpostures.png")

@@ -6,14 +6,13 @@ between caricatures. Look at size first, then at shoulders beside hips and at th
 """
 
 import eigenwalker as ew
-from eigenwalker.display.bodies import figure_walkers
 
 people = ew.load_population()
 is_man = (people.traits["sex"] == "male").to_numpy()
 women, men = people.X[~is_man].mean(axis=0), people.X[is_man].mean(axis=0)
 middle, half = (women + men) / 2, (men - women) / 2
 
-figure = figure_walkers(
+figure = ew.figure_walkers(
     {
         "women": people.walker(women),
         "men": people.walker(men),

@@ -5,11 +5,10 @@ them (Moler 2016): its axis, of which the line is the shadow in this plane, lies
 """
 
 import eigenwalker as ew
-from eigenwalker.display.populations import figure_space
 
 people = ew.load_population()
 sex = ew.trait_axis(people, "sex")
-figure = figure_space(
+figure = ew.figure_space(
     ew.WalkerSpace().fit(people.X),
     people.X,
     people.traits["sex"],

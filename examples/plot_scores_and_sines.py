@@ -5,9 +5,8 @@ take their place in the model. A walker is not far from four sines.
 """
 
 import eigenwalker as ew
-from eigenwalker.display.components import figure_scores
 
 walk = ew.simulate_walk(seed=4, noise_mm=1)
 walker = ew.decompose_pca(walk)
-figure = figure_scores(walk, walker)
+figure = ew.figure_scores(walk, walker)
 figure.savefig("scores_and_sines.png")

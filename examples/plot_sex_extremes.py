@@ -7,7 +7,6 @@ sway of the upper body in the film.
 """
 
 import eigenwalker as ew
-from eigenwalker.display.bodies import figure_walkers
 
 people = ew.load_population()
 sex = ew.trait_axis(people, "sex", kind="mean_difference")
@@ -16,7 +15,7 @@ walkers = {
     for alpha in (-6, -3, 0, 3, 6)
 }
 
-figure = figure_walkers(walkers)
+figure = ew.figure_walkers(walkers)
 figure.savefig("sex_extremes.png")
 
 ew.write_film(
