@@ -16,7 +16,7 @@ EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("plot_*.py"))
 def test_each_example_writes_its_pictures(script, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "argv", [str(script)])
-    runpy.run_path(str(script))
+    runpy.run_path(str(script), run_name="__main__")
     promised = set(re.findall(r'"(\w+\.(?:png|gif|mp4))"', script.read_text("utf-8")))
     written = {path.name for path in tmp_path.iterdir()}
     assert promised

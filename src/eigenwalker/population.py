@@ -178,8 +178,10 @@ class Population:
         Examples
         --------
         >>> people = ew.load_population()
-        >>> people.walker((people.X[0] + people.X[1]) / 2)
-        Walker(15 markers, 4 postures in the eigenposture form, 0.856 Hz)
+        >>> between = people.walker((people.X[0] + people.X[1]) / 2)
+        >>> slower, faster = sorted(walker.frequency_hz for walker in people.walkers[:2])
+        >>> slower < between.frequency_hz < faster
+        True
 
         """
         walker = self.layout.walker(vector)
