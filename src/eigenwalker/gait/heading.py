@@ -154,8 +154,8 @@ def stance_speed(walk: xr.DataArray) -> float:
     Examples
     --------
     >>> walk = ew.simulate_walk(seed=1)
-    >>> round(walk.attrs["speed_mm_s"]), round(stance_speed(walk))
-    (1221, 1181)
+    >>> 0.95 < stance_speed(walk) / walk.attrs["speed_mm_s"] < 0.98
+    np.True_
 
     """
     walk = check_trajectories(walk, complete=True)
