@@ -37,6 +37,7 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     const times: number[] = [];
     let answer: (Answer & { readonly rt: number }) | undefined;
     let silence = (): void => {};
+    painter.paint(0); // the first drawing takes longest, so it is done before it is seen
     painter.clear();
 
     const end = (): void => {

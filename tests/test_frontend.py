@@ -1,0 +1,53 @@
+"""The browser's side of the project, tested with its own tools where Node is installed."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+FRONTEND = Path(__file__).parents[1] / "frontend"
+NPM = shutil.which("npm")
+
+
+def npm(*command: str) -> subprocess.CompletedProcess[str]:
+    assert NPM is not None
+    return subprocess.run(
+        [NPM, *command], cwd=FRONTEND, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def installed() -> None:
+    """The packages of the lock file, or a skip where they cannot be had."""
+    if not FRONTEND.exists() or NPM is None:
+        pytest.skip("Node is not installed, so the browser's side is not tested")
+    if not (FRONTEND / "node_modules" / "vitest").exists():
+        answer = npm("ci")
+        if answer.returncode:
+            pytest.skip(f"npm could not fetch packages: {answer.stderr.strip()[-200:]}")
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_browser_agrees_with_python_and_passes_its_own_tests():
+    answer = npm("test")
+    assert answer.returncode == 0, answer.stdout[-4000:] + answer.stderr[-1000:]
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_page_of_the_package_is_built_from_these_sources(tmp_path: Path):
+    answer = npm("run", "build:page", "--", "--outDir", str(tmp_path))
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    page = files("eigenwalker.page").joinpath("player.html")
+    built = (tmp_path / "player.html").read_text(encoding="utf-8")
+    assert page.read_text(encoding="utf-8") == built, "run 'npm run build' in frontend/"
+
+
+def test_the_lock_file_names_no_registry():
+    lock = FRONTEND / "package-lock.json"
+    if not lock.exists():
+        pytest.skip("the browser's side is not here")
+    assert "://registry" not in lock.read_text(encoding="utf-8")
