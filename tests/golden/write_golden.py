@@ -14,38 +14,31 @@ from typing import Any
 
 import numpy as np
 
-from eigenwalker.datasets import load_population
-from eigenwalker.simulation import simulate_walk
 from eigenwalker.stimulus import Figure, Stimulus, make_stimulus
 from eigenwalker.stimulus.chance import normals, permutation, random_words, uniforms
 from eigenwalker.stimulus.content import schema
+from eigenwalker.stimulus.figure import walker_from_dict
+from eigenwalker.trajectories import label_trajectories
 from eigenwalker.walker import Walker
 
 FOLDER = Path(__file__).parent
 SCHEMA = FOLDER.parents[1] / "src" / "eigenwalker" / "stimulus" / "schema.json"
+KEPT = json.loads((FOLDER / "figures.json").read_text(encoding="utf-8"))
 TIMES_S = (0.0, 0.1, 0.35, 1.0, 1.9375)
 
 
 def person(number: int) -> Walker:
-    """A walker of the built-in population, its numbers short enough to read."""
-    walker = load_population().walkers[number]
-    return Walker(
-        walker.markers,
-        walker.p0.round(2),
-        walker.p.round(2),
-        walker.harmonics,
-        walker.phases.round(4),
-        round(walker.frequency_hz, 4),
-        speed_mm_s=round(walker.speed_mm_s, 1),
-    )
+    """A simulated walker, kept in a file so that simulations may change."""
+    return walker_from_dict(KEPT[str(number)] | {"markers": tuple(KEPT[str(number)]["markers"])})
 
 
 def captured(*, repeat: bool) -> Figure:
     """Nine frames of three joints at 20 Hz, with a gap."""
-    walk = simulate_walk(seed=3, duration_s=2.0, rate_hz=20, truth=False)
-    walk = walk.sel(marker=["head", "left_ankle", "right_ankle"]).isel(time=slice(0, 9)).round(2)
-    walk.values[3:5, 1] = np.nan
-    return Figure(walk.drop_attrs().assign_attrs(units="mm"), repeat=repeat)
+    kept = KEPT["walk"]
+    values = np.array(kept["samples"], dtype=float)
+    return Figure(
+        label_trajectories(values, markers=kept["markers"], rate_hz=kept["rate_hz"]), repeat=repeat
+    )
 
 
 def stimuli() -> dict[str, Stimulus]:

@@ -49,9 +49,9 @@ class Samples(Kind):
 
     def checked(self, value: Any, where: str, amiss: list[str]) -> Any:
         """Return an array with NaN where a sample is missing."""
-        fault = f"{where}: expected lists of frames of dots of x, y, z (numbers or null)"
+        fault = f"{where}: expected two frames or more of dots of x, y, z (numbers or null)"
         samples = value.astype(float) if isinstance(value, np.ndarray) else self._array(value)
-        if samples is None or samples.ndim != 3 or samples.shape[2] != 3 or not samples.size:
+        if samples is None or samples.ndim != 3 or samples.shape[2] != 3 or len(samples) < 2:
             amiss.append(fault)
             return None
         if samples.size > MOST_SAMPLES:
@@ -59,6 +59,9 @@ class Samples(Kind):
             return None
         if np.isinf(samples).any() or np.nanmax(np.abs(samples), initial=0) > SAMPLE_LIMIT_MM:
             amiss.append(f"{where}: expected numbers within {SAMPLE_LIMIT_MM:g} mm")
+            return None
+        if not (~np.isnan(samples)).all(axis=2).any():
+            amiss.append(f"{where}: expected dots to be seen at some time, and none ever is")
             return None
         return samples
 
@@ -77,7 +80,7 @@ class Samples(Kind):
         """Return the JSON Schema."""
         place = List(Nullable(Number(-SAMPLE_LIMIT_MM, SAMPLE_LIMIT_MM)), 3, 3).schema()
         dots = {"type": "array", "items": place, "minItems": 1, "maxItems": MOST_MARKERS}
-        return {"type": "array", "items": dots, "minItems": 1}
+        return {"type": "array", "items": dots, "minItems": 2}
 
 
 LINK = List(MARKER_NAME, 2, 2)

@@ -55,7 +55,7 @@ class Figure:
             motion = {
                 "trajectories": {
                     "markers": markers,
-                    "rate_hz": sampling_rate(walk),
+                    "rate_hz": round(sampling_rate(walk), DECIMALS),
                     "repeat": self.repeat,
                     "samples": walk.values.round(DECIMALS),
                     "speed_mm_s": _known(speed),
