@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -47,12 +48,32 @@ from eigenwalker.space import WalkerSpace
 from eigenwalker.trait_axes import TraitAxis, trait_axis
 from eigenwalker.walker import Walker
 
-_KINDS: dict[Kind, str] = {
-    "discriminant": "Along the discriminant: what tells the walkers apart best, as in the paper. "
-    "It weighs features that vary little, so a step need not look like much.",
-    "mean_difference": "Along the mean difference: what goes along with the trait, and shows it "
-    "best, within the same eigenwalkers.",
-}
+
+class _View(NamedTuple):
+    """A way to show a trait: which axis, of walkers with or without their size."""
+
+    name: str
+    words: str
+    kind: Kind
+    size_normalised: bool
+
+
+_VIEWS = (
+    _View(
+        "discriminant",
+        "Along the discriminant, in the space of the first ten eigenwalkers, as in the paper: what "
+        "tells the walkers apart.",
+        "discriminant",
+        False,
+    ),
+    _View(
+        "mean-difference",
+        "Along the mean difference, size divided out: what goes along with the trait in build and "
+        "movement, whoever is tall.",
+        "mean_difference",
+        True,
+    ),
+)
 ALPHAS = (-6, -3, 0, 3, 6)
 """Standard deviations along the trait at which walkers are shown, to the paper's extreme (J30)."""
 _CITE = (
@@ -98,9 +119,6 @@ def write_main_job(
     asked = contrast(population, trait)
     tell = classify_inputs if asked.two_classes else regress_inputs
     found = tell(population, trait, n_permutations=n_permutations, progress=progress)
-    axes: dict[Kind, TraitAxis] = {
-        kind: trait_axis(population, trait, kind=kind) for kind in _KINDS
-    }
     report = Report(
         title=f"{_capital(asked.trait)} from gait",
         lead=_lead(found),
@@ -108,7 +126,7 @@ def write_main_job(
             Section("Who walked", _who(population)),
             Section("How well the model holds", _model(population, example)),
             Section("What tells them apart", _classifiers(population, found)),
-            Section("What it looks like", _looks(folder, population, axes)),
+            Section("What it looks like", _looks(folder, population, trait)),
             Section("Mind", [Items(_cautions(population, found))]),
             Section("Made with", [Code(f"eigenwalker {eigenwalker.__version__}\n{_CITE}")]),
         ],
@@ -272,31 +290,12 @@ def _classifiers(population: Population, found: Classification | Regression) -> 
     return blocks
 
 
-def _looks(folder: Path, population: Population, axes: Mapping[Kind, TraitAxis]) -> list[Block]:
-    asked = axes["discriminant"].contrast
-    slug = "".join(letter if letter.isalnum() else "-" for letter in asked.trait)
+def _looks(folder: Path, population: Population, trait: str) -> list[Block]:
+    axis = trait_axis(population, trait)
+    asked = axis.contrast
     blocks: list[Block] = []
-    for kind, axis in axes.items():
-        walkers = _along(population, axis)
-        blocks += [
-            Text(_KINDS[kind]),
-            *_films(folder, f"{slug}-{kind.replace('_', '-')}", walkers),
-            Figure(
-                figure_walkers(walkers),
-                f"From {asked.negative} to {asked.positive}: standard deviations of the walkers "
-                "along the axis.",
-                "Stick figures from one pole of the trait to the other, front and side.",
-            ),
-            gait_table(walkers),
-            plausibility_table(
-                {
-                    _title(asked, alpha): plausibility(
-                        population, population.average + alpha * axis.step
-                    )
-                    for alpha in ALPHAS
-                }
-            ),
-        ]
+    for view in _VIEWS:
+        blocks += _seen(folder, population, trait, view)
     if asked.two_classes:
         blocks.append(
             Figure(
@@ -313,7 +312,7 @@ def _looks(folder: Path, population: Population, axes: Mapping[Kind, TraitAxis])
                 X,
                 asked.labels,
                 trait_name=asked.trait,
-                step=axes["discriminant"].step,
+                step=axis.step,
                 poles=(asked.negative, asked.positive),
             ),
             "Walkers on the first two eigenwalkers, and the axis of the discriminant.",
@@ -321,6 +320,31 @@ def _looks(folder: Path, population: Population, axes: Mapping[Kind, TraitAxis])
         )
     )
     return blocks
+
+
+def _seen(folder: Path, population: Population, trait: str, view: _View) -> list[Block]:
+    """Walkers from one pole of a trait to the other, as films, figure and tables."""
+    shown = population.size_normalised() if view.size_normalised else population
+    axis = trait_axis(shown, trait, kind=view.kind)
+    asked, walkers = axis.contrast, _along(shown, axis)
+    slug = "".join(letter if letter.isalnum() else "-" for letter in asked.trait)
+    return [
+        Text(view.words),
+        *_films(folder, f"{slug}-{view.name}", walkers),
+        Figure(
+            figure_walkers(walkers),
+            f"From {asked.negative} to {asked.positive}: standard deviations of the walkers "
+            "along the axis.",
+            "Stick figures from one pole of the trait to the other, front and side.",
+        ),
+        gait_table(walkers),
+        plausibility_table(
+            {
+                _title(asked, alpha): plausibility(shown, shown.average + alpha * axis.step)
+                for alpha in ALPHAS
+            }
+        ),
+    ]
 
 
 def _along(population: Population, axis: TraitAxis) -> dict[str, Walker]:
