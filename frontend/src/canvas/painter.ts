@@ -1,7 +1,8 @@
-/** Frames of a stimulus on a canvas: discs, sticks or blobs, as films of it show them. */
+/** Frames of a stimulus on a canvas: discs, sticks, blobs, or a mannequin. */
 
 import type { Stimulus } from "../core/stimulus";
 import { framesOf, type Shown } from "./frame";
+import { drawMannequin } from "./mannequin";
 
 /** Width of a stick beside the diameter of a dot. */
 const STICK = 0.6;
@@ -36,14 +37,19 @@ export function painterOn(canvas: HTMLCanvasElement, stimulus: Stimulus, scale =
   };
   const paint = (time: number): void => {
     clear();
-    context.fillStyle = context.strokeStyle = stimulus.display.colour;
     for (const shown of frameAt(time)) {
+      context.fillStyle = context.strokeStyle = stimulus.display.colour;
       if (shown.moving.blurMm > 0) drawBlobs(context, layer, shown, stimulus);
+      else if (drawn(shown, stimulus) === "mannequin") drawMannequin(context, shown, stimulus);
       else drawDots(context, shown, stimulus);
     }
   };
   return { paint, clear };
 }
+
+/** The style of one figure: masks and limb dots, which have no limbs, are dots. */
+const drawn = ({ moving }: Shown, { display }: Stimulus): Stimulus["display"]["style"] =>
+  moving.body.segments.length > 0 ? display.style : "dots";
 
 function fit(canvas: HTMLCanvasElement, width: number, height: number, fine: number): void {
   canvas.width = Math.round(width * fine);
@@ -61,7 +67,7 @@ function contextOf(
 
 function drawDots(context: CanvasRenderingContext2D, shown: Shown, { display }: Stimulus): void {
   const { places, visible } = shown;
-  if (display.style !== "dots") drawSticks(context, shown, Math.max(STICK * display.dot_px, 1));
+  if (display.style === "sticks") drawSticks(context, shown, Math.max(STICK * display.dot_px, 1));
   context.beginPath();
   visible.forEach((isVisible, dot) => {
     if (!isVisible) return;
