@@ -9,11 +9,26 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eigenwalker.simulation.norms import later, norm_coefficients
+from eigenwalker.simulation.body import GRAVITY
+from eigenwalker.simulation.norms import basis, later, norm_coefficients
 from eigenwalker.simulation.pace import Pace
 
 LEG_HARMONICS = 8
 PELVIS_HARMONICS = 6
+
+
+def _in_swing() -> np.ndarray:
+    """Return what keeps of a curve what it does in swing: square, of shape (coefficient,).
+
+    It fades in from half of the stride to its middle of swing, and out until the next heel strike.
+    """
+    phase = np.arange(4 * LEG_HARMONICS) / (4 * LEG_HARMONICS)
+    waves = basis(phase, LEG_HARMONICS)
+    share = np.where(phase > 0.5, np.sin(2 * np.pi * phase) ** 2, 0.0)
+    return np.linalg.pinv(waves) @ (share[:, None] * waves)
+
+
+_SWUNG = _in_swing()
 
 
 def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.ndarray]:
@@ -53,22 +68,24 @@ def leg_curves(
         for name in ("hip_flexion", "pelvis_tilt", "knee_flexion", "ankle_dorsiflexion")
     )
     thigh = hip - tilt
-    straight = knee[0] + knee[1::2].sum()  # at heel strike; the factor scales what is beyond
-    knee *= person["knee_swing_factor"]
-    knee[0] += straight * (1 - person["knee_swing_factor"])
-    knee = later(knee, person["knee_lag"])
+    knee = later(_SWUNG @ knee * (person["knee_swing_factor"] - 1) + knee, person["knee_lag"])
     thigh[0] += np.radians(person["thigh_deg"])
     knee[0] += np.radians(person["knee_deg"])
     return thigh, knee, knee - thigh - ankle
 
 
-def pelvis_paths(person: Mapping[str, float], pace: Pace) -> tuple[np.ndarray, np.ndarray]:
-    """Return how the pelvis moves to the side and up and down, about its mean.
+def pelvis_paths(person: Mapping[str, float], pace: Pace) -> np.ndarray:
+    """Return how the pelvis moves ahead, to the side and up, about its mean: (axis, coefficient).
 
     Towards the foot that stands, furthest in mid-stance; highest near 30 and 80 per cent of the
-    stride (Orendurff et al. 2004).
+    stride (Orendurff et al. 2004). Ahead it is slowest where it is highest, as height is paid for
+    with speed (Cavagna, Heglund & Taylor 1977: the two energies go up and down by as much).
     """
-    side, up = np.zeros(2 * PELVIS_HARMONICS + 1), np.zeros(2 * PELVIS_HARMONICS + 1)
+    ahead, side, up = np.zeros((3, 2 * PELVIS_HARMONICS + 1))
     side[2] = pace.lateral_range / 2
     up[3] = pace.vertical_range / 2
-    return later(side, 0.02 + person["sway_lag"]), later(up, 0.30 + person["bob_lag"])
+    ahead[3] = GRAVITY * up[3] / pace.speed / (4 * np.pi * pace.frequency)
+    highest = 0.30 + person["bob_lag"]
+    return np.array(
+        [later(ahead, highest - 0.125), later(side, 0.02 + person["sway_lag"]), later(up, highest)]
+    )

@@ -30,12 +30,12 @@ _CONTACT_MM = 0.5
 _FLAT = (0.10, 0.28)
 """When the whole sole is on the ground, shares of a stride."""
 _FLAT_RAD = np.radians(0.7)
-_LEAST_KNEE = np.radians(3.0)
+_LEAST_KNEE = np.radians(2.5)
 _KNEE_RAD = np.radians(0.5)
 _CLEARANCE_MM = 16.0
-_SPREAD_RAD = np.radians([[1.5], [2.0], [3.0]])
+_SPREAD_RAD = np.radians([[1.5], [1.3], [2.3]])
 """How far thigh, knee and pitch may be from their draw; higher harmonics less."""
-_RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 0.5, 4.0
+_RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 1.5, 8.0
 """How far the pelvis may be from its: other harmonics, the second one of its height, fore-aft."""
 
 
@@ -67,15 +67,17 @@ class Ground:
         self._yaw = np.radians(person["foot_progression_deg"])
         curves = trunk_curves(person, pace.effort)
         turns = trunk_turns({name: self._trunk @ curve for name, curve in curves.items()}, "pelvis")
-        self.sway, rise = pelvis_paths(person, pace)
+        ahead, self.sway, rise = pelvis_paths(person, pace)
         self._hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
         for hip in self._hips:
             hip[:, 1] += self._trunk @ self.sway
         rise[0] = 0.985 * (body.thigh + body.shank) + body.foot.height - body.hip[2]
-        self.prior = self._prior(person, rise)
+        self.prior = self._prior(person, rise, ahead[1:])
         self.precision = _precision()
 
-    def _prior(self, person: Mapping[str, float], rise: np.ndarray) -> np.ndarray:
+    def _prior(
+        self, person: Mapping[str, float], rise: np.ndarray, ahead: np.ndarray
+    ) -> np.ndarray:
         curves = np.array(leg_curves(person, self.pace.effort))
         half = np.radians([person["thigh_asymmetry_deg"], person["knee_asymmetry_deg"]]) / 2
         legs = []
@@ -83,7 +85,7 @@ class Ground:
             own = curves.copy()
             own[:2, 0] += side * half
             legs += [*own.ravel(), self._first_print(own)]
-        return np.concatenate([legs, rise, np.zeros(_PELVIS - 1)])
+        return np.concatenate([legs, rise, ahead])
 
     def _first_print(self, own: np.ndarray) -> float:
         """Where the ball of a foot comes to stand at its heel strike if nothing is changed."""

