@@ -193,3 +193,13 @@ def test_one_real_stride_in_place(captures) -> None:
     assert by_fourier.frequency_hz == pytest.approx(1, abs=1e-3)
     assert by_fourier.fit.r2 > 0.995
     assert by_pca.fit.variance_share[:4].sum() > 0.996
+
+
+@pytest.mark.parametrize(
+    ("n_harmonics", "said"), [(0, "1 or more"), (1.5, "whole number"), (20, "harmonics at most")]
+)
+def test_harmonics_that_cannot_be_are_refused(orthogonal_walker, n_harmonics, said) -> None:
+    walk = orthogonal_walker().trajectories(np.arange(0, 12, 1 / 25))
+    for decompose in (decompose_pca, decompose_fourier):
+        with pytest.raises(ValueError, match=said):
+            decompose(walk, n_harmonics=n_harmonics)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -144,6 +145,29 @@ def test_a_population_of_a_newer_version_asks_for_an_update(people, tmp_path) ->
         file.format_version = 99
     with pytest.raises(UnreadableFile, match=r"version 99; update eigenwalker"):
         Population.load(tmp_path / "new.nc")
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil", "said"),
+    [
+        ("harmonics", lambda values: values * 0 + 1, "not 1, 1, 2, 2"),
+        ("reference_axes", lambda values: values * np.nan, "reference_axes holds"),
+        ("phases", lambda values: values + 1, "first phase"),
+        ("fit_fourier", lambda values: values * np.inf, "fit_fourier holds"),
+        ("frequency_hz", lambda values: values * 0, "must be above 0"),
+    ],
+)
+def test_a_population_file_with_a_spoilt_part_is_refused(
+    people, tmp_path, name, spoil, said
+) -> None:
+    path = tmp_path / "people.nc"
+    people.save(path)
+    with warnings.catch_warnings(), netcdf_file(path, "a", mmap=False) as file:
+        warnings.simplefilter("ignore")
+        variable = file.variables[name]
+        variable[:] = spoil(variable[:].copy())
+    with pytest.raises(UnreadableFile, match=said):
+        Population.load(path)
 
 
 def test_selecting_and_adding_keep_the_numbers_of_those_who_stay(people) -> None:

@@ -81,7 +81,7 @@ def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
 
     """
     walk, postures, rate_hz = _postures(walk, n_harmonics)
-    found = eigenpostures_of(postures, rate_hz, n_harmonics)
+    found = _checked(eigenpostures_of(postures, rate_hz, n_harmonics), n_harmonics)
     markers = walk.marker.values.tolist()
     p = (found.amplitudes[:, None] * found.components).reshape(-1, len(markers), 3)
     phases = found.phases.copy()
@@ -147,7 +147,7 @@ def decompose_fourier(
 
     """
     walk, postures, rate_hz = _postures(walk, n_harmonics)
-    found = eigenpostures_of(postures, rate_hz, n_harmonics)
+    found = _checked(eigenpostures_of(postures, rate_hz, n_harmonics), n_harmonics)
     markers = walk.marker.values.tolist()
     # The mean posture is regressed too: over broken strides it is not the average of frames.
     fourier, residual = fourier_of(postures, found.frequency_hz / rate_hz, n_harmonics)
@@ -309,9 +309,11 @@ def _fit_sines(
 
 def _postures(walk: xr.DataArray, n_harmonics: int) -> tuple[xr.DataArray, np.ndarray, float]:
     """Check what came, once, and lay each posture out as a row (J4)."""
-    if n_harmonics < 1:
-        raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")
+    if n_harmonics != int(n_harmonics) or n_harmonics < 1:
+        raise ValueError(f"n_harmonics={n_harmonics} must be a whole number, 1 or more.")
     walk = check_trajectories(walk, complete=True)
+    if not walk.sizes["marker"]:
+        raise ValueError("These trajectories hold no markers, so there is nothing to take apart.")
     rate_hz = sampling_rate(walk)
     if (needed := 4 * n_harmonics + 2) > len(walk.time):
         raise ValueError(
@@ -319,6 +321,18 @@ def _postures(walk: xr.DataArray, n_harmonics: int) -> tuple[xr.DataArray, np.nd
             f"got {len(walk.time)}."
         )
     return walk, walk.values.reshape(len(walk.time), -1), rate_hz
+
+
+def _checked(found: Eigenpostures, n_harmonics: int) -> Eigenpostures:
+    """Refuse harmonics that this many frames a second cannot show."""
+    highest_hz = n_harmonics * found.frequency_hz
+    if highest_hz >= found.rate_hz / 2:
+        raise ValueError(
+            f"Harmonic {n_harmonics} of {found.frequency_hz:.2f} Hz is {highest_hz:.1f} Hz, which "
+            f"{found.rate_hz:.4g} frames a second cannot show; take "
+            f"{int((found.rate_hz / 2 - 1e-9) / found.frequency_hz)} harmonics at most."
+        )
+    return found
 
 
 def _half_turn(phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

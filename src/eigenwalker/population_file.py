@@ -175,6 +175,7 @@ def _stored(dataset: xr.Dataset) -> Stored:
     markers = tuple(str(name) for name in dataset["marker"].values)
     harmonics = dataset["harmonics"].values
     form = dataset.attrs["form"]
+    _check_layout(dataset, markers, harmonics, form)
     arrays = {name: dataset[name].values for name in _UNITS}
     fits = _fits(dataset) if "fit_r2" in dataset else [None] * dataset.sizes["walker"]
     walkers = tuple(
@@ -204,6 +205,32 @@ def _stored(dataset: xr.Dataset) -> Stored:
         Correspondence(reference, dataset["similarity"].values, flags),
         {str(key): str(value) for key, value in dict(provenance).items()},
     )
+
+
+def _check_layout(
+    dataset: xr.Dataset, markers: tuple[str, ...], harmonics: np.ndarray, form: str
+) -> None:
+    """Refuse a file whose parts do not fit each other, before anything is made of them."""
+    n_harmonics, odd = divmod(len(harmonics), 2)
+    if odd or harmonics.tolist() != np.repeat(np.arange(1, n_harmonics + 1), 2).tolist():
+        raise ValueError(f"harmonics {harmonics.tolist()[:8]} are not 1, 1, 2, 2, ...")
+    n_features = len(markers) * len(AXES)
+    for name, shape in (
+        ("reference_axes", (n_harmonics, 2, n_features)),
+        ("reference_average", (2 * n_harmonics, n_features)),
+    ):
+        if dataset[name].shape != shape:
+            raise ValueError(f"{name} has shape {dataset[name].shape}, not {shape}")
+    numbers = ["reference_axes", "reference_average", "similarity"]
+    numbers += [name for name in map(str, dataset) if name.startswith("fit_")]
+    for name in numbers:
+        if not np.isfinite(dataset[name].values).all():
+            raise ValueError(f"{name} holds what is no number")
+    if form == "eigenposture" and np.any(dataset["phases"].values[:, 0] != 0):
+        raise ValueError("the first phase of a walker is not 0")
+    traits = [dataset[name].attrs.get("trait") for name in map(str, dataset) if "trait_" in name]
+    if len(set(traits)) < len(traits):
+        raise ValueError("two traits have one name")
 
 
 def _fits(dataset: xr.Dataset) -> list[CaptureFit]:
