@@ -100,7 +100,8 @@ def test_trc_is_what_pandas_reads(gappy, tmp_path: Path, unit, up):
 @pytest.mark.parametrize(("unit", "up"), [("mm", "z"), ("cm", "y")])
 def test_csv_is_what_pandas_reads(gappy, tmp_path: Path, unit, up):
     path = write_mocap(gappy, tmp_path / "walk.csv", unit=unit, up=up)
-    assert path.read_text().startswith(f"# eigenwalker trajectories; unit: {unit}; up: {up}\n")
+    title = f"# eigenwalker trajectories; unit: {unit}; up: {up}; frames: {len(gappy)}\n"
+    assert path.read_text().startswith(title)
     table = pd.read_csv(path, comment="#")
     assert table.columns[:4].tolist() == ["time_s", "head_x", "head_y", "head_z"]
     np.testing.assert_allclose(table["time_s"], gappy.time, atol=1e-8)

@@ -204,7 +204,7 @@ def walker_from_mm(
             f"shape {values.shape}."
         )
     period, _, speed = values[-1, :3]
-    if not 0 < period < np.inf:
+    if not 0.01 < period < np.inf:
         raise ValueError(f"Expected the period in frames in the last row, got {period:g}.")
     columns = ["mean"] + [f"{of}{h + 1}" for h in range(values.shape[1] // 2) for of in _COS_SIN]
     walker = walker_from_table(

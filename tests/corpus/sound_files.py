@@ -121,7 +121,7 @@ def c3d_file(
     section = (bytes([1, 0x50, blocks, mark]) + body).ljust(blocks * 512, b"\0")
     header = bytes([2, 0x50]) + words(count, 0, 1, frames, 0) + floats([scale])
     header += words(2 + blocks, 1) + floats([rate])
-    seen = np.isfinite(points).all(axis=2, keepdims=True)
+    seen = ~np.isnan(points).any(axis=2, keepdims=True)
     samples = np.where(seen, points, 0.0)
     table = np.concatenate(
         [np.rint(samples / scale) if integers else samples, np.where(seen, 0, -1)], axis=2

@@ -33,7 +33,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
 
-from corpus.sound_files import KINDS, Files, sound_files
+from corpus.sound_files import KINDS, Files, sound_files, walk_of
 from eigenwalker.bml import read_bml_axes
 from eigenwalker.inspection import inspect_file
 from eigenwalker.mocap import RateAssumed, UnitGuessed, UnreadableFile, read_mocap
@@ -136,7 +136,7 @@ def _work(kind: str, sound: list[Files], numbers: range, seed: int, door: str, o
 
 def fuzz(kind: str, numbers: range, seed: int, door: str, keep: Path) -> Outcome:
     """Return how the spoilt files of a kind end."""
-    sound = sound_files(kind)
+    sound = sound_files(kind, walk_of(0.5 if door == "read" else 3.0))
     outcome = Outcome()
     done = numbers.start
     while done < numbers.stop:

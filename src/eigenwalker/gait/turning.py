@@ -70,6 +70,8 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
     if np.ptp(angle) < TURNED or np.abs(np.diff(angle)).max() > FLIPPED:
         return straight
     whole = np.isfinite(positions).all(axis=(0, 2))
+    if not whole.any():
+        return straight
     relative = positions[:, whole] - positions[:, whole].mean(axis=1, keepdims=True)
     movement = positions_turned(relative, -angle).reshape(len(positions), -1)
     try:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eigenwalker.mocap.clock import RATES_HZ
 from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 
 MOST_JOINTS = 2000
@@ -26,7 +27,7 @@ USUAL_RATES_HZ = (
     *(24000 / 1001, 30000 / 1001, 60000 / 1001, 120000 / 1001, 240000 / 1001),
 )
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECLARED = re.compile(
     r"\s*Frames\s*(?::\s*)?(\d{1,9})\s*Frame\s+Time\s*(?::\s*)?(\S+)", re.IGNORECASE
 )
@@ -161,6 +162,10 @@ def _motion(text: str, n_channels: int, source: str) -> Motion:
         _refuse_cut_number(rows, source)
     if step <= 0:
         raise UnreadableFile(source, "a frame time above 0", declared[2][:40])
+    if not RATES_HZ[0] <= 1 / step <= RATES_HZ[1]:
+        wanted = f"frames a second between {RATES_HZ[0]:g} and {RATES_HZ[1]:g}"
+        came = f"{1 / step:.3g}, by the frame time {declared[2][:40]}"
+        raise UnreadableFile(source, wanted, came, "put the frame time right")
     return Motion(_table(rows, source), _rate(declared[2]))
 
 
@@ -180,7 +185,7 @@ def _table(rows: list[list[str]], source: str) -> np.ndarray:
         table = np.array(rows, dtype=float)
     except ValueError:
         table = None
-    if any("_" in word for row in rows for word in row):
+    if not all(word.isascii() and "_" not in word for row in rows for word in row):
         table = None  # numpy takes 1_0 for 10, where it is more likely a damaged 1.0
     if table is None or not (np.abs(table) < MOST_DISTANT).all():
         for row, words in enumerate(rows, 1):

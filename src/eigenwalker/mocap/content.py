@@ -32,14 +32,14 @@ def content_of(path: Path, *, most_bytes: int = MOST_BYTES, expected: str = "a c
 
     """
     name = path.name or str(path)
-    if path.is_dir():
-        raise UnreadableFile(name, "a file", "a folder", "name one of the files in it")
-    if not path.exists():
-        came = f"nothing of that name in {str(path.parent)!r}"
-        raise UnreadableFile(name, "a file", came, "check the path")
-    if not path.is_file():
-        raise UnreadableFile(name, "a plain file", "a device or pipe", "save it as a file")
     try:
+        if path.is_dir():
+            raise UnreadableFile(name, "a file", "a folder", "name one of the files in it")
+        if not path.exists():
+            came = f"nothing of that name in {str(path.parent)!r}"
+            raise UnreadableFile(name, "a file", came, "check the path")
+        if not path.is_file():
+            raise UnreadableFile(name, "a plain file", "a device or pipe", "save it as a file")
         if path.stat().st_size > most_bytes:
             came = f"{path.stat().st_size / 1e9:.3g} GB"
             most = f"{most_bytes / 1e9:.2g} GB at most"
@@ -47,7 +47,10 @@ def content_of(path: Path, *, most_bytes: int = MOST_BYTES, expected: str = "a c
         content = path.read_bytes()
     except OSError as error:
         raise UnreadableFile(
-            name, "a file that can be read", error.strerror or "an error", "check its permissions"
+            name,
+            "a file that can be read",
+            error.strerror or "an error",
+            "check path and permissions",
         ) from error
     if not content:
         raise UnreadableFile(name, expected, "an empty file")

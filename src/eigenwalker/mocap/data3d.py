@@ -13,7 +13,7 @@ import xarray as xr
 
 from eigenwalker.mocap.captured import as_captured
 from eigenwalker.mocap.rate import assume_rate
-from eigenwalker.mocap.rows import lines_of, table_of
+from eigenwalker.mocap.rows import lines_of, refuse_cut_number, table_of
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.mocap.upright import UNITS, Unit
 
@@ -59,6 +59,7 @@ def read_data3d(
     """
     lines = lines_of(content, source)
     table = table_of(lines, len(POINTS), separator=None, source=source)
+    refuse_cut_number(content, lines, source)
     if len(table) % 3:
         came = f"{len(table)}: the file is cut short"
         raise UnreadableFile(source, "three lines a frame", came)

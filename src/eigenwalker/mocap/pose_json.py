@@ -163,7 +163,7 @@ def _points(frame: object, source: str) -> dict[str, np.ndarray]:
                 raise UnreadableFile(source, "points in space", "pose_keypoints_2d", _PICTURE)
             key = next((key for key in _POINTS if key in frame), None)
             if key is None:
-                return _flat(frame, source)
+                return _flat(frame, source) or _named(frame, source)
             frame = frame[key]
     if isinstance(frame, dict):
         return {str(name): _point(point, source) for name, point in frame.items()}
@@ -203,6 +203,15 @@ def _flat(frame: dict, source: str) -> dict[str, np.ndarray]:
         name: _point([values[column] for column in columns], source)
         for name, columns in zip(points.names, points.columns, strict=True)
     }
+
+
+def _named(frame: dict, source: str) -> dict[str, np.ndarray]:
+    """Return the points that stand in a record by name: entries that have an x, y and z."""
+    points = {
+        str(name): point for name, point in frame.items()
+        if isinstance(point, dict) and {"x", "y", "z"} <= set(point)
+    }  # fmt: skip
+    return {name: _point(point, source) for name, point in points.items()}
 
 
 def _point(point: object, source: str) -> np.ndarray:

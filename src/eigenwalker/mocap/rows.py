@@ -166,7 +166,7 @@ def table_of(
 def _row(words: list[str], line: int, source: str) -> np.ndarray:
     try:
         row = np.array([float(word) for word in words])
-        sound = not any("_" in word for word in words)  # 1_0 is a damaged 1.0, not 10
+        sound = all(word.isascii() and "_" not in word for word in words)  # 1_0 is not 10 here
     except ValueError:
         row, sound = np.zeros(0), False
     if not sound or not np.all(np.isnan(row) | (np.abs(row) < MOST_DISTANT)):
@@ -206,8 +206,9 @@ def refuse_cut_number(content: bytes, lines: Sequence[str], source: str) -> None
     """
     if len(lines) < 2 or content[-1:].isspace() or content[-2:] in (b"\n\0", b"\r\0"):
         return
-    last = [re.split(r"[\s;,]", line.replace(",", "."))[-1] for line in lines[-20:]]
-    decimals = [len(word.partition(".")[2]) for word in last]
+    between = r"[\t;]" if re.search(r"[\t;]", lines[0]) else r"[\s,]"
+    last = [re.split(between, line)[-1].strip() for line in lines[-20:]]
+    decimals = [len(word.replace(",", ".").partition(".")[2]) for word in last]
     if len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]:
         raise UnreadableFile(
             source,

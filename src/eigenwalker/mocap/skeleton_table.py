@@ -1,7 +1,7 @@
 """Tables of body points: Kinect, MediaPipe, OpenPose, and what else has columns ``nose_x``.
 
 A line of names, then a line a frame. Columns that are no point and no time are passed over. Lines
-above that begin with # may tell ``unit``, ``up`` and ``rate_hz``.
+above that begin with # may tell ``unit``, ``up``, ``rate_hz`` and the number of ``frames``.
 """
 
 from __future__ import annotations
@@ -96,11 +96,13 @@ def read_skeleton_table(
         columns=[*wanted, clock[0]] if clock else wanted,
     )
     refuse_cut_number(content, rows, source)
+    notes = _notes(lines[:head])
+    _check_frames(notes, len(rows), content, source)
     skeleton = Skeleton(
         points.names,
         table[:, : len(wanted)].reshape(len(table), -1, 3),
         _seconds(table[:, -1], clock[1]["unit"]) if clock else None,
-        _notes(lines[:head]),
+        notes,
     )
     return trajectories_of(skeleton, source=source, unit=unit, rate_hz=rate_hz)
 
@@ -210,6 +212,18 @@ def _notes(lines: Sequence[str]) -> dict[str, str]:
         for line in lines[:100]
         for key, value in _NOTE.findall(line[:300])
     }
+
+
+def _check_frames(notes: dict[str, str], n_rows: int, content: bytes, source: str) -> None:
+    """Refuse a table that has not the frames that a note above it counts (``frames: 120``)."""
+    declared = notes.get("frames")
+    if declared is None:
+        return
+    if declared != str(n_rows):
+        came = f"{n_rows}: the file is cut short, or the count is wrong"
+        raise UnreadableFile(source, f"{declared[:20]} frames, as it declares", came)
+    if content[-1:] not in (b"\n", b"\r"):
+        raise UnreadableFile(source, "an end of the last line", "none: the file is cut short")
 
 
 def _kind(names: Sequence[str]) -> str:

@@ -27,6 +27,22 @@ def height_of(positions: np.ndarray, names: list[str]) -> float | None:
     return body_height(positions, names)
 
 
+def lean_of(positions: np.ndarray, names: list[str]) -> float:
+    """Return by how many degrees the line from feet to head is off upright; NaN if unknown.
+
+    Examples
+    --------
+    >>> round(lean_of(np.array([[[0.0, 0, 0], [1000, 0, 1000]]]), ["left_ankle", "head"]), 6)
+    45.0
+
+    """
+    ends = [part[np.isfinite(part).all(axis=2)] for part in head_and_feet(positions, names)]
+    if not all(len(end) for end in ends):
+        return float("nan")
+    rise = ends[0].mean(axis=0) - ends[1].mean(axis=0)
+    return float(np.degrees(np.arctan2(np.hypot(rise[0], rise[1]), rise[2])))
+
+
 def bone_length_variation(capture: xr.DataArray) -> dict[tuple[str, str], float]:
     """Return the coefficient of variation of each limb's length.
 

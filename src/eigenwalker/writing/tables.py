@@ -17,7 +17,8 @@ _NUMBER = "%.9g"
 def write_csv(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     """Write a CSV file: ``time_s``, then three columns a marker, ``head_x, head_y, head_z``.
 
-    The first line is a comment that names unit and upward axis; missing samples are empty.
+    The first line is a comment that names unit, upward axis and number of frames, so that a file
+    cut short is noticed; missing samples are empty.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ def write_csv(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     table = pd.DataFrame(walk.values.reshape(len(walk), -1), columns=pd.Index(columns))
     table.insert(0, "time_s", walk.time.values)
     with path.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"{CSV_TITLE}; unit: {unit}; up: {up}\n")
+        file.write(f"{CSV_TITLE}; unit: {unit}; up: {up}; frames: {len(walk)}\n")
         table.to_csv(file, index=False, float_format=_NUMBER, lineterminator="\n")
 
 

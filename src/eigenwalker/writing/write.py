@@ -107,7 +107,7 @@ def write_mocap(
     >>> with TemporaryDirectory() as folder:
     ...     path = write_mocap(hop, Path(folder) / "hop.csv", n_strides=1, rate_hz=4)
     ...     print(path.read_text())
-    # eigenwalker trajectories; unit: mm; up: z
+    # eigenwalker trajectories; unit: mm; up: z; frames: 4
     time_s,foot_x,foot_y,foot_z
     0,0,0,50
     0.25,0,0,90
