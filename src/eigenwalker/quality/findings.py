@@ -13,7 +13,7 @@ from eigenwalker.gait import in_place
 from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.mending import FLICKER, JUMPS, SWAPS, markers_of, mend, samples_of, told
 from eigenwalker.mocap.marker_names import side_pairs
-from eigenwalker.quality.body import bone_length_variation, height_of
+from eigenwalker.quality.body import bone_length_variation, height_of, lean_of
 from eigenwalker.quality.steadiness import steadiness_of
 from eigenwalker.quality.verdict import (
     Verdict,
@@ -165,7 +165,7 @@ def assess(trajectories: xr.DataArray) -> Quality:
     swaps, flicker, jumps = (told(capture, found) for found in (SWAPS, FLICKER, JUMPS))
     removed = {name: count / len(capture) for name, count in samples_of(flicker).items()}
     faults = [
-        *faults_of_body(height_mm, capture.attrs.get("unit")),
+        *faults_of_body(height_mm, lean_of(capture.values, names), capture.attrs.get("unit")),
         *faults_of_walk(steady, complaint),
         *faults_of_limbs(bones, sides_swapped=swapped),
         *faults_of_labels(swaps, removed, jumps, capture.attrs.get("repeated", ())),

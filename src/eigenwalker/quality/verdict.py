@@ -44,6 +44,9 @@ HEIGHTS_MM = (500.0, 2500.0)
 """From ankles or feet to the head, no walking person measures less or more: with the wrong unit
 they do."""
 
+MOST_LEAN_DEG = 30.0
+"""Walkers who are bent with age lean by less, from the middle between their feet to the head."""
+
 CHILD_MM = 800.0
 """Below this it is a small child, or centimetres were taken for inches."""
 
@@ -69,12 +72,17 @@ def verdict_of(faults: Sequence[Fault]) -> Verdict:
     return "use with care" if faults else "use"
 
 
-def faults_of_body(height_mm: float | None, unit: object) -> list[Fault]:
+def faults_of_body(height_mm: float | None, lean_deg: float, unit: object) -> list[Fault]:
     """Return what speaks against this being a person who stands upright, in the unit taken."""
     if height_mm is None:
         return []
     if np.isnan(height_mm):
         return [Fault("The head is not above the feet: the wrong axis points up.", hopeless=True)]
+    if lean_deg > MOST_LEAN_DEG:
+        sentence = (
+            f"From feet to head the body leans by {lean_deg:.0f} degrees: the frame is tilted."
+        )
+        return [Fault(sentence, hopeless=True)]
     smallest, tallest = HEIGHTS_MM
     taken = f"the unit {unit} is wrong" if isinstance(unit, str) else "the unit of length is wrong"
     measured = f"From feet to head the body measures {_length(height_mm)}"
