@@ -59,13 +59,27 @@ def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
     longest = max(1, round(LONGEST_S * rate_hz))
     elsewhere = np.zeros(positions.shape[:2], dtype=bool)
     jumps = np.zeros(positions.shape[1], dtype=int)
-    for marker in range(positions.shape[1]):
+    for marker in np.flatnonzero(~_calm(positions)):
         frames = np.flatnonzero(np.isfinite(positions[:, marker]).all(axis=1))
         if len(frames) >= _FEWEST:
             found, jumps[marker] = _of_path(positions[frames, marker], frames, longest)
             for first, last in found:
                 elsewhere[frames[first:last], marker] = True
     return Flicker(elsewhere, jumps)
+
+
+def _calm(positions: np.ndarray) -> np.ndarray:
+    """Return which markers, always seen, have steps too even for any to be sudden.
+
+    A step is no further from the median of those around it than these are from each other.
+    """
+    if len(positions) <= _AROUND:
+        return np.zeros(positions.shape[1], dtype=bool)
+    most = least = np.diff(positions, axis=0)
+    for apart in (1, 2, 3):  # 2, 4, then 7 steps on end
+        most = np.maximum(most[:-apart], most[apart:])
+        least = np.minimum(least[:-apart], least[apart:])
+    return np.square(most - least).sum(axis=2).max(axis=0) <= SUDDEN_MM**2
 
 
 def _of_path(path: np.ndarray, frames: np.ndarray, longest: int) -> tuple[list[tuple], int]:
