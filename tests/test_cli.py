@@ -16,7 +16,8 @@ import pytest
 
 from eigenwalker import cli
 from eigenwalker.population import Population
-from eigenwalker.simulation import simulate_captures, simulate_population
+from eigenwalker.simulation import Route, simulate_captures, simulate_population, simulate_walk
+from eigenwalker.writing import write_mocap
 
 
 @pytest.fixture
@@ -154,6 +155,49 @@ def test_info_says_what_is_in_a_capture(run, folder) -> None:
     assert facts["format"] == "C3D"
     assert facts["verdict"] == "use"
     assert facts["rate_hz"] == 120
+
+
+def test_info_reports_what_a_capture_is_worth(run, tmp_path) -> None:
+    walk = simulate_walk(seed=3, duration_s=8, rate_hz=100, markers="skin", noise_mm=1)
+    spoilt = walk.sel(marker=walk.marker != "LASI").copy()
+    spoilt.loc[{"marker": "RKNE", "time": walk.time[200:204]}] += 300
+    spoilt.loc[{"marker": "LTOE", "time": walk.time[400:]}] = walk.sel(marker="RTOE").values[400:]
+    spoilt.loc[{"marker": "RTOE", "time": walk.time[400:]}] = walk.sel(marker="LTOE").values[400:]
+    path = write_mocap(spoilt, tmp_path / "walk.c3d")
+    code, said, _ = run("info", path)
+    assert code == 0
+    for words in ("strides found", "share explained", "periodicity", "drift", "missing samples"):
+        assert words in said
+    told = {line[:23].strip(): line[23:].strip() for line in said.splitlines()}
+    assert told["verdict"] == "use with care"
+    assert told["problems"].startswith("Left and right changed places and were put right: LTOE")
+    assert told["marker set"].startswith("Plug-in Gait, 97% of its points found (next is ")
+    assert told["rebuilt markers"] == "left_front_waist: mirrored from right_front_waist"
+    assert told["jumps"] == "RKNE: 1"
+    assert told["left-right swaps"] == "LTOE and RTOE, frames 400 to 799"
+    assert told["rate"] == "100 Hz"
+    facts = json.loads(run("info", path, "--json")[1])
+    assert facts["swaps"] == ["LTOE and RTOE, frames 400 to 799"]
+    assert 0.9 < facts["marker_set_share"] < 1
+    assert facts["r2"] > 0.95
+
+
+def test_info_says_how_a_turning_walk_was_dealt_with(run, tmp_path) -> None:
+    around = simulate_walk(seed=3, duration_s=10, rate_hz=100, route=Route(turning_deg_s=30))
+    said = run("info", write_mocap(around, tmp_path / "around.c3d"))[1]
+    assert "degrees and was unwound" in said
+
+
+def test_fit_sums_up_what_was_found_and_filters_if_asked(run, folder, tmp_path) -> None:
+    output, table = tmp_path / "people.nc", tmp_path / "captures.csv"
+    code, said, _ = run("fit", folder, "-o", output, "--low-pass", 6, "--table", table)
+    assert code == 0
+    for words in ("strides found: ", "share explained: ", "periodicity: ", "jumps: ", "drift: "):
+        assert words in said
+    assert "verdict:               use 8" in said
+    assert Population.load(output).provenance["low_pass"].startswith("6 Hz")
+    columns = set(pd.read_csv(table).columns)
+    assert {"rate_hz", "strides", "marker_set", "rebuilt", "left_right_swaps", "r2"} <= columns
 
 
 def test_info_says_what_is_in_a_population(run, people) -> None:

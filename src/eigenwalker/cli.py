@@ -40,6 +40,8 @@ app.command()(cli_stimulus.stimulus)
 T = TypeVar("T")
 SOME_REFUSED = 1
 FAILED = 2
+LONGEST_NAME = 24
+"""Letters up to which entries of a list are written one after the other."""
 INTERRUPTED = 130
 
 People = Annotated[
@@ -125,13 +127,15 @@ def info(
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.inspection import inspect_file
+    from eigenwalker.inspection_words import in_words
 
     facts = inspect_file(file, unit=unit, rate_hz=rate)
     if as_json:
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    width = max(len(name) for name in facts) + 2
-    for name, value in facts.items():
+    told = in_words(facts)
+    width = max(len(name) for name in told) + 2
+    for name, value in told.items():
         print(f"{name:<{width}}{_laid_out(value, width)}")
 
 
@@ -172,9 +176,15 @@ def fit(
         str, typer.Option(help="'eigenposture' (J) or 'fourier' (W).")
     ] = "eigenposture",
     harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
+    low_pass: Annotated[
+        float | None, typer.Option(help="Cut-off in Hz of a low-pass filter, for noisy captures.")
+    ] = None,
     jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
     unit: Unit = None,
     rate: Rate = None,
+    table: Annotated[
+        Path | None, typer.Option(help="CSV to write all into that is known of each capture.")
+    ] = None,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Read all anew, also what an interrupted run has read.")
     ] = False,
@@ -185,6 +195,7 @@ def fit(
     130 when it was interrupted; the same command then goes on where it stopped.
     """
     from eigenwalker.study import DECOMPOSE, fit_folder
+    from eigenwalker.study_summary import summary_of
 
     _one_of(form, DECOMPOSE, "--form")
     if not output.parent.is_dir():
@@ -202,10 +213,13 @@ def fit(
             n_harmonics=harmonics,
             unit=unit,
             rate_hz=rate,
+            low_pass_hz=low_pass,
             n_jobs=jobs,
             journal=journal,
             progress=progress,
         )
+    if table is not None:
+        study.files.to_csv(table, index=False)
     for status in ("flagged", "refused"):
         chosen = study.files[study.files["status"] == status]
         if len(chosen):
@@ -222,10 +236,10 @@ def fit(
     read = study.files[study.files["status"] != "refused"]
     print(
         f"{len(read)} of {len(study.files)} captures read, "
-        f"{(read['status'] == 'flagged').sum()} of them flagged; "
-        f"share explained {read['r2'].median():.3f} (median), "
-        f"frequency {read['frequency_hz'].median():.3f} Hz."
+        f"{(read['status'] == 'flagged').sum()} of them flagged. Medians (and ranges):"
     )
+    for name, told in summary_of(study.files).items():
+        print(f"  {name + ':':<23}{told}")
     if "units" in study.population.provenance:
         print(f"Units were {study.population.provenance['units']}.")
     print(f"Population: {output}")
@@ -469,18 +483,14 @@ def _print_results(found: Classification | Regression) -> None:
         print(found.many_inputs)
 
 
-def _laid_out(value: object, indent: int) -> str:
-    """A fact in words; names run on, sentences stand on lines of their own."""
-    if isinstance(value, list):
-        if any(" " in str(each) for each in value):
-            return f"\n{' ' * indent}".join(map(str, value))
-        wide = textwrap.wrap(", ".join(map(str, value)) or "none", 100 - indent)
-        return f"\n{' ' * indent}".join(wide)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return "unknown" if value is None else str(value)
+def _laid_out(value: str | list[str], indent: int) -> str:
+    """A fact in words; what is short runs on, sentences stand on lines of their own."""
+    if isinstance(value, str):
+        return value
+    lines = value
+    if all(len(entry) <= LONGEST_NAME for entry in value):
+        lines = textwrap.wrap(", ".join(value), 100 - indent)
+    return f"\n{' ' * indent}".join(lines)
 
 
 def _one_of(value: str, known: object, option: str) -> None:

@@ -15,6 +15,7 @@ from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.population import Population
 from eigenwalker.population_file import looks_like_population
 from eigenwalker.quality import assess
+from eigenwalker.trajectories import sampling_rate
 
 Fact = str | float | int | bool | None | list[str]
 
@@ -52,9 +53,16 @@ def inspect_file(
 
     """
     path = Path(path)
-    if path.is_file() and looks_like_population(path):
+    if _is_population(path):
         return _plain(_of_population(Population.load(path)))
     return _plain(_of_capture(path, unit, rate_hz))
+
+
+def _is_population(path: Path) -> bool:
+    try:
+        return path.is_file() and looks_like_population(path)
+    except OSError:
+        return False  # for the reason to be said when it is read
 
 
 def _of_population(population: Population) -> dict[str, object]:
@@ -95,20 +103,40 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
         warnings.simplefilter("always")
         capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
     problems += [str(each.message) for each in said]
-    facts: dict[str, object] = {
-        "kind": "capture",
-        "format": capture.attrs["format"],
-        "markers": capture.marker.values.tolist(),
-    }
+    facts = _as_read(capture)
     try:
         joints = virtual_markers(capture)
+        assessed = _assessed(joints, problems)
     except ValueError as error:
-        return {"verdict": "do not use", "problems": [*problems, str(error)]} | facts
+        return {
+            "kind": "capture",
+            "verdict": "do not use",
+            "problems": [*problems, str(error)],
+            "marker_set": None,
+        } | facts
+    taken = {
+        name: joints.attrs.get(name)
+        for name in ("marker_set", "marker_set_share", "marker_set_runner_up", "approximate")
+    }
+    return {"kind": "capture", **assessed, **facts, **taken}
+
+
+def _as_read(capture: xr.DataArray) -> dict[str, object]:
+    """What is known of a capture whatever its markers are."""
+    missing = np.isnan(capture.values).any(axis=2)
+    share = missing.mean(axis=0)
+    names = capture.marker.values.tolist()
     return {
-        "kind": "capture",
-        **_assessed(joints, problems),
-        **{name: value for name, value in facts.items() if name != "kind"},
-        "marker_set": joints.attrs.get("marker_set"),
+        "format": capture.attrs["format"],
+        "unit": capture.attrs.get("unit"),
+        "rate_hz": sampling_rate(capture) if len(capture) > 1 else None,
+        "duration_s": len(capture) / sampling_rate(capture) if len(capture) > 1 else None,
+        "n_frames": len(capture),
+        "missing_samples": float(missing.mean()),
+        "missing_markers": [
+            name for name, all_of_it in zip(names, share == 1, strict=True) if all_of_it
+        ],
+        "markers": names,
     }
 
 

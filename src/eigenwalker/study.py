@@ -64,6 +64,7 @@ def walker_from_file(
     n_harmonics: int = 2,
     unit: str | None = None,
     rate_hz: float | None = None,
+    low_pass_hz: float | None = None,
 ) -> tuple[Walker, dict[str, object]]:
     """Return the walker of one capture, from file to model, and what is to be known of it.
 
@@ -77,13 +78,15 @@ def walker_from_file(
         Multiples of the stride frequency.
     unit, rate_hz
         As `read_mocap` takes them, for captures that name none.
+    low_pass_hz : float, optional
+        Cut-off of a low-pass filter, as `in_place` takes it.
 
     Returns
     -------
     walker : Walker
     facts : dict
-        Rate, duration, strides, share explained, and ``flag``: why the walk is to be kept out of
-        averages, empty if it is not.
+        What `Quality` tells of the capture, in single numbers and words, the marker set, and
+        ``flag``: why the walk is to be kept out of averages, empty if it is not.
 
     Raises
     ------
@@ -97,14 +100,14 @@ def walker_from_file(
     ...     file = ew.write_mocap(ew.simulate_walk(seed=1), f"{folder}/walk.c3d")
     ...     walker, facts = walker_from_file(file)
     >>> walker
-    Walker(15 markers, 4 postures in the eigenposture form, 0.870 Hz, r2 0.995)
+    Walker(15 markers, 4 postures in the eigenposture form, 0.870 Hz, r2 0.99...)
     >>> facts["strides"], facts["flag"]
     (10, '')
 
     """
     capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
     joints = virtual_markers(capture)
-    walk = in_place(joints)
+    walk = in_place(joints, low_pass_hz=low_pass_hz)
     walker = DECOMPOSE[form](walk, n_harmonics=n_harmonics)
     quality = assess(joints)
     facts: dict[str, object] = {
@@ -113,7 +116,17 @@ def walker_from_file(
         "strides": walk.attrs["n_strides"],
         "frequency_hz": walker.frequency_hz,
         "speed_mm_s": walker.speed_mm_s,
+        "straight_passes": quality.straight_passes,
+        "unwound_deg": quality.unwound_deg,
         "r2": walker.fit.fourier_r2 if walker.fit else float("nan"),
+        "periodicity": quality.periodicity,
+        "wander_mm": quality.wander_mm,
+        "bone_variation": max(quality.bone_length_variation.values(), default=float("nan")),
+        "missing_share": float(np.isnan(capture.values).any(axis=2).mean()),
+        "rebuilt": "; ".join(quality.rebuilt),
+        "jumps": sum(quality.jumps.values()),
+        "left_right_swaps": quality.left_right_swaps,
+        "low_pass_hz": low_pass_hz or float("nan"),
         "marker_set": joints.attrs.get("marker_set", ""),
         "unit": str(capture.attrs.get("unit", "mm")),
         "unit_guessed": bool(capture.attrs.get("unit_guessed", False)),
@@ -132,6 +145,7 @@ def fit_folder(
     n_harmonics: int = 2,
     unit: str | None = None,
     rate_hz: float | None = None,
+    low_pass_hz: float | None = None,
     n_jobs: int = -1,
     journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -148,7 +162,7 @@ def fit_folder(
     trait_from_name : str, optional
         A regular expression with named groups, searched for in each file's name, such as
         ``r"walk_(?P<style>[a-z]+)_"``.
-    form, n_harmonics, unit, rate_hz
+    form, n_harmonics, unit, rate_hz, low_pass_hz
         See `walker_from_file`.
     n_jobs : int
         Processes to read with; -1 uses all cores.
@@ -187,7 +201,13 @@ def fit_folder(
     names = table[FILE].tolist()
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")
-    settings = {"form": form, "n_harmonics": n_harmonics, "unit": unit, "rate_hz": rate_hz}
+    settings = {
+        "form": form,
+        "n_harmonics": n_harmonics,
+        "unit": unit,
+        "rate_hz": rate_hz,
+        "low_pass_hz": low_pass_hz,
+    }
     version = {"version": eigenwalker.__version__}
     kept = None if journal is None else Journal(Path(journal), settings | version)
     done: dict[str, _Attempt] = {}
@@ -296,7 +316,10 @@ def _traits_table(traits: pd.DataFrame | str | Path) -> pd.DataFrame:
                 converters={FILE: str, "person": str},
             )
         except (OSError, ValueError, csv.Error) as error:
-            raise ValueError(f"The traits table {traits} could not be read: {error}") from error
+            why = str(error).strip().rstrip(".")
+            raise ValueError(
+                f"The traits table {traits} could not be read: {why}. Save it as CSV in UTF-8."
+            ) from error
     tidy = {name: str(name).strip() for name in traits}
     traits = traits.rename(columns=tidy).rename(columns={"File": FILE, "FILE": FILE})
     if FILE not in traits:
@@ -350,12 +373,22 @@ def _gathered(
     population = Population(
         tuple(walker for walker in walkers if walker is not None),
         traits.assign(**{FLAG: flags}),
-        provenance={"source": f"{len(kept)} captures", "form": form} | _guesses(facts.iloc[kept]),
+        provenance={"source": f"{len(kept)} captures", "form": form}
+        | _filter(facts.iloc[kept])
+        | _guesses(facts.iloc[kept]),
     )
     said = population.traits[FLAG].to_numpy()
     files.loc[kept, "reason"] = said
     files.loc[kept, "status"] = np.where(said != "", "flagged", "used")
     return Study(population, files)
+
+
+def _filter(facts: pd.DataFrame) -> dict[str, str]:
+    """The low-pass filter that all captures went through, in words; nothing if none was asked."""
+    cut_offs = facts["low_pass_hz"].dropna()
+    return (
+        {} if cut_offs.empty else {"low_pass": f"{cut_offs.iloc[0]:g} Hz, zero-phase Butterworth"}
+    )
 
 
 def _guesses(facts: pd.DataFrame) -> dict[str, str]:

@@ -118,7 +118,7 @@ class _Body:
         neck = self._midpoint("c7", "clavicle")
         if "head" in self.skin or neck is None:
             return
-        self.joints["head"] = neck + HEAD_OF_LEG * self.leg_mm * unit(neck - self.joints["pelvis"])
+        self.joints["head"] = neck + np.array([0, 0, HEAD_OF_LEG * self.leg_mm])
         self.approximate.add("head")
         self.rebuilt.append("head: above the neck, without any marker on it")
 
