@@ -27,7 +27,7 @@ USUAL_RATES_HZ = (
     *(24000 / 1001, 30000 / 1001, 60000 / 1001, 120000 / 1001, 240000 / 1001),
 )
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECLARED = re.compile(
     r"\s*Frames\s*(?::\s*)?(\d{1,9})\s*Frame\s+Time\s*(?::\s*)?(\S+)", re.IGNORECASE
 )

@@ -18,7 +18,7 @@ UNEVEN = 0.1
 MOST_GAPS = 10
 """Where fewer than one in so many frames is there, it is no capture."""
 
-_RATE = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_RATE = re.compile(r"(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 class Clocked(NamedTuple):

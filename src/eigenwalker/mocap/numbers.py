@@ -12,7 +12,7 @@ from eigenwalker.mocap.unreadable import AGAIN, UnreadableFile
 MOST_DISTANT = 1e9
 """No length, angle or time in a sound file is larger than this."""
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 def number(word: str, where: str, source: str) -> float:

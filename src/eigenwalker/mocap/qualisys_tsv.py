@@ -18,7 +18,7 @@ from eigenwalker.mocap.upright import Unit
 MOST_KEYS = 10_000
 """Lines above the table: a dozen keys and one line an event."""
 
-_BEGINNING = re.compile(rb"\s*(?:\xef\xbb\xbf)?\s*NO_OF_(FRAMES|CAMERAS|MARKERS)\b", re.IGNORECASE)
+_BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?\s*NO_OF_(FRAMES|CAMERAS|MARKERS)\b", re.IGNORECASE)
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+", re.ASCII)
 _COUNT = re.compile(r"\d{1,9}", re.ASCII)
 

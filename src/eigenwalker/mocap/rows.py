@@ -16,7 +16,7 @@ MISSING = frozenset(
 )
 """What programs write in a cell where nothing was measured, in small letters."""
 
-_PLAIN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_PLAIN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1a")
 
 
