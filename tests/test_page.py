@@ -19,6 +19,7 @@ import eigenwalker as ew
 from eigenwalker.page import stand_alone, stand_alone_page
 from eigenwalker.stimulus import Figure, Stimulus, make_stimulus
 from eigenwalker.stimulus.drawing import drawn_frames, places_px
+from eigenwalker.stimulus.write import write_stimulus
 
 SIZE_PX = (640, 480)
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
@@ -154,3 +155,8 @@ def test_what_cannot_be_played_is_said_in_words(tmp_path: Path):
     trouble = re.search(r'<p id="trouble"[^>]*>(.*?)</p>', dom)
     assert trouble is not None
     assert "stimulus.version" in trouble[1]
+
+
+def test_a_stimulus_is_written_as_a_page(tmp_path: Path):
+    path = write_stimulus(shown(), tmp_path / "walker.html")
+    assert path.read_text(encoding="utf-8") == stand_alone_page(shown())

@@ -45,8 +45,8 @@ def stimulus(
         typer.Option(
             "-o",
             "--output",
-            help=".json, .mp4, .webm, .gif, .png, .svg, .csv, .npz, .mat, .py, .bvh, .glb; a "
-            "folder for frames.",
+            help=".json, .mp4, .webm, .gif, .png, .svg, .csv, .npz, .mat, .py, .html, .bvh, .glb; "
+            "a folder for frames.",
         ),
     ] = Path("stim.json"),
     trait: Annotated[Pairs, _wish("Trait and standard deviations: sex=2; may be repeated.")] = None,

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from eigenwalker.page import stand_alone_page
 from eigenwalker.stimulus import films, tables
 from eigenwalker.stimulus.animation import animated
 from eigenwalker.stimulus.films import Progress
@@ -28,6 +29,7 @@ def write_stimulus(
     .png, .svg               its first moment; for a folder (no suffix) all frames as PNG
     .csv, .npz, .mat         where each dot is in each frame: mm, pixels, degrees
     .py                      a PsychoPy script, and an .npz beside it
+    .html                    a page that plays it in a browser, with nothing else
     .bvh, .glb               its first figure as a skeleton with constant bones that walks
     ======================== ==========================================================
 
@@ -88,6 +90,10 @@ def _write_glb(stimulus: Stimulus, path: Path) -> None:
     write_glb(moving.walk, path, about={**stimulus.provenance, "feet": str(moving.slide)})
 
 
+def _write_html(stimulus: Stimulus, path: Path) -> None:
+    path.write_text(stand_alone_page(stimulus), encoding="utf-8")
+
+
 FILMS = (".mp4", ".webm", ".gif")
 WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
     ".json": Stimulus.save,
@@ -97,6 +103,7 @@ WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
     ".npz": tables.write_npz,
     ".mat": tables.write_mat,
     ".py": write_psychopy,
+    ".html": _write_html,
     ".bvh": _write_bvh,
     ".glb": _write_glb,
 }
