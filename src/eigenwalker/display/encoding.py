@@ -13,11 +13,12 @@ from typing import cast
 
 import av
 import numpy as np
+from av.video.plane import VideoPlane
 from av.video.stream import VideoStream
 
 CENTISECONDS = {50: 2, 25: 4, 20: 5}
 """Frame rates of a GIF, whose delays are whole hundredths of a second, and those delays."""
-LARGE_PX, HASTY = 1_000_000, {"preset": "ultrafast"}
+LARGE_PX, HASTY = 1_000_000, {"preset": "ultrafast", "qp": "24"}
 """From how many pixels on H.264 is encoded twice as fast, into files several times as large."""
 LUMA = np.array([0.299, 0.587, 0.114])
 """Shares of red, green and blue in brightness (ITU-R BT.601)."""
@@ -133,8 +134,8 @@ def _encode(
     if form.codec == "gif":  # the last frame has no next one to tell how long it stays
         options["final_delay"] = str(round(100 * delays[-1]))
     with av.open(str(path), "w", format=form.container, options=options) as film:
-        hasty = HASTY if form.codec == "libx264" and math.prod(shape) > LARGE_PX else {}
-        how = {**form.options, **hasty}
+        hasty = form.codec == "libx264" and math.prod(shape) > LARGE_PX
+        how = HASTY if hasty else form.options
         stream = cast(VideoStream, film.add_stream(form.codec, rate=1 / tick, options=how))
         stream.height, stream.width = shape
         stream.pix_fmt = form.pixels
@@ -164,7 +165,10 @@ class _Gif:
 
 
 class _Video:
-    """Brightness of 16 to 235 above planes of colour, of which only what changes is painted."""
+    """Brightness of 16 to 235 and planes of colour, of which only what changes is painted.
+
+    It is one frame over and over: both encoders copy what they are given before they return.
+    """
 
     def __init__(self, shape: tuple[int, int], colours: tuple[str, str]) -> None:
         n_rows, n_columns = shape
@@ -174,27 +178,45 @@ class _Video:
         red = (red_green_blue[:, 0] - luma) / (2 - 2 * LUMA[0])
         self.luma = np.rint(16 + luma * (219 / 255)).astype(np.uint8)
         self.chroma = np.rint(128 + np.stack([blue, red]) * (224 / 255)).astype(np.uint8)
-        self.planes = np.empty((n_rows * 3 // 2, n_columns), np.uint8)
-        self.planes[:n_rows] = self.luma[0]
-        colour = self.planes[n_rows:].reshape(2, n_rows // 2, n_columns // 2)
-        colour[:] = self.chroma[:, :1, None]
-        self.picture, self.colour = self.planes[:n_rows], colour
+        self.whole = av.VideoFrame(n_columns, n_rows, "yuv420p")
+        self.picture, *self.colour = (_pixels(plane) for plane in self.whole.planes)
         self.grey = bool((self.chroma == self.chroma[:, :1]).all())
         self.painted = (slice(0, 0), slice(0, 0))
+        for plane, shades in zip(self.colour, self.chroma, strict=True):
+            plane[:] = shades[0]
+        self._clear((slice(0, n_rows), slice(0, n_columns)))
 
     def frame(self, cover: np.ndarray) -> av.VideoFrame:
         box = _box(cover)
-        for part in (self.painted, box):
-            self.picture[part] = self.luma[cover[part]]
-            if not self.grey and cover[part].size:
-                rows, columns = part
-                half = (slice(rows.start // 2, rows.stop // 2),
-                        slice(columns.start // 2, columns.stop // 2))  # fmt: skip
-                corners = cover[part].reshape(half[0].stop - half[0].start, 2, -1, 2)
-                mean = corners.astype(np.uint16).sum(axis=(1, 3)) // 4
-                self.colour[:, half[0], half[1]] = self.chroma[:, mean]
+        self._clear(self.painted)
+        self.picture[box] = self.luma.take(cover[box], mode="clip")
+        if not self.grey and cover[box].size:
+            half = _halved(box)
+            rows, columns = (side.stop - side.start for side in half)
+            corners = cover[box].reshape(rows, 2, columns, 2).astype(np.uint16)
+            mean = corners.sum(axis=(1, 3)) // 4
+            for plane, shades in zip(self.colour, self.chroma, strict=True):
+                plane[half] = shades[mean]
         self.painted = box
-        return av.VideoFrame.from_ndarray(self.planes, format="yuv420p")
+        return self.whole
+
+    def _clear(self, box: tuple[slice, slice]) -> None:
+        self.picture[box] = self.luma[0]
+        if not self.grey:
+            for plane, shades in zip(self.colour, self.chroma, strict=True):
+                plane[_halved(box)] = shades[0]
+
+
+def _halved(box: tuple[slice, slice]) -> tuple[slice, slice]:
+    """The same part of a plane of colour, which has half the rows and columns."""
+    rows, columns = (slice(side.start // 2, side.stop // 2) for side in box)
+    return rows, columns
+
+
+def _pixels(plane: VideoPlane) -> np.ndarray:
+    """The memory of a plane as an array of shape (row, column)."""
+    lines = np.frombuffer(memoryview(plane), np.uint8).reshape(-1, plane.line_size)  # pyright: ignore[reportArgumentType] - planes are buffers
+    return lines[: plane.height, : plane.width]
 
 
 def _box(cover: np.ndarray) -> tuple[slice, slice]:

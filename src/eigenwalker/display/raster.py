@@ -14,6 +14,9 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+MOST_SHARES = 2_000_000
+"""Pixels of discs that are worked out at once."""
+
 
 def draw_discs(
     canvas: np.ndarray,
@@ -44,18 +47,29 @@ def draw_discs(
 
     """
     centres = np.asarray(centres, dtype=np.float32)
-    radii = np.broadcast_to(np.float32(radius), len(centres))
-    levels = np.broadcast_to(np.float32(level), len(centres))
-    for centre, size, full in zip(centres, radii, levels, strict=True):
-        if not np.isfinite(centre).all():
-            continue
-        reach = math.ceil(size + 0.5)
-        steps = np.arange(-reach, reach + 1)
-        column, row = np.rint(centre).astype(int)
-        across = ((column + steps - centre[0]) ** 2).astype(np.float32)
-        down = ((row + steps - centre[1]) ** 2).astype(np.float32)
-        apart = np.sqrt(down[:, None] + across)
-        _cover(canvas, row - reach, column - reach, full * np.clip(size + 0.5 - apart, 0, 1))
+    seen = np.isfinite(centres).all(axis=1)
+    if not seen.any():
+        return
+    radii = np.broadcast_to(np.float32(radius), len(centres))[seen]
+    levels = np.broadcast_to(np.float32(level), len(centres))[seen]
+    some = max(MOST_SHARES // (2 * math.ceil(radii.max()) + 3) ** 2, 1)
+    for first in range(0, len(radii), some):
+        few = slice(first, first + some)
+        _draw_few_discs(canvas, centres[seen][few], radii[few], levels[few])
+
+
+def _draw_few_discs(
+    canvas: np.ndarray, centres: np.ndarray, radii: np.ndarray, levels: np.ndarray
+) -> None:
+    places = np.rint(centres)
+    reach = math.ceil(radii.max() + 0.5)
+    steps = np.arange(-reach, reach + 1, dtype=np.float32)
+    away2 = ((places - centres)[..., None] + steps) ** 2  # (disc, axis, step)
+    apart = np.sqrt(away2[:, 1, :, None] + away2[:, 0, None, :])
+    inside = np.clip((radii + np.float32(0.5))[:, None, None] - apart, 0, 1)
+    patches = np.rint(255 * levels[:, None, None] * inside).astype(np.uint8)
+    for (column, row), patch in zip(places.astype(int).tolist(), patches, strict=True):
+        _cover(canvas, row - reach, column - reach, patch)
 
 
 def draw_lines(
@@ -93,7 +107,8 @@ def draw_lines(
         length2 = max(along_x**2 + along_y**2, np.float32(1e-12))
         share = np.clip((across * along_x + down * along_y) / length2, 0, 1)
         apart = np.sqrt((across - share * along_x) ** 2 + (down - share * along_y) ** 2)
-        _cover(canvas, top, left, full * np.clip(width / 2 + 0.5 - apart, 0, 1))
+        shares = full * np.clip(width / 2 + 0.5 - apart, 0, 1)
+        _cover(canvas, top, left, np.rint(255 * shares).astype(np.uint8))
 
 
 def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
@@ -103,7 +118,7 @@ def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
     inside = canvas[rows, columns]
     if inside.size:
         cut = patch[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
-        np.maximum(inside, np.rint(255 * cut).astype(np.uint8), out=inside)
+        np.maximum(inside, cut, out=inside)
 
 
 def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.ndarray:
