@@ -13,7 +13,7 @@ MUTATE = Path(__file__).parent / "fuzz" / "mutate.py"
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of processes are Linux'")
 
 
-@pytest.mark.parametrize(("door", "count"), [("read", 300), ("info", 15)])
+@pytest.mark.parametrize(("door", "count"), [("read", 250), ("info", 8)])
 def test_spoilt_files_end_in_data_or_in_the_one_error(tmp_path, door, count) -> None:
     words = ["--count", str(count), "--seed", "11", "--door", door, "--keep", str(tmp_path)]
     told = subprocess.run([sys.executable, MUTATE, *words], capture_output=True, text=True)

@@ -17,7 +17,7 @@ COMMON = 0.6
 MOST_STARTS = 20
 """So many beginnings are taken off, as in ``Study_03_Anna_LKNE``."""
 LONGEST = 200
-"""Letters of a name that are looked at."""
+"""Letters of a name that count."""
 
 _SIDE_AND_PART = (
     re.compile(r"(?P<side>left|right)[ _.-]*(?P<part>.+)", re.IGNORECASE),
@@ -214,6 +214,9 @@ def side_pairs(names: Sequence[str]) -> list[tuple[str, str]]:
 def numbered(names: Sequence[str]) -> list[str]:
     """Return the names, numbered from the second of the same name on.
 
+    Of names that no person gave, the first `LONGEST` letters stay: arrays of names take for each
+    the room of the longest.
+
     Examples
     --------
     >>> numbered(["head", "hand", "hand"])
@@ -222,8 +225,8 @@ def numbered(names: Sequence[str]) -> list[str]:
     """
     taken: dict[str, int] = {}
     unlike: list[str] = []
-    for name in names:
-        new = name
+    for whole in names:
+        new = name = whole[:LONGEST]
         while new in taken:
             taken[name] += 1
             new = f"{name}_{taken[name]}"
@@ -241,7 +244,7 @@ def repeated(names: Sequence[str]) -> list[str]:
     ['hand']
 
     """
-    return [name for name, count in Counter(names).items() if count > 1]
+    return [name[:LONGEST] for name, count in Counter(names).items() if count > 1]
 
 
 def _plain(name: str) -> str:
