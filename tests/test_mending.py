@@ -123,6 +123,13 @@ def test_a_walk_comes_out_as_if_nothing_had_been_amiss(capture):
     assert walk.attrs["flicker"] == ["LWRA, frame 20"]
 
 
+def test_markers_that_no_joint_comes_from_do_not_matter(capture):
+    spoilt = capture.copy()
+    spoilt.loc[{"marker": ["LTOE", "LKNE"], "time": capture.time[20]}] += 400
+    assert virtual_markers(spoilt).attrs["flicker"] == ["LKNE, frame 20"]
+    assert len(virtual_markers(spoilt, joints="full").attrs["flicker"]) == 2
+
+
 def test_joints_are_mended_too():
     walk = ew.simulate_walk(seed=4, duration_s=6, rate_hz=100)
     spoilt = walk.copy()

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.mending import mend
+from eigenwalker.mending import FLICKER, JUMPS, SWAPS, markers_of, mend, told
 from eigenwalker.mocap.joint_centres import HIP_REGRESSIONS
 from eigenwalker.mocap.marker_names import (
     SIDES,
@@ -28,12 +28,13 @@ _LONGEST = 60
 
 
 class _Joints(NamedTuple):
-    """Joints, which of them are approximate, what was rebuilt, and the set that gave them."""
+    """Joints, which are approximate, what was rebuilt, from which markers, and by which set."""
 
     joints: Points
     approximate: set[str]
     name: str
     rebuilt: tuple[str, ...] = ()
+    markers: frozenset[str] = frozenset()
     share: float = 1.0
     runner_up: str = ""
 
@@ -126,6 +127,8 @@ def virtual_markers(
         "approximate": [joint for joint in order if joint in found.approximate],
         "rebuilt": list(found.rebuilt),
     }
+    if joints == "walker":
+        result.attrs |= _of_these(walk, found.markers)
     return result
 
 
@@ -136,6 +139,19 @@ def _mended(walk: xr.DataArray) -> xr.DataArray:
     except ValueError:
         return walk
     return mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
+
+
+def _of_these(walk: xr.DataArray, markers: frozenset[str]) -> dict[str, list[str]]:
+    """Return what was mended of markers from which joints come: of others it does not matter."""
+    return {
+        found: [
+            entry
+            for entry, about in zip(entries, markers_of(entries), strict=True)
+            if not markers or markers & {about, *about.split(" and ")}
+        ]
+        for found in (SWAPS, FLICKER, JUMPS)
+        if (entries := told(walk, found))
+    }
 
 
 def _seen(walk: xr.DataArray) -> list[str]:
@@ -236,26 +252,31 @@ def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: M
     direct: Points = {}
     stand_ins: set[str] = set()
     rebuilt: list[str] = []
+    used: set[str] = set()
     for joint, entry in (*known.joints.items(), *known.extras.items()):
         if hit := names.find(entry):
             direct[joint] = midpoint([points[marker] for marker in hit.markers])
             stand_ins |= {joint} if hit.stand_in else set()
+            used |= set(hit.markers) if joint in known.joints else set()
             if hit.lacking:
                 there, gone = " and ".join(hit.markers), " and ".join(hit.lacking)
                 rebuilt.append(f"{joint}: from {there}, without {gone}")
-    skin = {
-        landmark: midpoint([points[marker] for marker in hit.markers])
+    hits = {
+        landmark: hit.markers
         for landmark, entry in known.landmarks.items()
         if (hit := names.find(entry))
     }
-    if not skin:
-        return _Joints(direct, stand_ins, known.name)
+    if not hits:
+        return _Joints(direct, stand_ins, known.name, markers=frozenset(used))
+    skin = {name: midpoint([points[marker] for marker in hits[name]]) for name in hits}
+    used |= {marker for markers in hits.values() for marker in markers}
     joints, approximate, mirrored = joints_from_skin(skin | direct, measures)
     return _Joints(
         joints | direct,
         (approximate - set(direct)) | stand_ins,
         known.name,
         (*rebuilt, *mirrored),
+        frozenset(used),
     )
 
 
