@@ -128,25 +128,20 @@ export function outward(parents: readonly number[]): number[] {
   return parents.map((_, dot) => dot).sort((a, b) => depth(a) - depth(b));
 }
 
-/** The posture of a walker at one moment: eq. 3 of Troje (2002), in millimetres. */
-export function posture(walker: Walker, time: number): Float64Array {
-  const cycle = 2 * Math.PI * walker.frequency_hz * time;
-  const positions = Float64Array.from(walker.p0.flat());
-  walker.p.forEach((eigenposture, i) => {
-    const sine = Math.sin(walker.harmonics[i]! * cycle + walker.phases[i]!);
-    eigenposture.forEach((place, dot) => {
-      for (let axis = 0; axis < 3; axis++) positions[3 * dot + axis]! += sine * place[axis]!;
-    });
-  });
-  return positions;
-}
-
-/** A walker as a moving figure. */
+/** A walker as a moving figure: eq. 3 of Troje (2002), p0 + sum_i p_i sin(h_i 2 pi f t + phi_i). */
 export function walking(walker: Walker, segments: readonly Link[], pairs: readonly Link[]): Moving {
-  const at = (time: number): Moment => ({
-    positions: posture(walker, time),
-    visible: new Uint8Array(walker.markers.length).fill(1),
-  });
+  const p0 = Float64Array.from(walker.p0.flat());
+  const p = walker.p.map((eigenposture) => Float64Array.from(eigenposture.flat()));
+  const at = (time: number): Moment => {
+    const cycle = 2 * Math.PI * walker.frequency_hz * time;
+    const positions = p0.slice();
+    for (let i = 0; i < p.length; i++) {
+      const sine = Math.sin(walker.harmonics[i]! * cycle + walker.phases[i]!);
+      const eigenposture = p[i]!;
+      for (let j = 0; j < positions.length; j++) positions[j]! += sine * eigenposture[j]!;
+    }
+    return { positions, visible: new Uint8Array(walker.markers.length).fill(1) };
+  };
   return new Moving({ dots: walker.markers, segments, pairs }, at, 1 / walker.frequency_hz);
 }
 
