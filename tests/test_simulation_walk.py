@@ -131,6 +131,21 @@ def test_the_pelvis_rises_twice_a_stride_and_the_head_keeps_steady():
     assert np.ptp(at(walk, "head")[:, 1]) < 80
 
 
+def test_knees_and_ankles_bend_as_far_as_published(people):
+    """Schwartz, Rozumalski & Trost 2008; published SDs between people are 4 to 7 degrees."""
+    found = []
+    for person in people:
+        walk = simulate_walk(person, duration_s=3)
+        stride = walk.isel(time=walk["phase"].values < 1)
+        knee, ankle = (
+            stride[f"left_{joint}_deg"].values for joint in ("knee_flexion", "ankle_dorsiflexion")
+        )
+        half = len(knee) // 2
+        found.append([knee[0], knee[:half].max(), knee.max(), ankle[:half].max(), ankle.min()])
+    published = [5.6, 20.0, 60.5, 12.8, -22.0]
+    np.testing.assert_allclose(np.mean(found, axis=0), published, atol=3.5)
+
+
 @settings(max_examples=15, deadline=None)
 @given(st.lists(st.floats(-2, 2), min_size=len(PARAMETERS), max_size=len(PARAMETERS)))
 def test_anybody_can_walk(scores):
