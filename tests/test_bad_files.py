@@ -55,6 +55,7 @@ def test_what_is_bad_is_said(bad, tmp_path) -> None:
     assert ending == bad.ending, said
     assert re.search(bad.said, said), said
     assert len(said) < 2000
+    assert said.isprintable()
     assert said.rstrip().endswith(".")
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.mocap import read_mocap, virtual_markers
+from eigenwalker.mocap.unreadable import printable
 from eigenwalker.population import Population
 from eigenwalker.population_file import looks_like_population
 from eigenwalker.quality import assess
@@ -173,5 +174,5 @@ def _plain_value(value: object) -> Fact:
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
     if isinstance(value, list | tuple):
-        return [str(each) for each in value]
-    return None if value is None else str(value)
+        return [printable(str(each)) for each in value]
+    return None if value is None else printable(str(value))

@@ -95,6 +95,11 @@ def no_files() -> list[BadFile]:
         BadFile(
             "a name in other letters", _named("Gang_行走_ходьба.c3d"), "^Gang_行走_ходьба.c3d: ex"
         ),
+        BadFile(
+            "a name that clears the screen",
+            _named("a\x1b[2J.c3d"),
+            "^a\N{REPLACEMENT CHARACTER}\\[",
+        ),
         BadFile("a name with blanks", _named(" my walk .c3d"), "^ my walk .c3d: expected"),
         BadFile(
             "a name that is too long", lambda f: f / f"{'a' * 300}.c3d", "a{300}.c3d: expected"

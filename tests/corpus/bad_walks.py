@@ -157,6 +157,12 @@ def wrong_names() -> list[BadFile]:
             "flagged",
         ),
         BadFile(
+            "names that clear the screen",
+            labelled([f"\x1b[2J{n}" for n in range(15)]),
+            r"\[2J0",
+            "flagged",
+        ),
+        BadFile(
             "names of 5000 letters",
             written(lambda: {"a.trc": _trc_with_names(["x" * 5000 + str(n) for n in range(15)])}),
             "No known marker set",

@@ -38,4 +38,23 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
         self.advice = advice
 
     def __str__(self) -> str:
-        return f"{self.source}: expected {self.expected}, but got {self.came}; {self.advice}."
+        return printable(
+            f"{self.source}: expected {self.expected}, but got {self.came}; {self.advice}."
+        )
+
+
+def printable(text: str) -> str:
+    r"""Return a text in one line, without what a terminal would act on.
+
+    Names in files, and of files, may hold anything.
+
+    Examples
+    --------
+    >>> printable("left\x1b[2Jknee\n")
+    'left�[2Jknee '
+
+    """
+    return "".join(
+        letter if letter.isprintable() else " " if letter.isspace() else "\N{REPLACEMENT CHARACTER}"
+        for letter in text
+    )
