@@ -161,8 +161,8 @@ def test_info_reports_what_a_capture_is_worth(run, tmp_path) -> None:
     walk = simulate_walk(seed=3, duration_s=8, rate_hz=100, markers="skin", noise_mm=1)
     spoilt = walk.sel(marker=walk.marker != "LASI").copy()
     spoilt.loc[{"marker": "RKNE", "time": walk.time[200:204]}] += 300
-    spoilt.loc[{"marker": "LTOE", "time": walk.time[400:]}] = walk.sel(marker="RTOE").values[400:]
-    spoilt.loc[{"marker": "RTOE", "time": walk.time[400:]}] = walk.sel(marker="LTOE").values[400:]
+    spoilt.loc[{"marker": "LANK", "time": walk.time[400:]}] = walk.sel(marker="RANK").values[400:]
+    spoilt.loc[{"marker": "RANK", "time": walk.time[400:]}] = walk.sel(marker="LANK").values[400:]
     path = write_mocap(spoilt, tmp_path / "walk.c3d")
     code, said, _ = run("info", path)
     assert code == 0
@@ -170,7 +170,7 @@ def test_info_reports_what_a_capture_is_worth(run, tmp_path) -> None:
         assert words in said
     told = {line[:23].strip(): line[23:].strip() for line in said.splitlines()}
     assert told["verdict"] == "use with care"
-    assert told["problems"].startswith("Left and right changed places and were put right: LTOE")
+    assert told["problems"].startswith("Left and right changed places and were put right: LANK")
     assert told["marker set"].startswith("Plug-in Gait, 97% of its points found (next is ")
     assert told["rebuilt markers"] == "left_front_waist: mirrored from right_front_waist"
     assert told["jumps"] == "RKNE: 1"
