@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Wish = dict[str, Any]
 ARM_SWING = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("elbow", "wrist"))
-MASK_ROOM = 1.5
+MASK_ROOM = (2.0, 1.15)
 """How much wider and higher than the figure the box of a mask is where none is given."""
 
 
@@ -40,7 +40,7 @@ def granted(stimulus: Stimulus, name: str, wish: Mapping[str, Any]) -> Wish:
         translation with a figure's own speed, in the middle of the picture at half time).
     wish : mapping
         Its parameters. May be left out: the box of ``scramble`` (the figure's extent), of ``mask``
-        (1.5 times that) and its centre, the end of ``reverse``, ``perturb`` and ``morph`` (the
+        (twice as wide, 1.15 times as high) and its centre, the end of ``reverse``, ``perturb`` and ``morph`` (the
         duration), the phase of ``ellipses`` (that of the figure's legs). May be said otherwise:
         markers as ``parts`` of the body or as those to ``show``, the number of a mask's dots as
         ``signal_to_noise`` or ``dots_per_m2``, the walker of ``morph`` as a `Walker`.
@@ -131,11 +131,12 @@ def _scramble(stimulus: Stimulus, asked: Wish) -> tuple[str, Wish]:
 
 def _mask(stimulus: Stimulus, asked: Wish) -> tuple[str, Wish]:
     number, moving = _figure(stimulus, asked)
-    wide, high = (MASK_ROOM * size for size in _extent(stimulus, moving))
+    extent = _extent(stimulus, moving)
+    box = [round(room * size) for room, size in zip(MASK_ROOM, extent, strict=True)]
     asked = {
         "figures": [number],
         "kind": "random",
-        "box_mm": [wide, high],
+        "box_mm": box,
         "centre_mm": moving.middle.round(3).tolist(),
         **asked,
     }
