@@ -39,11 +39,12 @@ def granted(stimulus: Stimulus, name: str, wish: Mapping[str, Any]) -> Wish:
         A transform, or ``"arm_swing"`` (the gain of elbows and wrists), ``"overground"`` (the
         translation with a figure's own speed, in the middle of the picture at half time).
     wish : mapping
-        Its parameters. May be left out: the box of ``scramble`` (the figure's extent), of ``mask``
-        (twice as wide, 1.15 times as high) and its centre, the end of ``reverse``, ``perturb`` and ``morph`` (the
-        duration), the phase of ``ellipses`` (that of the figure's legs). May be said otherwise:
-        markers as ``parts`` of the body or as those to ``show``, the number of a mask's dots as
-        ``signal_to_noise`` or ``dots_per_m2``, the walker of ``morph`` as a `Walker`.
+        Its parameters. May be left out: the box of ``scramble`` (the figure's extent), the box of
+        ``mask`` (twice as wide, 1.15 times as high) and its centre, the end of ``reverse``,
+        ``perturb`` and ``morph`` (the duration), the phase of ``ellipses`` (that of the figure's
+        legs). May be said otherwise: markers as ``parts`` of the body or as those to ``show``, the
+        number of a mask's dots as ``signal_to_noise`` or ``dots_per_m2``, the walker of ``morph``
+        as a `Walker`.
 
     """
     asked = dict(wish)
