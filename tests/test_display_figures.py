@@ -258,11 +258,11 @@ def test_views_have_names():
 
 
 def test_figures_leave_no_state_behind(walker):
-    before = dict(mpl.rcParams)
+    before, pyplot = dict(mpl.rcParams), sys.modules.get("matplotlib.pyplot")
+    n_open = len(pyplot.get_fignums()) if pyplot else 0
     figure_joints(walker)
     figure_eigenpostures(walker)
     figure_curves({"a": curves(5, 1)}, n_walkers=40)
     assert dict(mpl.rcParams) == before
-    assert (
-        "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
-    )
+    assert sys.modules.get("matplotlib.pyplot") is pyplot
+    assert (len(pyplot.get_fignums()) if pyplot else 0) == n_open

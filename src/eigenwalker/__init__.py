@@ -42,6 +42,8 @@ _HOME = {
     "JOINTS": "skeleton",
     "label_trajectories": "trajectories",
     "load_population": "datasets",
+    "make_stimulus": "stimulus",
+    "mend": "mending",
     "nested_leave_one_out": "validation",
     "nested_regression": "validation",
     "Pattern": "simulation",
@@ -66,6 +68,8 @@ _HOME = {
     "simulate_walk": "simulation",
     "Skeleton": "skeleton",
     "stance_speed": "gait",
+    "stand_alone_page": "page",
+    "Stimulus": "stimulus",
     "to_movement": "interchange",
     "to_pyomeca": "interchange",
     "trait_axis": "trait_axes",
@@ -82,10 +86,12 @@ _HOME = {
     "walker_to_mm": "walker_tables",
     "walker_to_table": "walker_tables",
     "WalkerSpace": "space",
+    "with_information": "stimulus.information",
     "write_captures": "simulation",
     "write_film": "display.films",
     "write_mocap": "writing",
     "write_report": "report.page",
+    "write_stimulus": "stimulus.write",
 }
 """Each public name and the module it lives in."""
 
@@ -125,6 +131,7 @@ if TYPE_CHECKING:
     from eigenwalker.interchange import to_pyomeca as to_pyomeca
     from eigenwalker.jackknife import jackknife_curves as jackknife_curves
     from eigenwalker.jackknife import regression_curves as regression_curves
+    from eigenwalker.mending import mend as mend
     from eigenwalker.mocap import RateAssumed as RateAssumed
     from eigenwalker.mocap import UnitGuessed as UnitGuessed
     from eigenwalker.mocap import UnreadableFile as UnreadableFile
@@ -132,6 +139,7 @@ if TYPE_CHECKING:
     from eigenwalker.mocap import read_mocap as read_mocap
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.mocap.mat import read_mat as read_mat
+    from eigenwalker.page import stand_alone_page as stand_alone_page
     from eigenwalker.population import Population as Population
     from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
@@ -150,6 +158,10 @@ if TYPE_CHECKING:
     from eigenwalker.skeleton import JOINTS as JOINTS
     from eigenwalker.skeleton import Skeleton as Skeleton
     from eigenwalker.space import WalkerSpace as WalkerSpace
+    from eigenwalker.stimulus import Stimulus as Stimulus
+    from eigenwalker.stimulus import make_stimulus as make_stimulus
+    from eigenwalker.stimulus.information import with_information as with_information
+    from eigenwalker.stimulus.write import write_stimulus as write_stimulus
     from eigenwalker.study import fit_folder as fit_folder
     from eigenwalker.study import walker_from_file as walker_from_file
     from eigenwalker.trait_axes import trait_axis as trait_axis
