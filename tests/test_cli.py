@@ -123,7 +123,11 @@ def test_a_fit_that_is_killed_goes_on_where_it_stopped(folder, tmp_path, run) ->
     pd.testing.assert_frame_equal(resumed.traits, at_once.traits)
 
 
-CALL = "from eigenwalker.cli import main; main()"
+# Whoever runs the tests in the background passes on that interrupts are ignored.
+CALL = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from eigenwalker.cli import main; main()"
+)
 
 
 def _lines(path: Path) -> int:
