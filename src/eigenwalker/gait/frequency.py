@@ -147,7 +147,7 @@ def frequency_of_centred(
     lowest = max(bounds_hz[0], _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
     if n_frames < 8 or lowest >= 0.9 * bounds_hz[1]:
         raise ValueError(
-            f"{n_frames} frames at {rate_hz:.4g} Hz last {n_frames / rate_hz:.3g} s, too short for "
+            f"The part that could be used lasts {n_frames / rate_hz:.3g} s, too short for "
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
         )
     if not np.vdot(centred, centred) > n_frames * least**2:

@@ -96,7 +96,9 @@ def on_even_clock(
         return Clocked(positions, rate_hz, float(time[0]))
     if not np.isfinite(time).all() or not (steps > 0).all():
         late = int(np.argmin(np.append(steps > 0, False))) + 2
-        raise UnreadableFile(source, "times that go on", f"another at frame {late} of the table")
+        pair = time[max(late - 2, 0) : late]
+        came = f"{', then '.join(f'{each:g}' for each in pair)} s at frame {late} of the table"
+        raise UnreadableFile(source, "times that go on", came)
     if len(time) < 2:
         if rate_hz is None:
             raise UnreadableFile(source, "two frames or more", f"{len(time)}")

@@ -36,10 +36,14 @@ def lean_of(positions: np.ndarray, names: list[str]) -> float:
     45.0
 
     """
-    ends = [part[np.isfinite(part).all(axis=2)] for part in head_and_feet(positions, names)]
-    if not all(len(end) for end in ends):
+    head, feet = head_and_feet(positions, names)
+    if not head.shape[1] or not feet.shape[1]:
         return float("nan")
-    rise = ends[0].mean(axis=0) - ends[1].mean(axis=0)
+    rises = head.mean(axis=1) - feet.mean(axis=1)
+    rises = rises[np.isfinite(rises).all(axis=1)]
+    if not len(rises):
+        return float("nan")
+    rise = np.median(rises, axis=0)
     return float(np.degrees(np.arctan2(np.hypot(rise[0], rise[1]), rise[2])))
 
 

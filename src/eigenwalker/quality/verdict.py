@@ -80,7 +80,8 @@ def faults_of_body(height_mm: float | None, lean_deg: float, unit: object) -> li
         return [Fault("The head is not above the feet: the wrong axis points up.", hopeless=True)]
     if lean_deg > MOST_LEAN_DEG:
         sentence = (
-            f"From feet to head the body leans by {lean_deg:.0f} degrees: the frame is tilted."
+            f"From feet to head the body leans by {lean_deg:.0f} degrees: the frame is tilted, or "
+            "head or feet are not where they are said to be."
         )
         return [Fault(sentence, hopeless=True)]
     smallest, tallest = HEIGHTS_MM
