@@ -229,6 +229,20 @@ def test_a_long_gap_in_the_midst_is_refused_by_name(person):
         in_place(broken)
 
 
+@pytest.mark.parametrize("n_missing", [24, 100, 300, 600])
+def test_a_gap_between_steady_strides_is_refused_however_long(n_missing):
+    broken = simulate_walk(seed=1, duration_s=12, rate_hz=120)
+    broken.loc[{"marker": "left_knee", "time": broken.time[500 : 500 + n_missing]}] = np.nan
+    with pytest.raises(ValueError, match=rf"left_knee from .* \(frames 500 to {499 + n_missing}\)"):
+        in_place(broken)
+
+
+def test_who_left_the_room_between_two_passes_left_no_gap():
+    walk = simulate_walk(seed=1, duration_s=12, rate_hz=120)
+    walk.values[500:800] = np.nan
+    assert in_place(walk).attrs["n_strides"] >= 3
+
+
 def test_gaps_at_the_ends_do_not_matter(person):
     broken = walking_through_a_room(person)
     broken.loc[{"marker": "head", "time": broken.time[:60]}] = np.nan

@@ -211,11 +211,12 @@ def test_bones_do_not_mind_where_the_walker_faces(walk, heading):
 
 
 def test_walkers_of_two_harmonics_lie_near_a_body_with_constant_bones():
-    for walker in ew.load_population().walkers[::4]:
+    # The true joints: what skin adds as it moves over the bones is no matter of the writer.
+    for walker in ew.simulate_population(5, 5, seed=0, markers="joints").walkers:
         walk = walker.trajectories(np.arange(0, walker.period_s, 0.02))
         off = np.linalg.norm(constant_bones(walk) - walk, axis=2)
-        assert off.max() < 75  # skin moves over the bones, most of all on the thigh
-        assert np.sqrt((off**2).mean()) < 11
+        assert off.max() < 45
+        assert np.sqrt((off**2).mean()) < 8
 
 
 @pytest.mark.parametrize(

@@ -110,7 +110,8 @@ def _steady_run(
     if not parts:
         raise ValueError(_no_stride(walk, gaps, complaints))
     best = max(parts, key=lambda part: part.strides(rate_hz))
-    if within := _gaps_within(best, parts, gaps, rate_hz):
+    seen = np.atleast_1d(np.isfinite(positions).any(axis=(1, 2)))
+    if within := _gaps_within(best, parts, gaps, rate_hz, seen):
         raise ValueError(
             f"Gaps in the midst of the walk are too long to be filled: {_told(walk, within)}. Fill "
             "them where the capture was made, cut the capture before or after them, or leave "
@@ -120,17 +121,33 @@ def _steady_run(
 
 
 def _gaps_within(
-    best: SteadyPart, parts: list[SteadyPart], gaps: list[Gap], rate_hz: float
+    best: SteadyPart,
+    parts: list[SteadyPart],
+    gaps: list[Gap],
+    rate_hz: float,
+    seen: np.ndarray,
 ) -> list[Gap]:
-    """Return gaps that alone part the best steady part from another: both reach up to them."""
-    stride = rate_hz / best.frequency_hz
-    around = [part for part in parts if -1 < part.start - best.stop < 2 * stride]
-    around += [part for part in parts if -1 < best.start - part.stop < 2 * stride]
-    spans = [sorted([best.start, best.stop, part.start, part.stop])[1:3] for part in around]
+    """Return gaps that alone part the best steady part from another, however long they are.
+
+    Both parts reach up to such a gap, but for what trimming to whole strides leaves. Who was not
+    seen at all in the middle of it had left the room between two passes, which is no gap.
+    """
+    trimmed = 2 * rate_hz / best.frequency_hz
+    between = [
+        sorted([best.start, best.stop, part.start, part.stop])[1:3]
+        for part in parts
+        if part is not best
+    ]
     return [
         gap
         for gap in gaps
-        if any(low - 1 <= gap.start and gap.stop <= high + 1 for low, high in spans)
+        if seen[(gap.start + gap.stop) // 2]
+        and any(
+            low - 1 <= gap.start
+            and gap.stop <= high + 1
+            and (high - low) - (gap.stop - gap.start) < trimmed
+            for low, high in between
+        )
     ]
 
 

@@ -122,8 +122,9 @@ def constant_bones(walk: xr.DataArray) -> xr.DataArray:
 
     Each bone has its median length, so joints are off by what their bones change in length: where
     markers slip on the skin some 5 mm (root mean square), 20 mm at most in a sound capture. The two
-    harmonics of a walker keep no bone quite constant either: 5 mm again, and up to 40 mm at the
-    ankles in mid-swing.
+    harmonics of a walker keep no bone quite constant either: 5 mm again, and up to 41 mm at the
+    ankles in mid-swing; with skin movement besides, as in the built-in population, 7 mm and up to
+    61 mm.
 
     Parameters
     ----------
@@ -141,10 +142,10 @@ def constant_bones(walk: xr.DataArray) -> xr.DataArray:
 
     Examples
     --------
-    >>> walk = ew.load_population().walkers[0].trajectories(np.arange(0, 1, 0.01))
+    >>> walk = ew.decompose_pca(ew.simulate_walk(seed=1)).trajectories(np.arange(0, 1, 0.01))
     >>> off_mm = np.linalg.norm(constant_bones(walk) - walk, axis=2)
-    >>> bool(np.sqrt((off_mm**2).mean()) < 12)
-    True
+    >>> bool(off_mm.max() < 45), bool(np.sqrt((off_mm**2).mean()) < 8)
+    (True, True)
 
     """
     bones = fit_bones(check_trajectories(walk), np.eye(3))
