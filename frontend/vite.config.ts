@@ -1,7 +1,8 @@
-/** The stand-alone page: one file with script and style inside, for the Python package. */
+/** What the Python package carries: pages that are one file each, and modules loaded on demand. */
 
+import { dirname } from "node:path";
 import { fileURLToPath } from "node:url";
-import { defineConfig, type Plugin } from "vite";
+import { type BuildEnvironmentOptions, defineConfig, type Plugin } from "vite";
 
 const inFolder = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
@@ -32,15 +33,35 @@ function insidePage(): Plugin {
   };
 }
 
-export default defineConfig({
-  root: inFolder("src/page"),
-  base: "./",
-  build: {
-    outDir: inFolder("../src/eigenwalker/page"),
-    emptyOutDir: false,
-    target: "es2022",
-    modulePreload: false,
-    rolldownOptions: { input: inFolder("src/page/player.html") },
-  },
-  plugins: [insidePage()],
+/** What `vite build --mode NAME` makes: a page, or a module of its own. */
+const PAGES: Record<string, string> = {
+  player: "src/page/player.html",
+  interactive: "src/interactive/interactive.html",
+};
+const MODULES: Record<string, string> = {
+  mannequin: "src/mannequin/mannequin.ts",
+  widget: "src/widget/widget.ts",
+};
+
+const shared: BuildEnvironmentOptions = {
+  outDir: inFolder("../src/eigenwalker/page"),
+  emptyOutDir: false,
+  target: "es2022",
+  modulePreload: false,
+};
+
+export default defineConfig(({ mode }) => {
+  const page = PAGES[mode];
+  if (page !== undefined) {
+    return {
+      root: inFolder(dirname(page)),
+      base: "./",
+      build: { ...shared, rolldownOptions: { input: inFolder(page) } },
+      plugins: [insidePage()],
+    };
+  }
+  const entry = MODULES[mode];
+  if (entry === undefined) throw new Error(`There is nothing called ${mode} to build.`);
+  const lib = { entry: inFolder(entry), formats: ["es" as const], fileName: () => `${mode}.js` };
+  return { publicDir: false, build: { ...shared, lib, rolldownOptions: { output: { codeSplitting: false } } } };
 });

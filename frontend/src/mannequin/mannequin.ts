@@ -1,0 +1,4 @@
+import { Scene } from "three";
+
+/** A stub. */
+export const scene = (): Scene => new Scene();
