@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker import study
+from eigenwalker import attempts
+from eigenwalker.attempts import walker_from_file
 from eigenwalker.classification import classify
 from eigenwalker.simulation import simulate_captures
-from eigenwalker.study import fit_folder, walker_from_file
+from eigenwalker.study import fit_folder
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +146,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped(folder, tmp_path, monkeypat
         file.write('{"file": "female_2.c3d", "state"')  # as a power cut leaves it
     read = []
     monkeypatch.setattr(
-        study, "walker_from_file", lambda path, **how: (read.append(path), made(path, **how))[1]
+        attempts, "walker_from_file", lambda path, **how: (read.append(path), made(path, **how))[1]
     )
     made = walker_from_file
     again = fit_folder(folder, n_jobs=1, journal=journal)
@@ -187,3 +190,16 @@ def test_a_damaged_journal_costs_time_and_nothing_else(folder, tmp_path, damage)
     assert kept.population is not None
     assert again.population is not None
     np.testing.assert_array_equal(kept.population.X, again.population.X)
+
+
+def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:
+    def killed(where: Path, name: str, settings: dict, made=attempts._attempt):
+        if name == "men/male_4.c3d":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return made(where, name, settings)
+
+    monkeypatch.setattr(attempts, "_attempt", killed)
+    found = fit_folder(folder, n_jobs=2)
+    reasons = found.refused.set_index("file")["reason"]
+    assert reasons.index.tolist() == ["female_1.c3d", "female_2.c3d", "men/male_4.c3d"]
+    assert reasons.str.contains("memory runs out").tolist() == [False, False, True]

@@ -80,7 +80,7 @@ _HOME = {
     "UnreadableFile": "mocap",
     "virtual_markers": "mocap",
     "Walker": "walker",
-    "walker_from_file": "study",
+    "walker_from_file": "attempts",
     "walker_from_mm": "walker_tables",
     "walker_from_table": "walker_tables",
     "walker_to_mm": "walker_tables",
@@ -98,6 +98,7 @@ _HOME = {
 __all__ = sorted(_HOME)
 
 if TYPE_CHECKING:
+    from eigenwalker.attempts import walker_from_file as walker_from_file
     from eigenwalker.bml import read_bml_axes as read_bml_axes
     from eigenwalker.caricature import direction as direction
     from eigenwalker.classification import classify as classify
@@ -163,7 +164,6 @@ if TYPE_CHECKING:
     from eigenwalker.stimulus.information import with_information as with_information
     from eigenwalker.stimulus.write import write_stimulus as write_stimulus
     from eigenwalker.study import fit_folder as fit_folder
-    from eigenwalker.study import walker_from_file as walker_from_file
     from eigenwalker.trait_axes import trait_axis as trait_axis
     from eigenwalker.trajectories import label_trajectories as label_trajectories
     from eigenwalker.validation import nested_leave_one_out as nested_leave_one_out

@@ -194,7 +194,8 @@ def fit(
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used,
     130 when it was interrupted; the same command then goes on where it stopped.
     """
-    from eigenwalker.study import DECOMPOSE, fit_folder
+    from eigenwalker.attempts import DECOMPOSE
+    from eigenwalker.study import fit_folder
     from eigenwalker.study_summary import summary_of
 
     _one_of(form, DECOMPOSE, "--form")
@@ -425,7 +426,7 @@ def _start(population: Population, start: str) -> np.ndarray:
                 f"--from {start}: the population has walkers 0 to {len(population) - 1}."
             )
         return population.X[int(start)]
-    from eigenwalker.study import walker_from_file
+    from eigenwalker.attempts import walker_from_file
 
     first = population.walkers[0]
     n_harmonics = len(first.harmonics) // 2

@@ -39,7 +39,7 @@ from eigenwalker.inspection import inspect_file
 from eigenwalker.mocap import RateAssumed, UnitGuessed, UnreadableFile, read_mocap
 from eigenwalker.mocap.mat_arrays import mat_arrays
 from eigenwalker.population import Population
-from eigenwalker.study import walker_from_file
+from eigenwalker.attempts import walker_from_file
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 from fuzz.mutations import mutated
 
