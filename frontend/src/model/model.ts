@@ -18,16 +18,23 @@ export interface Eigenwalker {
 
 export interface KnownWalker {
   readonly name: string;
+  /** Its number in the population. */
+  readonly row: number;
   readonly vector: Numbers;
-  readonly traits: Readonly<Record<string, string | number | null>>;
+  readonly traits: Readonly<Record<string, string | number | boolean | null>>;
 }
 
 export interface Trait {
+  /** As Python's `trait_axis` takes it. */
   readonly name: string;
+  /** Its column in the traits of the walkers. */
+  readonly column: string;
+  /** What to call it. */
+  readonly label: string;
+  readonly unit: string;
   readonly negative: string;
   readonly positive: string;
   readonly two_classes: boolean;
-  readonly unit: string;
   /** One standard deviation of the walkers along the trait, of the columns of each part (A12). */
   readonly steps: Readonly<Record<Kind, Readonly<Record<string, Numbers>>>>;
   /** Where a walker lies along it: offset + gradient . vector. */
@@ -41,7 +48,6 @@ export interface Cloud {
   readonly n: number;
   /** Of each, its scores on the eigenwalkers in standard deviations. */
   readonly scores: readonly Numbers[];
-  readonly positions: Readonly<Record<string, Numbers>>;
   /** Its number among the model's walkers, -1 where it is not among them. */
   readonly walker: Numbers;
 }
@@ -51,8 +57,13 @@ export interface Model {
   readonly version: 1;
   readonly program: string;
   readonly title: string;
+  /** File of the population; empty for the one that comes with the program. */
+  readonly source: string;
   readonly simulated: boolean;
   readonly provenance: Readonly<Record<string, string>>;
+  readonly n_walkers: number;
+  /** Walkers of doubtful captures, which are left out. */
+  readonly n_flagged: number;
   readonly markers: readonly string[];
   readonly segments: readonly Link[];
   readonly pairs: readonly Link[];
@@ -65,6 +76,7 @@ export interface Model {
   readonly average: Numbers;
   readonly scale: Numbers;
   readonly eigenwalkers: readonly Eigenwalker[];
+  /** Root mean square distance from the average; the distance of each walker in units of it. */
   readonly spread: { readonly rms: number; readonly distances: Numbers };
   readonly walkers: readonly KnownWalker[];
   readonly cloud: Cloud;

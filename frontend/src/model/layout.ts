@@ -1,0 +1,27 @@
+/** Which number of a feature vector is what, as `eigenwalker.features` has it (J11, A2). */
+
+import type { Model, Span } from "./model";
+
+export const blockOf = ({ layout }: Pick<Model, "layout">, block: string): Span | undefined =>
+  Object.hasOwn(layout, block) ? layout[block] : undefined;
+
+/** Columns of a part of the features, in increasing order: a block, or several joined by "+". */
+export function columnsOf(model: Pick<Model, "layout">, part: string): number[] {
+  const blocks = Object.keys(model.layout);
+  const gathered: Readonly<Record<string, readonly string[]>> = {
+    all: blocks,
+    structure: ["p0"],
+    dynamics: blocks.filter((block) => block !== "p0"),
+    postures: blocks.filter((block) => /^p\d+$/.test(block)),
+    timing: blocks.filter((block) => !/^p\d+$/.test(block)),
+  };
+  const chosen = part.split("+").flatMap((name) => {
+    const inside = Object.hasOwn(gathered, name) ? gathered[name]! : [name];
+    return inside.flatMap((block) => {
+      const span = blockOf(model, block);
+      if (!span) throw new Error(`There is no part "${block}"; there are ${blocks.join(", ")}.`);
+      return Array.from({ length: span[1] - span[0] }, (_, i) => span[0] + i);
+    });
+  });
+  return [...new Set(chosen)].sort((a, b) => a - b);
+}
