@@ -1,0 +1,69 @@
+/** What the eye takes in of a walk, in numbers, as `eigenwalker.measures` has them (J32, W11). */
+
+import type { Walker } from "../core/stimulus";
+import { stanceSpeed, type Path } from "./stance";
+
+const N_SAMPLES = 200;
+
+/** What each is called, its unit, and the decimals worth showing. */
+export const MEASURES = [
+  { name: "shoulder_width_mm", label: "shoulder width", unit: "mm", digits: 0 },
+  { name: "hip_width_mm", label: "hip width", unit: "mm", digits: 0 },
+  { name: "elbow_distance_mm", label: "elbows apart", unit: "mm", digits: 0 },
+  { name: "lateral_sway_mm", label: "sway from side to side", unit: "mm", digits: 0 },
+  { name: "vertical_movement_mm", label: "up and down", unit: "mm", digits: 0 },
+  { name: "frequency_hz", label: "strides a second", unit: "Hz", digits: 2 },
+  { name: "stride_length_mm", label: "stride length", unit: "mm", digits: 0 },
+] as const;
+
+export type MeasureName = (typeof MEASURES)[number]["name"];
+
+/** The measures of a walker; NaN where it lacks the markers. */
+export function measuresOf(walker: Walker): Record<MeasureName, number> {
+  const path = (name: string, times: readonly number[]): Path => pathOf(walker, name, times);
+  const stride = Array.from({ length: N_SAMPLES }, (_, i) => i / N_SAMPLES);
+  const strides = Array.from({ length: N_SAMPLES }, (_, i) => (2 * i) / (N_SAMPLES - 1));
+  const rateHz = ((N_SAMPLES - 1) * walker.frequency_hz) / 2;
+  const ankles = ["left_ankle", "right_ankle"].map((name) => path(name, strides));
+  const trunk = walker.markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
+  const shoulders = ["left_shoulder", "right_shoulder"];
+  const sway = rangeOf(shoulders.map((name) => path(name, stride).y));
+  const bounce = rangeOf(trunk.map((name) => path(name, stride).z));
+  return {
+    shoulder_width_mm: Math.hypot(...apart(walker, "shoulder")),
+    hip_width_mm: Math.hypot(...apart(walker, "hip")),
+    elbow_distance_mm: apart(walker, "elbow")[1]!,
+    lateral_sway_mm: sway,
+    vertical_movement_mm: bounce,
+    frequency_hz: walker.frequency_hz,
+    stride_length_mm: stanceSpeed(ankles, rateHz) / walker.frequency_hz,
+  };
+}
+
+/** From the right joint to the left one in the mean posture. */
+function apart({ markers, p0 }: Walker, part: string): number[] {
+  const [left, right] = ["left", "right"].map((side) => p0[markers.indexOf(`${side}_${part}`)]);
+  return [0, 1, 2].map((axis) => (left?.[axis] ?? NaN) - (right?.[axis] ?? NaN));
+}
+
+/** Where one marker is at some times, in cycles. */
+function pathOf({ markers, p0, p, harmonics, phases }: Walker, name: string, times: readonly number[]): Path {
+  const marker = markers.indexOf(name);
+  const along = (axis: number): Float64Array =>
+    Float64Array.from(times, (time) =>
+      p.reduce(
+        (sum, posture, i) =>
+          sum + Math.sin(harmonics[i]! * 2 * Math.PI * time + phases[i]!) * (posture[marker]?.[axis] ?? NaN),
+        p0[marker]?.[axis] ?? NaN,
+      ),
+    );
+  return { x: along(0), y: along(1), z: along(2) };
+}
+
+/** How far the middle of some paths moves. */
+function rangeOf(paths: readonly Float64Array[]): number {
+  const middles = [...paths[0]!.keys()].map(
+    (moment) => paths.reduce((sum, path) => sum + path[moment]!, 0) / paths.length,
+  );
+  return Math.max(...middles) - Math.min(...middles);
+}
