@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
 
-By = Literal["positions", "velocities", "angles"]
+from eigenwalker.metric.frame_metrics import By
 
 GROUPS = ("head", "clavicle", "upper_arm", "forearm", "hand", "thigh", "calf", "toe")
 """The columns of figure 5, in its order."""
