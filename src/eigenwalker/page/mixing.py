@@ -1,0 +1,138 @@
+"""From what is chosen on the page to the walker that is made of it, as the page does it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from eigenwalker.features import FeatureLayout
+from eigenwalker.walker import Walker
+
+
+def model_layout(model: Mapping[str, Any]) -> FeatureLayout:
+    """Return which number of a model's vectors is what."""
+    fixed = tuple(model["fixed_phases"]) if model["form"] == "fourier" else ()
+    return FeatureLayout(
+        tuple(model["markers"]), tuple(model["harmonics"]), model["form"], fixed_phases=fixed
+    )
+
+
+def mixed_walker(model: Mapping[str, Any], state: Mapping[str, Any]) -> Walker:
+    """Return the walker that the page shows for a state.
+
+    Parameters
+    ----------
+    model : mapping
+        Of `page_model`.
+    state : mapping
+        What is chosen; see `mixed_vector`.
+
+    Returns
+    -------
+    Walker
+
+    Raises
+    ------
+    ValueError
+        If the numbers do not make anything that could walk, or the state asks for what the model
+        does not have.
+
+    """
+    return model_layout(model).walker(mixed_vector(model, state))
+
+
+def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
+    """Return the features of the walker that the page shows for a state.
+
+    Eq. 13 of Troje (2002) from any walker (W7), then Moler's bias, eigenwalkers, and the strength
+    of each component.
+
+    Parameters
+    ----------
+    model : mapping
+        Of `page_model`.
+    state : mapping
+        Any of ``traits`` {name: standard deviations}, ``kind``, ``part``, ``from`` ("average", or
+        the number of a walker of the model), ``bias`` {"trait", "steps"} in half the difference of
+        the classes' means, ``eigenwalkers`` in standard deviations, ``strengths``, 1 being as it
+        is. What is left out changes nothing.
+
+    Returns
+    -------
+    array of shape (feature,)
+
+    Raises
+    ------
+    ValueError
+        If there is no such trait, part or walker.
+
+    Examples
+    --------
+    >>> from eigenwalker.page.model import page_model
+    >>> people = ew.load_population()
+    >>> model = page_model(people, traits=["sex"])
+    >>> man = people.average + 2 * ew.trait_axis(people, "sex").step
+    >>> bool(np.abs(mixed_vector(model, {"traits": {"sex": 2}}) - man).max() < 1e-6)
+    True
+
+    """
+    vector = _start(model, state.get("from", "average"))
+    kind, part = state.get("kind", "discriminant"), state.get("part", "all")
+    for name, steps in state.get("traits", {}).items():
+        if steps:
+            columns, step = _step(model, name, kind, part)
+            vector[columns] += steps * step
+    if bias := state.get("bias"):
+        vector += bias["steps"] * _half_difference(model, bias["trait"])
+    _check_count("eigenwalkers", state.get("eigenwalkers", ()), len(model["eigenwalkers"]))
+    for steps, each in zip(state.get("eigenwalkers", ()), model["eigenwalkers"], strict=False):
+        vector += steps * np.array(each["vector"])
+    _check_count("strengths", state.get("strengths", ()), len(model["harmonics"]))
+    for number, strength in enumerate(state.get("strengths", ()), start=1):
+        vector[slice(*model["layout"][f"p{number}"])] *= strength
+    return vector
+
+
+def _start(model: Mapping[str, Any], start: str | int) -> np.ndarray:
+    if start == "average":
+        return np.array(model["average"], dtype=float)
+    walkers = model["walkers"]
+    if not isinstance(start, int) or not 0 <= start < len(walkers):
+        raise ValueError(
+            f"There is no walker {start!r} to start from; give 'average' or a number from 0 to "
+            f"{len(walkers) - 1}."
+        )
+    return np.array(walkers[start]["vector"], dtype=float)
+
+
+def _trait(model: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    for trait in model["traits"]:
+        if trait["name"] == name:
+            return trait
+    known = [trait["name"] for trait in model["traits"]]
+    raise ValueError(f"There is no trait {name!r}; the model has {known}.")
+
+
+def _step(
+    model: Mapping[str, Any], name: str, kind: str, part: str
+) -> tuple[np.ndarray, np.ndarray]:
+    steps = _trait(model, name)["steps"]
+    if kind not in steps:
+        raise ValueError(f"kind={kind!r} is unknown; choose from {list(steps)}.")
+    if part not in steps[kind]:
+        raise ValueError(f"{name} has no axis in the part {part!r}; choose from {[*steps[kind]]}.")
+    return model_layout(model).columns(part), np.array(steps[kind][part])
+
+
+def _half_difference(model: Mapping[str, Any], name: str) -> np.ndarray:
+    means = _trait(model, name).get("means")
+    if means is None:
+        raise ValueError(f"{name} has no two classes, so there is no bias towards one of them.")
+    return (np.array(means["positive"]) - np.array(means["negative"])) / 2
+
+
+def _check_count(what: str, values: Any, most: int) -> None:
+    if len(values) > most:
+        raise ValueError(f"There are {len(values)} {what} for a model that has {most}.")

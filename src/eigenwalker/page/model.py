@@ -1,0 +1,191 @@
+"""A population as the interactive page holds it: what walks, what varies, what tells traits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+import eigenwalker
+from eigenwalker.features import FeatureLayout
+from eigenwalker.page.rounding import rounded, rounded_vectors, significant
+from eigenwalker.page.traits import model_traits
+from eigenwalker.population import FLAG, Population
+from eigenwalker.skeleton import JOINTS
+from eigenwalker.space import WalkerSpace
+
+FORMAT, VERSION = "eigenwalker model", 1
+N_EIGENWALKERS = 10
+MOST_WALKERS = 100
+"""Walkers that can be shown themselves."""
+MOST_POINTS = 2000
+"""Walkers that are points of the cloud."""
+
+
+def page_model(
+    population: Population,
+    *,
+    traits: Sequence[str] | None = None,
+    title: str = "",
+    source: str = "",
+) -> dict[str, Any]:
+    """Return a population as plain lists and numbers, for the page to play with.
+
+    Flagged walkers are left out. Numbers are rounded to a millionth of a millimetre.
+
+    Parameters
+    ----------
+    population : Population
+    traits : sequence of str, optional
+        Traits to have sliders for, as `contrast` takes them; left out, all that have an axis.
+    title : str
+        What the page is called.
+    source : str
+        File of the population, for the line of Python that makes a walker; empty for the built-in.
+
+    Returns
+    -------
+    dict
+        To be written as JSON; ``docs/interactive.md`` says what it holds.
+
+    Examples
+    --------
+    >>> model = page_model(ew.load_population(), traits=["sex"])
+    >>> len(model["average"]), len(model["walkers"]), model["traits"][0]["positive"]
+    (229, 40, 'male')
+
+    """
+    rows = np.flatnonzero(~population.flagged)
+    if not len(rows):
+        rows = np.arange(len(population))
+    known, layout = population.X[rows], population.layout
+    average = known.mean(axis=0)
+    points = _evenly(len(rows), MOST_POINTS)
+    axes = model_traits(population, traits)
+    skeleton = JOINTS.restricted_to(layout.markers)
+    shown = _evenly(len(rows), MOST_WALKERS)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "program": f"eigenwalker {eigenwalker.__version__}",
+        "title": title or f"{len(rows)} walkers",
+        "source": source,
+        "simulated": "simulated" in population.provenance,
+        "provenance": {str(name): str(said) for name, said in population.provenance.items()},
+        "n_walkers": len(rows),
+        "n_flagged": len(population) - len(rows),
+        "markers": list(layout.markers),
+        "segments": [list(link) for link in skeleton.segments],
+        "pairs": [list(pair) for pair in skeleton.pairs],
+        "groups": {name: list(members) for name, members in skeleton.groups.items() if members},
+        "form": layout.form,
+        "harmonics": list(layout.harmonics),
+        "fixed_phases": _fixed_phases(population),
+        "layout": {name: [part.start, part.stop] for name, part in layout.blocks.items()},
+        "average": rounded_vectors(average, layout),
+        **_variation(known, layout, points),
+        "walkers": _walkers(population, rows[shown], axes),
+        "cloud": _cloud(known, points, shown, axes),
+        "traits": axes,
+    }
+
+
+def _fixed_phases(population: Population) -> list[float | None]:
+    """The phases that are no features; None for one that is."""
+    layout = population.layout
+    if layout.form == "fourier":
+        return [float(phase) for phase in layout.fixed_phases]
+    return [0.0, *[None] * (len(layout.harmonics) - 1)]
+
+
+def _evenly(number: int, most: int) -> np.ndarray:
+    """Places spread over so many, all of them where they are not too many."""
+    return np.unique(np.linspace(0, number - 1, min(number, most)).round().astype(int))
+
+
+def _variation(known: np.ndarray, layout: FeatureLayout, points: np.ndarray) -> dict[str, Any]:
+    """What varies between the walkers: scale, eigenwalkers, and how far they spread."""
+    space = _space(known)
+    if space is None:
+        spread = {"rms": 1.0, "distances": [0.0] * len(points)}
+        return {"scale": [1.0] * len(layout), "eigenwalkers": [], "spread": spread}
+    usual = float(np.sqrt(space.explained_variance_[0] / space.explained_variance_ratio_[0]))
+    far = np.sort(np.linalg.norm((known - space.average_walker_) / space.scale_, axis=1)) / usual
+    sds = np.sqrt(space.explained_variance_)
+    return {
+        "scale": [significant(each) for each in space.scale_],
+        "eigenwalkers": [
+            {
+                "vector": rounded_vectors(sd * axis, layout, finer=1),
+                "sd": significant(sd),
+                "share": significant(share, 6),
+            }
+            for axis, sd, share in zip(
+                space.eigenwalkers_, sds, space.explained_variance_ratio_, strict=True
+            )
+        ][:N_EIGENWALKERS],
+        "spread": {"rms": significant(usual), "distances": rounded(far[points], 9)},
+    }
+
+
+def _space(known: np.ndarray) -> WalkerSpace | None:
+    """The space of the walkers; None of one walker, or where all are the same."""
+    try:
+        return WalkerSpace().fit(known)
+    except ValueError:
+        return None
+
+
+def _cloud(
+    known: np.ndarray, points: np.ndarray, shown: np.ndarray, axes: list[dict]
+) -> dict[str, Any]:
+    """Every walker as a point: its scores, and where it lies along each trait."""
+    space = _space(known)
+    if space is None:
+        return {"n": 0, "scores": [], "positions": {}, "walker": []}
+    scores = space.transform(known[points]) / np.sqrt(space.explained_variance_)
+    told = {axis["name"]: axis["told"] for axis in axes}
+    place = {int(row): number for number, row in enumerate(shown)}
+    return {
+        "n": len(points),
+        "scores": rounded(scores[:, :N_EIGENWALKERS], 4),
+        "positions": {
+            name: rounded(each["offset"] + known[points] @ each["gradient"], 4)
+            for name, each in told.items()
+        },
+        "walker": [place.get(int(point), -1) for point in points],
+    }
+
+
+def _walkers(population: Population, rows: np.ndarray, axes: list[dict]) -> list[dict[str, Any]]:
+    two = next((axis["column"] for axis in axes if axis["two_classes"]), None)
+    told = [str(name) for name in population.traits if name != FLAG]
+    return [
+        {
+            "name": _name(population.traits, row, two),
+            "row": int(row),
+            "vector": rounded_vectors(population.X[row], population.layout),
+            "traits": {name: _plain(population.traits[name].iloc[row]) for name in told},
+        }
+        for row in rows
+    ]
+
+
+def _name(traits: pd.DataFrame, row: int, two: str | None) -> str:
+    """What to call a walker: its file, or its class and its number."""
+    if "file" in traits and (file := str(_plain(traits["file"].iloc[row]) or "")):
+        return file
+    said = "" if two is None else str(_plain(traits[two].iloc[row]) or "")
+    return f"{said or 'walker'} {row}"
+
+
+def _plain(value: Any) -> str | float | None:
+    """A trait's value as JSON has it; None where it is missing or not finite."""
+    if pd.isna(value) or (isinstance(value, float) and not np.isfinite(value)):
+        return None
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float):
+        return significant(value, 6)
+    return value if isinstance(value, int) and not isinstance(value, bool) else str(value)[:200]

@@ -1,0 +1,117 @@
+"""The traits that a model can change, as the page needs them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from eigenwalker.caricature import direction
+from eigenwalker.contrasts import Contrast
+from eigenwalker.page.rounding import rounded_vectors, significant
+from eigenwalker.population import Population
+from eigenwalker.trait_axes import TraitAxis, trait_axis
+
+MOST_TRAITS = 12
+_UNITS = ("years", "kg", "mm", "cm", "m", "Hz", "s")
+_TOGETHER = ("all", "structure", "dynamics")
+_KINDS = ("discriminant", "mean_difference")
+
+
+def parts_of(population: Population) -> list[str]:
+    """Return the parts of the features that a trait may be told from (J18, J31).
+
+    Examples
+    --------
+    >>> parts_of(ew.load_population())
+    ['all', 'structure', 'dynamics', 'p1', 'p2', 'p3', 'p4', 'frequency', 'phases']
+
+    """
+    return [*_TOGETHER, *(name for name in population.layout.blocks if name != "p0")]
+
+
+def model_traits(population: Population, wanted: Sequence[str] | None = None) -> list[dict]:
+    """Return each trait that can be an axis: its poles, and a step for each part and kind.
+
+    Parameters
+    ----------
+    population : Population
+    wanted : sequence of str, optional
+        Traits as `contrast` takes them; others are left out. Left out, all columns of the traits
+        that have an axis, up to 12.
+
+    Returns
+    -------
+    list of dict
+
+    Raises
+    ------
+    ValueError
+        If a trait that is wanted has no axis.
+
+    """
+    if wanted is not None:
+        return [_trait(population, trait_axis(population, name), name) for name in wanted]
+    found = []
+    for name in map(str, population.traits):
+        try:
+            found.append(_trait(population, trait_axis(population, name), name))
+        except ValueError:  # no trait of its own, or the same for everybody: no slider
+            continue
+    return found[:MOST_TRAITS]
+
+
+def _trait(population: Population, axis: TraitAxis, name: str) -> dict[str, Any]:
+    asked = axis.contrast
+    label, unit = _label_and_unit(asked)
+    told = {
+        "name": name,
+        "column": asked.trait,
+        "label": label,
+        "unit": unit,
+        "negative": asked.negative,
+        "positive": asked.positive,
+        "two_classes": asked.two_classes,
+        "n": len(asked.rows),
+        "steps": _steps(population, axis, name),
+        "told": _told(axis, population.X.shape[1]),
+    }
+    if asked.two_classes:
+        told["means"] = {
+            "negative": _mean(population, asked.rows[asked.y < 0]),
+            "positive": _mean(population, asked.rows[asked.y > 0]),
+        }
+    return told
+
+
+def _mean(population: Population, rows: np.ndarray) -> list[float]:
+    return rounded_vectors(population.X[rows].mean(axis=0), population.layout)
+
+
+def _label_and_unit(asked: Contrast) -> tuple[str, str]:
+    """What to call a trait, ``weight`` in ``kg`` of ``weight_kg``."""
+    stem, _, unit = asked.trait.rpartition("_")
+    return (stem, unit) if stem and unit in _UNITS else (asked.trait.replace("_", " "), "")
+
+
+def _steps(population: Population, whole: TraitAxis, name: str) -> dict[str, dict[str, list]]:
+    steps: dict[str, dict[str, list]] = {kind: {} for kind in _KINDS}
+    for part in parts_of(population):
+        try:
+            axis = whole if part == "all" else trait_axis(population, name, part=part)
+            for kind in _KINDS:
+                step = direction(axis.space, axis.discriminant, kind=kind)
+                steps[kind][part] = rounded_vectors(
+                    step, population.layout, columns=axis.columns, finer=1
+                )
+        except ValueError:  # a part that is the same for everybody, or tells nothing
+            continue
+    return steps
+
+
+def _told(axis: TraitAxis, n_features: int) -> dict[str, Any]:
+    """Where a walker lies along the axis, as a linear function of its features."""
+    offset = float(axis.positions(np.zeros((1, n_features)))[0])
+    gradient = axis.positions(np.eye(n_features)) - offset
+    return {"offset": significant(offset), "gradient": [significant(each) for each in gradient]}
