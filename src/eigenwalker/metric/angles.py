@@ -11,16 +11,14 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.kinematics import shortest_turn
+from eigenwalker.metric.body_frames import LEAST_MM, SIDES, body_frame
 from eigenwalker.metric.groups import BONES
 from eigenwalker.trajectories import check_trajectories
 
-SIDES = ("left", "right")
 AngleDistance = Literal["angle", "one_minus_dot", "as_printed"]
 BEND_AS_SURE_AS_REST = np.sin(np.deg2rad(15))
 """Sine of the bend of a knee or elbow at which its plane counts as much as no twist: straight
 limbs have no plane, and that of nearly straight ones is noise."""
-LEAST_MM = 1.0
-"""What is shorter has no direction."""
 
 
 class _Bone(NamedTuple):
@@ -105,7 +103,7 @@ def joint_quaternions(
     place = {str(name): clip.values[:, i] for i, name in enumerate(clip.marker.values)}
     _refuse_missing(place)
     captured = {} if from_positions else _captured(clip)
-    room = {"pelvis": _frame(place, "hip"), "trunk": _frame(place, "shoulder")}
+    room = {"pelvis": _carrying(place, "pelvis"), "trunk": _carrying(place, "trunk")}
     turns: dict[str, np.ndarray] = {}
     for name in BONES:
         bone = BONE[name]
@@ -142,7 +140,8 @@ class _Turn(NamedTuple):
         both = self.known & other.known
         if not both.any():
             return other
-        offset = (other.rotation[both].inv() * self.rotation[both]).mean()
+        apart = (other.rotation.inv() * self.rotation).as_quat()
+        offset = Rotation.from_quat(apart[both]).mean()
         return _Turn(self.rotation * offset.inv(), both)
 
     def quaternions(self) -> np.ndarray:
@@ -173,18 +172,10 @@ def _captured(clip: xr.DataArray) -> dict[str, _Turn]:
     return found
 
 
-def _frame(place: Mapping[str, np.ndarray], joint: str) -> _Turn:
-    """Return how pelvis or trunk is turned: y along hips or shoulders, z along the spine."""
-    left, right = (place[f"{side}_{joint}"] for side in SIDES)
-    y, up = left - right, place["sternum"] - place["pelvis"]
-    x = np.cross(y, up)
-    axes = np.stack([x, y, np.cross(x, y)], axis=2)
-    lengths = np.linalg.norm(axes, axis=1, keepdims=True)
-    known = (lengths > LEAST_MM).all(axis=(1, 2))
-    axes = np.divide(
-        axes, lengths, out=np.tile(np.eye(3), (len(y), 1, 1)), where=known[:, None, None]
-    )
-    return _Turn(Rotation.from_matrix(axes), known)
+def _carrying(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> _Turn:
+    axes = body_frame(place, part)
+    known = np.isfinite(axes.reshape(-1, 9)).all(axis=1)
+    return _Turn(Rotation.from_matrix(np.where(known[:, None, None], axes, np.eye(3))), known)
 
 
 def _swing_and_twist(place: Mapping[str, np.ndarray], bone: _Bone, carrier: _Turn) -> _Turn:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from eigenwalker.metric.frame_metrics import By, ComparesFrames, Shape
+from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric, Shape
 from eigenwalker.metric.groups import GROUPS, group_points
 
 SIGMOID_SCALE: Mapping[By, float] = {"positions": 1000.0, "velocities": 1000.0, "angles": 1.0}
@@ -51,7 +51,7 @@ class GroupMetric:
     Raises
     ------
     ValueError
-        If a group is unknown or a weight negative.
+        If a group is unknown, a weight negative, or what the shape needs is missing.
 
     Examples
     --------
@@ -70,6 +70,7 @@ class GroupMetric:
     constant: float = 0.0
 
     def __post_init__(self) -> None:
+        FrameMetric(self.by, self.shape, self.scale, self.exponent)  # checks them
         unknown = [group for group in self.group_weights if group not in GROUPS]
         wrong = {group: w for group, w in self.group_weights.items() if not 0 <= w < np.inf}
         if unknown or wrong or not sum(self.group_weights.values()) > 0:
@@ -146,13 +147,13 @@ def _row(by: By, shape: Shape) -> GroupMetric:
 LEE = GroupMetric(
     "lee", "angles", "squared", dict.fromkeys(("upper_arm", "forearm", "thigh", "calf"), 1.0)
 )
-"""The angles' part of Lee et al. (2002): squared turns of shoulders, elbows, hips and knees, all the
-same, nothing for neck, wrists, ankles and toes. Their pelvis and spine belong to no group of figure
-5 and are left out, as are their terms of velocity and of the root."""
+"""The angles' part of Lee et al. (2002): squared turns of shoulders, elbows, hips and knees, all
+alike, nothing for neck, wrists, ankles and toes. Their pelvis and spine belong to no group of
+figure 5 and are left out, as are their terms of velocity and of the root."""
 
 KOVAR = GroupMetric("kovar", "positions", "squared", dict.fromkeys(GROUPS, 1.0))
-"""In the manner of Kovar, Gleicher and Pighin (2002): squared distances of points that all weigh the
-same. Theirs are points on the skin, aligned in a window; here they are the groups' joints."""
+"""In the manner of Kovar, Gleicher and Pighin (2002): squared distances of points that all weigh
+the same. Theirs are points on the skin, aligned in a window; here they are the groups' joints."""
 
 PUBLISHED: Mapping[str, GroupMetric] = {
     **{f"{by}-{shape}": _row(by, shape) for by, shape in _FIGURE_5},
