@@ -109,11 +109,42 @@ def trait_axis(
     """
     asked = contrast(population, trait)
     columns = population.layout.columns(part)
-    walkers = population.X[np.ix_(asked.rows, columns)]
+    space = strongest_space(population.X[np.ix_(asked.rows, columns)], n_components)
+    return axis_within(space, population, asked, columns, kind=kind, units=units)
+
+
+def strongest_space(walkers: np.ndarray, n_components: int = N_EIGENWALKERS) -> WalkerSpace:
+    """Return the space of the first few eigenwalkers, or of all where there are fewer."""
     n_spanned = len(WalkerSpace().fit(walkers).eigenwalkers_)
-    space = WalkerSpace(n_components=min(n_components, n_spanned)).fit(walkers)
+    return WalkerSpace(n_components=min(n_components, n_spanned)).fit(walkers)
+
+
+def axis_within(
+    space: WalkerSpace,
+    population: Population,
+    asked: Contrast,
+    columns: np.ndarray,
+    *,
+    kind: Kind = "discriminant",
+    units: Units = "sd",
+) -> TraitAxis:
+    """Return the axis of a trait within a space that its walkers span already.
+
+    Parameters
+    ----------
+    space : WalkerSpace
+        Fitted on these columns of the walkers that the contrast asks for.
+    population, asked, columns, kind, units
+        As in `TraitAxis` and `trait_axis`.
+
+    Returns
+    -------
+    TraitAxis
+
+    """
+    scores = space.transform(population.X[np.ix_(asked.rows, columns)])
     discriminant = DiscriminantClassifier() if asked.two_classes else DiscriminantRegressor()
-    discriminant.fit(space.transform(walkers), asked.y)
+    discriminant.fit(scores, asked.y)
     step = np.zeros(population.X.shape[1])
     step[columns] = direction(space, discriminant, kind=kind, units=units)
     return TraitAxis(asked, step, space, discriminant, columns)

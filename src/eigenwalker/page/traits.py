@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
-from eigenwalker.caricature import direction
-from eigenwalker.contrasts import Contrast
+from eigenwalker.caricature import Kind, direction
+from eigenwalker.contrasts import Contrast, contrast
 from eigenwalker.page.rounding import rounded_vectors, significant
 from eigenwalker.population import Population
-from eigenwalker.trait_axes import TraitAxis, trait_axis
+from eigenwalker.space import WalkerSpace
+from eigenwalker.trait_axes import TraitAxis, axis_within, strongest_space
 
 MOST_TRAITS = 12
 _UNITS = ("years", "kg", "mm", "cm", "m", "Hz", "s")
 _TOGETHER = ("all", "structure", "dynamics")
-_KINDS = ("discriminant", "mean_difference")
 
 
 def parts_of(population: Population) -> list[str]:
@@ -51,19 +51,40 @@ def model_traits(population: Population, wanted: Sequence[str] | None = None) ->
         If a trait that is wanted has no axis.
 
     """
+    spaces = _Spaces(population)
     if wanted is not None:
-        return [_trait(population, trait_axis(population, name), name) for name in wanted]
+        return [_trait(spaces, name) for name in wanted]
     found = []
     for name in map(str, population.traits):
         try:
-            found.append(_trait(population, trait_axis(population, name), name))
+            found.append(_trait(spaces, name))
         except ValueError:  # no trait of its own, or the same for everybody: no slider
             continue
-    return found[:MOST_TRAITS]
+        if len(found) == MOST_TRAITS:
+            break
+    return found
 
 
-def _trait(population: Population, axis: TraitAxis, name: str) -> dict[str, Any]:
-    asked = axis.contrast
+class _Spaces:
+    """Axes of traits; traits that are known of the same walkers share a space for each part."""
+
+    def __init__(self, population: Population) -> None:
+        self.population = population
+        self._found: dict[tuple[str, bytes], WalkerSpace] = {}
+
+    def axis(self, asked: Contrast, part: str) -> TraitAxis:
+        columns = self.population.layout.columns(part)
+        key = part, asked.rows.tobytes()
+        if key not in self._found:
+            walkers = self.population.X[np.ix_(asked.rows, columns)]
+            self._found[key] = strongest_space(walkers)
+        return axis_within(self._found[key], self.population, asked, columns)
+
+
+def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
+    population = spaces.population
+    asked = contrast(population, name)
+    whole = spaces.axis(asked, "all")
     label, unit = _label_and_unit(asked)
     told = {
         "name": name,
@@ -74,8 +95,8 @@ def _trait(population: Population, axis: TraitAxis, name: str) -> dict[str, Any]
         "positive": asked.positive,
         "two_classes": asked.two_classes,
         "n": len(asked.rows),
-        "steps": _steps(population, axis, name),
-        "told": _told(axis, population.X.shape[1]),
+        "steps": _steps(spaces, asked),
+        "told": _told(whole, population.X.shape[1]),
     }
     if asked.two_classes:
         told["means"] = {
@@ -95,16 +116,15 @@ def _label_and_unit(asked: Contrast) -> tuple[str, str]:
     return (stem, unit) if stem and unit in _UNITS else (asked.trait.replace("_", " "), "")
 
 
-def _steps(population: Population, whole: TraitAxis, name: str) -> dict[str, dict[str, list]]:
-    steps: dict[str, dict[str, list]] = {kind: {} for kind in _KINDS}
-    for part in parts_of(population):
+def _steps(spaces: _Spaces, asked: Contrast) -> dict[str, dict[str, list]]:
+    steps: dict[str, dict[str, list]] = {kind: {} for kind in get_args(Kind)}
+    layout = spaces.population.layout
+    for part in parts_of(spaces.population):
         try:
-            axis = whole if part == "all" else trait_axis(population, name, part=part)
-            for kind in _KINDS:
+            axis = spaces.axis(asked, part)
+            for kind in get_args(Kind):
                 step = direction(axis.space, axis.discriminant, kind=kind)
-                steps[kind][part] = rounded_vectors(
-                    step, population.layout, columns=axis.columns, finer=1
-                )
+                steps[kind][part] = rounded_vectors(step, layout, columns=axis.columns, finer=1)
         except ValueError:  # a part that is the same for everybody, or tells nothing
             continue
     return steps
