@@ -63,5 +63,5 @@ export default defineConfig(({ mode }) => {
   const entry = MODULES[mode];
   if (entry === undefined) throw new Error(`There is nothing called ${mode} to build.`);
   const lib = { entry: inFolder(entry), formats: ["es" as const], fileName: () => `${mode}.js` };
-  return { publicDir: false, build: { ...shared, lib, rolldownOptions: { output: { codeSplitting: false } } } };
+  return { publicDir: false, build: { ...shared, lib, rolldownOptions: { output: { codeSplitting: false, minify: true } } } };
 });

@@ -2,7 +2,7 @@
 
 import type { Stimulus } from "../core/stimulus";
 import { framesOf, type Shown } from "./frame";
-import { drawMannequin } from "./mannequin";
+import { hasLimbs, type MannequinPainter } from "./mannequin";
 
 /** Width of a stick beside the diameter of a dot. */
 const STICK = 0.6;
@@ -20,8 +20,14 @@ export interface Painter {
  * What draws a stimulus on a canvas, which gets the stimulus' size.
  *
  * A pixel of the stimulus is a pixel of CSS, times `scale`; what is drawn is as fine as the screen.
+ * A stimulus of the style "mannequin" needs its painter, whose module is loaded before.
  */
-export function painterOn(canvas: HTMLCanvasElement, stimulus: Stimulus, scale = 1): Painter {
+export function painterOn(
+  canvas: HTMLCanvasElement,
+  stimulus: Stimulus,
+  scale = 1,
+  mannequin?: MannequinPainter,
+): Painter {
   const { width_px, height_px } = stimulus.display;
   const fine = scale * (window.devicePixelRatio || 1);
   fit(canvas, width_px, height_px, fine);
@@ -35,21 +41,20 @@ export function painterOn(canvas: HTMLCanvasElement, stimulus: Stimulus, scale =
     context.fillStyle = stimulus.display.background;
     context.fillRect(0, 0, width_px, height_px);
   };
+  const carved = stimulus.display.style === "mannequin";
+  if (carved && !mannequin) throw new Error("The mannequin's module was not loaded.");
   const paint = (time: number): void => {
     clear();
-    for (const shown of frameAt(time)) {
+    const all = frameAt(time);
+    if (carved) mannequin?.paint(context, all, stimulus, fine);
+    for (const shown of all) {
       context.fillStyle = context.strokeStyle = stimulus.display.colour;
       if (shown.moving.blurMm > 0) drawBlobs(context, layer, shown, stimulus);
-      else if (drawn(shown, stimulus) === "mannequin") drawMannequin(context, shown, stimulus);
-      else drawDots(context, shown, stimulus);
+      else if (!carved || !hasLimbs(shown.moving)) drawDots(context, shown, stimulus);
     }
   };
   return { paint, clear };
 }
-
-/** The style of one figure: masks and limb dots, which have no limbs, are dots. */
-const drawn = ({ moving }: Shown, { display }: Stimulus): Stimulus["display"]["style"] =>
-  moving.body.segments.length > 0 ? display.style : "dots";
 
 function fit(canvas: HTMLCanvasElement, width: number, height: number, fine: number): void {
   canvas.width = Math.round(width * fine);

@@ -39,7 +39,7 @@ export function scene(stimulus: Stimulus): Moving[] {
 const observerOf = (view: View, headingDeg: number): Axes =>
   observerAxes(view.view_deg + headingDeg, view.elevation_deg);
 
-function figureOf({ walker, trajectories, segments, pairs }: Figure): Moving {
+export function figureOf({ walker, trajectories, segments, pairs }: Figure): Moving {
   if (walker) return walking(walker, segments, pairs);
   return sampled(trajectories!, segments, pairs);
 }

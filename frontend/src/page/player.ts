@@ -1,6 +1,7 @@
 /** The stand-alone page: plays the stimulus that it holds, again and again. */
 
 import { everyFrame } from "../canvas/clock";
+import { heldMannequin, type MannequinPainter } from "../canvas/mannequin";
 import { painterOn, type Painter } from "../canvas/painter";
 import { readStimulus } from "../core/check";
 import type { Stimulus } from "../core/stimulus";
@@ -28,7 +29,7 @@ function room({ display }: Stimulus): number {
   return Math.min(1, window.innerWidth / display.width_px, Math.max(height, 1) / display.height_px);
 }
 
-function play(stimulus: Stimulus): void {
+function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
   const { duration_s, rate_hz } = stimulus.timing;
   const still = wish.get("t");
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -61,7 +62,7 @@ function play(stimulus: Stimulus): void {
   };
   const layOut = (): void => {
     const scale = room(stimulus);
-    painter = painterOn(canvas, stimulus, scale);
+    painter = painterOn(canvas, stimulus, scale, mannequin);
     describe(stimulus, scale);
     show();
   };
@@ -98,9 +99,10 @@ function describe(stimulus: Stimulus, scale: number): void {
 }
 
 /** Play what a text of JSON describes, or say why it cannot be played. */
-function playText(text: string): void {
+async function playText(text: string): Promise<void> {
   try {
-    play(readStimulus(JSON.parse(text)));
+    const stimulus = readStimulus(JSON.parse(text));
+    play(stimulus, stimulus.display.style === "mannequin" ? await heldMannequin() : undefined);
   } catch (error) {
     const trouble = find("#trouble", HTMLParagraphElement);
     trouble.textContent = error instanceof Error ? error.message : String(error);
@@ -119,11 +121,11 @@ function askForFile(): void {
     void file?.text().then((text) => {
       form.hidden = true;
       canvas.hidden = false;
-      playText(text);
+      return playText(text);
     });
   });
 }
 
 const held = find("#stimulus", HTMLScriptElement).textContent ?? "null";
 if (held.trim() === "null") askForFile();
-else playText(held);
+else void playText(held);

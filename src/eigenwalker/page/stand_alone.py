@@ -8,16 +8,21 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from eigenwalker.stimulus import Stimulus
 
-PAGE = "player.html"
+PAGE, MANNEQUIN = "player.html", "mannequin.js"
 """Built from ``frontend/`` when the package is."""
 HELD = '<script id="stimulus" type="application/json">{}</script>'
 """Where the page holds its stimulus."""
+HELD_MODULE = '<script id="mannequin" type="text/plain">{}</script>'
+"""Where it holds the module that draws the mannequin, which is run when it is asked for."""
+SCRIPTS = "script-src 'unsafe-inline'"
+"""What the page may run: what stands in it; for the mannequin, what it makes of its own text too."""
 
 
 def stand_alone_page(stimulus: Stimulus) -> str:
     """Return a page that plays a stimulus, again and again, at the rate of the screen.
 
-    It holds script, style and stimulus, and loads nothing. With ``#t=0.5`` after its address it
+    It holds script, style and stimulus, and loads nothing; for the mannequin, three.js too, which
+    makes half a megabyte of it. With ``#t=0.5`` after its address it
     stands still at that moment, with ``#bare`` it shows no controls, with ``#t=0.5&bare`` both.
 
     Parameters
@@ -46,16 +51,19 @@ def stand_alone_page(stimulus: Stimulus) -> str:
     """
     # In JSON a "<" stands in texts only, where it may be written as its number; so no text can end
     # the script element that holds it.
-    content = stimulus.to_json().replace("<", "\\u003c")
-    before, after = _player().split(HELD.format("null"))
-    return before + HELD.format(content) + after
+    content = HELD.format(stimulus.to_json().replace("<", "\\u003c"))
+    before, after = _built(PAGE).split(HELD.format("null"))
+    if stimulus.display.style == "mannequin":
+        content += HELD_MODULE.format(_built(MANNEQUIN).replace("</script", "<\\/script"))
+        before = before.replace(SCRIPTS, f"{SCRIPTS} blob:")
+    return before + content + after
 
 
-def _player() -> str:
+def _built(name: str) -> str:
     try:
-        return files("eigenwalker.page").joinpath(PAGE).read_text(encoding="utf-8")
+        return files("eigenwalker.page").joinpath(name).read_text(encoding="utf-8")
     except FileNotFoundError:
         raise FileNotFoundError(
-            f"{PAGE} is not there: the package was installed without its built page. In the "
+            f"{name} is not there: the package was installed without its built page. In the "
             "project's folder run 'npm ci && npm run build' in frontend/, or install it again."
         ) from None

@@ -1,0 +1,85 @@
+/** The mannequin without WebGL: outlines of its hulls, shaded across, the farther drawn first. */
+
+import { HULL } from "./hulls";
+import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
+
+/** How bright a hull is across its width, from where the light comes to where it does not reach. */
+const SHADES = [
+  [0, 0.72],
+  [0.3, 0.95],
+  [0.65, 0.66],
+  [1, 0.34],
+] as const;
+
+interface Ball {
+  readonly x: number;
+  readonly y: number;
+  readonly radius: number;
+  /** Towards the observer, in mm. */
+  readonly near: number;
+}
+
+export const drawFlat: DrawHulls = (context, hulls, look) => {
+  const { numbers } = hulls;
+  const colour = litColour(look.colour);
+  const pieces = Array.from({ length: hulls.count }, (_, i) => ({
+    one: ballOf(numbers, HULL * i, look),
+    other: ballOf(numbers, HULL * i + 4, look),
+    tone: numbers[HULL * i + 8]!,
+  }));
+  pieces.sort((a, b) => a.one.near + a.other.near - b.one.near - b.other.near);
+  for (const { one, other, tone } of pieces) {
+    const larger = one.radius >= other.radius ? one : other;
+    outline(context, one, other);
+    context.fillStyle = shadeOf(context, larger, one, other, colour.map((part) => part * tone));
+    context.fill();
+  }
+};
+
+function ballOf(numbers: Float32Array, at: number, look: Look): Ball {
+  const [right, up, near, radius] = numbers.subarray(at, at + 4) as unknown as number[];
+  const eye = look.eye_distance_mm;
+  const scale = look.px_per_mm * (eye === null ? 1 : eye / (eye - near!));
+  return {
+    x: look.width_px / 2 + scale * right!,
+    y: look.height_px / 2 - scale * up!,
+    radius: scale * radius!,
+    near: near!,
+  };
+}
+
+/** Two discs and what lies between them. */
+function outline(context: CanvasRenderingContext2D, one: Ball, other: Ball): void {
+  const along = Math.atan2(other.y - one.y, other.x - one.x);
+  const apart = Math.hypot(other.x - one.x, other.y - one.y);
+  context.beginPath();
+  if (apart <= Math.abs(one.radius - other.radius)) {
+    const ball = one.radius >= other.radius ? one : other;
+    context.arc(ball.x, ball.y, ball.radius, 0, 2 * Math.PI);
+    return;
+  }
+  const lean = Math.acos((one.radius - other.radius) / apart);
+  context.arc(one.x, one.y, one.radius, along + lean, along - lean);
+  context.arc(other.x, other.y, other.radius, along - lean, along + lean);
+  context.closePath();
+}
+
+/** The shade runs across a hull, away from the light. */
+function shadeOf(
+  context: CanvasRenderingContext2D,
+  { radius }: Ball,
+  one: Ball,
+  other: Ball,
+  colour: readonly number[],
+): CanvasGradient {
+  const [x, y] = [(one.x + other.x) / 2, (one.y + other.y) / 2];
+  const along = Math.atan2(other.y - one.y, other.x - one.x);
+  const across = one.x === other.x && one.y === other.y ? Math.atan2(LIGHT[1], -LIGHT[0]) : along + Math.PI / 2;
+  const [dx, dy] = [Math.cos(across), Math.sin(across)];
+  const away = LIGHT[0] * dx - LIGHT[1] * dy <= 0 ? radius : -radius;
+  const shade = context.createLinearGradient(x - away * dx, y - away * dy, x + away * dx, y + away * dy);
+  for (const [share, light] of SHADES) {
+    shade.addColorStop(share, `rgb(${colour.map((part) => Math.round(255 * light * part)).join(" ")})`);
+  }
+  return shade;
+}
