@@ -1,0 +1,1 @@
+"""How different two walks are: maps, registration, loops and distances (Pražák et al. 2010)."""

@@ -1,0 +1,323 @@
+"""Motion maps: how different every frame of one clip is from every frame of another (P3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.metric.alignment import align_windows, aligned_map
+from eigenwalker.metric.frame_metrics import (
+    POSITIONS,
+    By,
+    ComparesFrames,
+    shape_parameter,
+)
+from eigenwalker.metric.kernels import diagonal_means, point_map
+from eigenwalker.trajectories import check_trajectories, sampling_rate
+
+MOST_CELLS = 60_000_000
+"""Cells of the largest map: half a gigabyte. Two clips of a minute at 120 Hz stay below."""
+
+_SAME_RATE = 0.01
+"""Relative difference of frame rates up to which windows of as many frames last as long."""
+
+_UNITS = {"positions": "mm", "velocities": "mm/s", "angles": "rad"}
+
+
+def motion_map(
+    a: xr.DataArray,
+    b: xr.DataArray | None = None,
+    *,
+    metric: ComparesFrames = POSITIONS,
+    window_s: float = 0.0,
+    align: bool = False,
+) -> xr.DataArray:
+    """Return how different every frame of one clip is from every frame of another.
+
+    The motion map of Pražák et al. (2010, fig. 1 and 6): ``D[i, j] = sum_k w_k F(d_k)``, with d_k
+    the distance of point k in frame i of one clip from the same point in frame j of the other.
+
+    Parameters
+    ----------
+    a : DataArray of shape (time, marker, axis)
+        Trajectories. Points are compared that both clips have.
+    b : DataArray of shape (time, marker, axis), optional
+        The other clip; left out, the clip is compared to itself.
+    metric : FrameMetric
+        What is compared and how; left out, the mean Euclidean distance of positions in mm, all
+        points weighing the same.
+    window_s : float
+        Seconds over which corresponding frames are averaged, fewer at the ends of the clips (P4).
+        Both clips must have the same frame rate then.
+    align : bool
+        Whether the second clip is turned about the vertical and moved along the floor, for every
+        cell on its own, so that the points in the window lie nearest to those of the first.
+
+    Returns
+    -------
+    DataArray of shape (time_a, time_b)
+        In the unit of F(d). A point that is missing in either frame is left out and the others
+        weigh more; a cell is NaN where all are missing.
+
+    Raises
+    ------
+    ValueError
+        If the clips have no points in common, or lack what the metric asks for.
+
+    Examples
+    --------
+    A foot that moves at 1 m/s, seen in two clips half a metre apart:
+
+    >>> foot = [[[0, 0, 0]], [[10, 0, 0]], [[20, 0, 0.0]]]
+    >>> a = ew.label_trajectories(foot, markers=["foot"], rate_hz=100)
+    >>> motion_map(a, a + np.array([500, 0, 0])).values.tolist()
+    [[500.0, 510.0, 520.0], [490.0, 500.0, 510.0], [480.0, 490.0, 500.0]]
+    >>> motion_map(a, a + np.array([500, 0, 0]), align=True).values.max()
+    np.float64(0.0)
+
+    """
+    clips = _both(a, b, metric)
+    half = _half_window(clips.a, clips.b, window_s)
+    values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
+    return xr.DataArray(
+        values,
+        dims=("time_a", "time_b"),
+        coords=_clocks(clips.a, clips.b),
+        name="distance",
+        attrs=_about(metric),
+    )
+
+
+def motion_maps(
+    a: xr.DataArray,
+    b: xr.DataArray | None = None,
+    *,
+    groups: Mapping[str, Sequence[str]],
+    metric: ComparesFrames = POSITIONS,
+    window_s: float = 0.0,
+    align: bool = False,
+) -> xr.DataArray:
+    """Return a motion map for each group of points, such as thighs or forearms.
+
+    Parameters
+    ----------
+    a, b, metric, window_s, align
+        As in `motion_map`. Of the metric only what is compared and its shape count: points of one
+        group weigh the same.
+    groups : mapping of str to sequence of str
+        The points of each group. A group of which the clips have none is left out.
+
+    Returns
+    -------
+    DataArray of shape (group, time_a, time_b)
+
+    Raises
+    ------
+    ValueError
+        If no group has points that both clips have.
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1, duration_s=1, rate_hz=30)
+    >>> groups = {"head": ["head"], "wrists": ["left_wrist", "right_wrist"], "toes": ["left_toe"]}
+    >>> maps = motion_maps(walk, groups=groups)
+    >>> maps.group.values.tolist(), maps.shape
+    (['head', 'wrists'], (2, 30, 30))
+
+    """
+    clips = _both(a, b, metric)
+    half = _half_window(clips.a, clips.b, window_s)
+    present = {name: set(points) & set(clips.names) for name, points in groups.items()}
+    present = {name: points for name, points in present.items() if points}
+    if not present:
+        raise ValueError(
+            f"No group has points that both clips have. The groups are {dict(groups)}, the points "
+            f"of both clips {clips.names}."
+        )
+    maps = [
+        clips.map_of(
+            np.array([(name in points) / len(points) for name in clips.names]), metric, half, align
+        )
+        for points in present.values()
+    ]
+    return xr.DataArray(
+        np.stack(maps),
+        dims=("group", "time_a", "time_b"),
+        coords={"group": list(present), **_clocks(clips.a, clips.b)},
+        name="distance",
+        attrs=_about(metric),
+    )
+
+
+def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.DataArray:
+    """Return what of a clip is compared frame by frame.
+
+    Parameters
+    ----------
+    clip : DataArray of shape (time, marker, axis)
+        Trajectories.
+    by : {"positions", "velocities", "angles"}
+        Velocities are central differences; angles are the rotations of joints.
+    periodic : bool
+        Whether the first frame follows the last, as in a cycle.
+
+    Returns
+    -------
+    DataArray of shape (time, point, part)
+        Three parts in mm or mm/s, or four of a unit quaternion.
+
+    Examples
+    --------
+    >>> foot = ew.label_trajectories([[[0, 0, 0]], [[10, 0, 0]]], markers=["foot"], rate_hz=100)
+    >>> frame_points(foot, "velocities").values[:, 0, 0].round(6).tolist()
+    [1000.0, 1000.0]
+
+    """
+    if by == "angles":
+        from eigenwalker.metric.angles import joint_quaternions
+
+        points = joint_quaternions(clip)
+        return points.rename(dict(zip(points.dims, ("time", "point", "part"), strict=True)))
+    values = clip.values
+    if by == "velocities":
+        values = _velocities(values, sampling_rate(clip), periodic)
+    return xr.DataArray(
+        values,
+        dims=("time", "point", "part"),
+        coords={"time": clip.time.values, "point": clip.marker.values},
+        attrs={"units": _UNITS[by]},
+    )
+
+
+def _velocities(values: np.ndarray, rate_hz: float, periodic: bool) -> np.ndarray:
+    if periodic:
+        return (np.roll(values, -1, axis=0) - np.roll(values, 1, axis=0)) * rate_hz / 2
+    return np.gradient(values, 1 / rate_hz, axis=0)
+
+
+class _Both(NamedTuple):
+    """Two clips, and as arrays of shape (time, point, part) the points that both have."""
+
+    a: xr.DataArray
+    b: xr.DataArray
+    names: list[str]
+    points_a: np.ndarray
+    points_b: np.ndarray
+
+    def map_of(
+        self, weights: np.ndarray, metric: ComparesFrames, half: int, align: bool
+    ) -> np.ndarray:
+        form = {"shape": metric.shape, "parameter": shape_parameter(metric)}
+        if align and metric.by != "angles":
+            a, b = common_positions(self.a, self.b)
+            alignment = align_windows(a, b, half)
+            kept = weights > 0
+            a, b = _complete(self.points_a[:, kept]), _complete(self.points_b[:, kept])
+            moved = metric.by == "positions"
+            cells = aligned_map(a, b, alignment, weights[kept], **form, moved=moved)
+        else:
+            cells = point_map(self.points_a, self.points_b, weights, **form)
+        return diagonal_means(cells, half) if half else cells
+
+
+def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames) -> _Both:
+    a = check_trajectories(a)
+    b = a if b is None else check_trajectories(b)
+    n_cells = a.sizes["time"] * b.sizes["time"]
+    if not n_cells:
+        raise ValueError("A clip without frames has no motion map.")
+    if n_cells > MOST_CELLS:
+        raise ValueError(
+            f"A map of {a.sizes['time']} x {b.sizes['time']} frames would hold {n_cells:.2g} "
+            f"cells, more than {MOST_CELLS:.2g}. Take parts of the clips, or every n-th frame."
+        )
+    points_a = frame_points(a, metric.by)
+    points_b = points_a if b is a else frame_points(b, metric.by)
+    names = common_names(points_a.point.values, points_b.point.values)
+    values_a = np.ascontiguousarray(points_a.sel(point=names).values)
+    values_b = values_a if b is a else np.ascontiguousarray(points_b.sel(point=names).values)
+    return _Both(a, b, names, values_a, values_b)
+
+
+def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
+    """Return the names in both, sorted, so that neither order matters.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+
+    """
+    names = sorted({str(name) for name in first} & {str(name) for name in second})
+    if not names:
+        raise ValueError(
+            f"The clips have no points in common: {_few(first)} beside {_few(second)}. "
+            "Bring both to the same joints with virtual_markers()."
+        )
+    return names
+
+
+def _few(names: Sequence[str], most: int = 6) -> str:
+    told = ", ".join(str(name) for name in list(names)[:most])
+    return f"[{told}{', ...' if len(names) > most else ''}]"
+
+
+def common_positions(a: xr.DataArray, b: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions of the markers that are there in all frames of both clips.
+
+    Raises
+    ------
+    ValueError
+        If there are none.
+
+    """
+    names = common_names(a.marker.values, b.marker.values)
+    values_a, values_b = a.sel(marker=names).values, b.sel(marker=names).values
+    seen = [np.isfinite(values).all(axis=(0, 2)) for values in (values_a, values_b)]
+    seen = seen[0] & seen[1]
+    if not seen.any():
+        raise ValueError(
+            "No marker was seen in all frames of both clips, so they cannot be aligned. Fill gaps "
+            "first, with in_place() or mend()."
+        )
+    return values_a[:, seen], values_b[:, seen]
+
+
+def _complete(values: np.ndarray) -> np.ndarray:
+    if np.isnan(values).any():
+        raise ValueError(
+            "Samples are missing, which an aligned map needs; fill gaps first with in_place(), or "
+            "leave the markers out."
+        )
+    return values
+
+
+def _half_window(a: xr.DataArray, b: xr.DataArray, window_s: float) -> int:
+    if not 0 <= window_s < np.inf:
+        raise ValueError(f"window_s={window_s}; give seconds, 0 or more.")
+    if window_s == 0:
+        return 0
+    rates = sampling_rate(a), sampling_rate(b)
+    if abs(rates[0] / rates[1] - 1) > _SAME_RATE:
+        raise ValueError(
+            f"The clips have {rates[0]:.6g} and {rates[1]:.6g} frames a second, and a window of "
+            "frames needs one rate. Resample one, for instance with trajectories.interp(time=...)."
+        )
+    return round(window_s * rates[0] / 2)
+
+
+def _clocks(a: xr.DataArray, b: xr.DataArray) -> dict[str, tuple[str, np.ndarray]]:
+    return {"time_a": ("time_a", a.time.values), "time_b": ("time_b", b.time.values)}
+
+
+def _about(metric: ComparesFrames) -> dict[str, str]:
+    unit = _UNITS[metric.by]
+    power = {"absolute": unit, "squared": f"({unit})^2", "sigmoid": "1"}
+    return {
+        "units": power.get(metric.shape, f"({unit})^{metric.exponent}"),
+        "by": metric.by,
+        "shape": metric.shape,
+    }
