@@ -1,2 +1,244 @@
-export {};
-console.log("x");
+/** The page: reads the model that it holds and puts its parts together. */
+
+import { addressOf, stateOf } from "../model/address";
+import { captionOf } from "../model/captions";
+import type { Model } from "../model/model";
+import { readModel } from "../model/read";
+import { Stage } from "../stage/stage";
+import { classifier } from "./classifier";
+import { changes, plausible } from "./changes";
+import { cloud } from "./cloud";
+import { about, peopleIn } from "./about";
+import { eigenwalkerSliders } from "./eigenwalkers";
+import { find, icon, make, put } from "./element";
+import { takeFiles } from "./files";
+import { pageKeys, stageKeys } from "./keyboard";
+import { label } from "./labels";
+import { look, transforms } from "./look";
+import { bias, strengths } from "./moler";
+import { Notices } from "./notices";
+import { openFile } from "./opening";
+import { scenes } from "./scenes";
+import { section, words, type Fold } from "./section";
+import { Session, type Now, type Part } from "./session";
+import { share } from "./share";
+import { theme } from "./theme";
+import { mainSlider, otherTraits } from "./traits";
+import { transport } from "./transport";
+import { who } from "./who";
+
+/** The address follows after so long a rest. */
+const REST_MS = 250;
+/** There is room for a panel on the left as well. */
+const WIDE = window.matchMedia("(min-width: 100rem)");
+
+const notices = new Notices();
+let session: Session | null = null;
+/** Ends what belongs to the session shown. */
+let leave = (): void => {};
+
+const canvas = find("#stage canvas", HTMLCanvasElement);
+const host = find("#stage", HTMLDivElement);
+const choose = takeFiles((files) => void take(files));
+
+/** Open files one after another; what cannot be read is said, and all else stays. */
+async function take(files: readonly File[]): Promise<void> {
+  for (const file of files) {
+    try {
+      const opened = await openFile(file, session?.model ?? null);
+      if (opened.kind === "model") {
+        begin(opened.model);
+        notices.news(`${file.name}: ${peopleIn(opened.model)}`);
+      } else {
+        session?.take(opened.own);
+        notices.news([`${opened.own.name} walks.`, ...opened.told].join(" "));
+      }
+    } catch (error) {
+      notices.caught(error);
+    }
+  }
+}
+
+/** Show a model, from its start or as the address says. */
+function begin(model: Model, address = ""): void {
+  leave();
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const start = stateOf(address, model);
+  const dark = session?.state.dark ?? start.dark;
+  const now = new Session(model, { ...start, dark, playing: start.playing && !calm });
+  session = now;
+  document.title = model.title;
+  find("h1", HTMLHeadingElement).textContent = model.title;
+  find("#people", HTMLParagraphElement).textContent = peopleIn(model);
+  const parts = [stagePart(now), ...furnish(now), addressPart(now)];
+  now.listen((moment) => parts.forEach((part) => part.show(moment)));
+  now.tell();
+}
+
+/** The walker itself, and all that is written on the stage. */
+function stagePart(session: Session): Pick<Part, "show"> {
+  const tools = transport(session);
+  const hint = find("#hint", HTMLParagraphElement);
+  const labels = find("#labels", HTMLDivElement);
+  const caption = find("#caption", HTMLParagraphElement);
+  const stage = new Stage(canvas, {
+    turned: (azimuth_deg, elevation_deg) => {
+      hint.classList.add("done");
+      session.change({ azimuth_deg, elevation_deg });
+    },
+    ticked: (cycle) => tools.tick(cycle),
+    picked: (number) => {
+      const known = last?.cast[number]?.known ?? null;
+      if (known !== null) session.change({ from: known, scene: "one" });
+    },
+  });
+  let last: Now | undefined;
+  const name = (): void => {
+    if (last) label(labels, last, host.clientWidth, host.clientHeight);
+  };
+  const watch = new ResizeObserver(name);
+  watch.observe(host);
+  const keys = stageKeys(session);
+  host.addEventListener("keydown", keys);
+  find("#tools", HTMLDivElement).replaceChildren(tools.element);
+  put(host, { tabindex: 0, role: "slider", "aria-label": "Walker, seen from", "aria-valuemin": -180, "aria-valuemax": 180 });
+  let saying = 0;
+  leave = () => {
+    stage.remove();
+    watch.disconnect();
+    host.removeEventListener("keydown", keys);
+    session.end();
+  };
+  return {
+    show(now) {
+      last = now;
+      stage.show(now.model, now.cast, now.state);
+      tools.show(now);
+      name();
+      const degrees = Math.round(now.state.azimuth_deg);
+      put(host, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
+      clearTimeout(saying);
+      saying = window.setTimeout(() => {
+        const said = captionOf(now.model, now.state, now.own);
+        if (caption.textContent !== said) caption.textContent = said;
+      }, 1200);
+    },
+  };
+}
+
+/** Controls and plots, in their places. */
+function furnish(session: Session): Pick<Part, "show">[] {
+  const hero = mainSlider(session);
+  find("#hero", HTMLDivElement).replaceChildren(hero.element);
+  const corner = cornerOf(session);
+  find("#corner", HTMLDivElement).replaceChildren(corner.element);
+  const insight: Fold[] = [
+    section("What changes", [plausible(session), changes(session)], true),
+    section("Among real walkers", [cloud(session)], WIDE.matches),
+  ];
+  const others = otherTraits(session);
+  const controls: Fold[] = [
+    ...(others.element.childElementCount > 0 ? [section("More traits", [others], true)] : []),
+    section("Who walks", [who(session, choose)]),
+    section("Several at once", [scenes(session)]),
+    section("Body or motion", [classifier(session)]),
+    section("Stride, sway, hop, bounce", [strengths(session), bias(session)]),
+    section("Eigenwalkers", [words("What varies most from walker to walker, whatever it means."), eigenwalkerSliders(session)]),
+    section("Look", [look(session), transforms(session)]),
+    section("Keep and share", [share(session, notices)]),
+  ];
+  place(insight, controls);
+  const move = (): void => place(insight, controls);
+  WIDE.addEventListener("change", move);
+  const before = leave;
+  leave = () => {
+    WIDE.removeEventListener("change", move);
+    before();
+  };
+  return [hero, corner, ...insight, ...controls];
+}
+
+/** What changes stands on the left where there is room, else after the traits. */
+function place(insight: readonly Fold[], controls: readonly Fold[]): void {
+  const left = find("#insight", HTMLElement);
+  const right = find("#panel", HTMLElement);
+  const said = about(session!.model);
+  const [first, ...others] = controls.map(({ element }) => element);
+  const plots = insight.map(({ element }) => element);
+  left.hidden = !WIDE.matches;
+  left.replaceChildren(...(WIDE.matches ? plots : []));
+  right.replaceChildren(first!, ...(WIDE.matches ? [] : plots), ...others, said);
+}
+
+/** Open, undo, all as it was, dark or light. */
+function cornerOf(session: Session): Part {
+  const act = (name: "undo" | "back" | "open", words: string, does: () => void): HTMLButtonElement => {
+    const button = make("button", { type: "button", class: "quiet", "aria-label": words, title: words }, icon(name));
+    button.addEventListener("click", does);
+    return button;
+  };
+  const undo = act("undo", "Undo", () => session.undo());
+  const switchTheme = theme(session);
+  return {
+    element: make("div", { class: "row" },
+      act("open", "Open a file", choose),
+      undo,
+      act("back", "Reset all", () => session.reset()),
+      switchTheme.element,
+    ),
+    show(now) {
+      undo.disabled = !session.canUndo;
+      switchTheme.show(now);
+    },
+  };
+}
+
+/** The address tells what is shown, a moment later. */
+function addressPart(session: Session): Pick<Part, "show"> {
+  let timer = 0;
+  return {
+    show({ state, model }) {
+      clearTimeout(timer);
+      timer = window.setTimeout(() => {
+        const address = addressOf(state, model);
+        const here = location.pathname + location.search;
+        if (session === current()) history.replaceState(null, "", address ? `#${address}` : here);
+      }, REST_MS);
+    },
+  };
+}
+
+const current = (): Session | null => session;
+
+/** The model that the page holds; null where it holds none. */
+function heldModel(): Model | null {
+  const held = find("#model", HTMLScriptElement).textContent ?? "null";
+  const content: unknown = JSON.parse(held);
+  return content === null ? null : readModel(content);
+}
+
+function start(): void {
+  find("#notices", HTMLDivElement).append(notices.element);
+  document.addEventListener("keydown", (event) => session && pageKeys(session)(event));
+  window.addEventListener("hashchange", () => {
+    if (session) session.change(stateOf(location.hash.slice(1), session.model));
+  });
+  try {
+    const model = heldModel();
+    if (model) begin(model, location.hash.slice(1));
+    else {
+      notices.trouble("This page holds no walkers yet: drop a model on it, or choose one.");
+      find("#corner", HTMLDivElement).append(askForFile());
+    }
+  } catch (error) {
+    notices.caught(error);
+  }
+}
+
+function askForFile(): HTMLButtonElement {
+  const button = make("button", { type: "button" }, "Choose a file");
+  button.addEventListener("click", choose);
+  return button;
+}
+
+start();

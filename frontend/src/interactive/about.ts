@@ -1,0 +1,29 @@
+/** What the page is about, and whose walks these are. */
+
+import type { Model } from "../model/model";
+import { make } from "./element";
+
+/** One line: how many walkers, and whether they exist. */
+export function peopleIn({ n_walkers, simulated }: Model): string {
+  const people = `${n_walkers} ${n_walkers === 1 ? "walker" : "walkers"}`;
+  return simulated ? `${people} who do not exist: simulated` : `${people}, captured`;
+}
+
+/** The ideas in four sentences, and where the model comes from. */
+export function about(model: Model): HTMLElement {
+  const facts = [
+    ["walkers", String(model.n_walkers)],
+    ...(model.n_flagged > 0 ? [["left out", `${model.n_flagged}, doubtful captures`]] : []),
+    ...(model.source ? [["file", model.source]] : []),
+    ...Object.entries(model.provenance).filter(([name]) => name !== "recipe"),
+    ["program", model.program],
+  ] as const;
+  return make("details", { class: "section" },
+    make("summary", {}, make("h2", {}, "About")),
+    make("div", { class: "body" },
+      make("p", {}, "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that ride on sines; so walks can be added, averaged and pushed past the end."),
+      make("p", { class: "note" }, "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait."),
+      make("dl", { class: "facts" }, ...facts.flatMap(([term, said]) => [make("dt", {}, term!), make("dd", {}, said!)])),
+    ),
+  );
+}

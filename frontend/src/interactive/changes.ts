@@ -1,0 +1,141 @@
+/** What changes in the body: numbers with small plots, and how plausible the walker is. */
+
+import { MEASURES, measuresOf, type MeasureName } from "../model/measures";
+import { vectorOf } from "../model/mix";
+import type { Model, Trait } from "../model/model";
+import { placeOf, type Place } from "../model/place";
+import { initialState, RANGES, type State } from "../model/state";
+import { walkerOf } from "../model/walker";
+import { draw, make, put } from "./element";
+import type { Now, Part, Session } from "./session";
+import { capital, classOf, mainTrait, many } from "./words";
+
+const WIDTH = 160;
+const HEIGHT = 56;
+/** Between the greatest and least of the plot and its edges. */
+const MARGIN = 5;
+/** Points of the curve from one end of the slider to the other. */
+const N_ALONG = 9;
+
+type Measures = Readonly<Record<MeasureName, number>>;
+
+const at = (vector: ArrayLike<number>, model: Model): Measures =>
+  measuresOf(walkerOf(model, Float64Array.from(vector)));
+
+/**
+ * One small plot for each measure: across, the main trait from end to end; up, the measure. Points
+ * are people, the line is where the main slider leads, the dot is the walker now.
+ */
+export function changes(session: Session): Part {
+  const { model } = session;
+  const trait = mainTrait(model);
+  const people = model.walkers.map(({ vector }) => ({
+    measures: at(vector, model),
+    place: placeOf(model, Float64Array.from(vector)),
+  }));
+  const usual = along(model, initialState(model), null, trait);
+  const plots = MEASURES.map((measure) => {
+    const values = [...people.map(({ measures }) => measures[measure.name]), ...usual.map((of) => of[measure.name])];
+    return plot(model, trait, measure, people, [Math.min(...values), Math.max(...values)]);
+  });
+  return {
+    element: make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
+    show(now) {
+      const line = along(model, now.state, now.own, trait);
+      for (const one of plots) one.show(now, line);
+    },
+  };
+}
+
+/** The measures from one end of the main slider to the other, all else as it is. */
+function along(model: Model, state: State, own: Now["own"], trait: Trait | undefined): Measures[] {
+  const [low, high] = RANGES.trait;
+  return Array.from({ length: trait ? N_ALONG : 0 }, (_, i) => {
+    const steps = low + ((high - low) * i) / (N_ALONG - 1);
+    const traits = { ...state.traits, [trait!.name]: steps };
+    return at(vectorOf(model, { ...state, traits }, own), model);
+  });
+}
+
+interface Person {
+  readonly measures: Measures;
+  readonly place: Place;
+}
+
+function plot(
+  model: Model,
+  trait: Trait | undefined,
+  { name, label, unit, digits }: (typeof MEASURES)[number],
+  people: readonly Person[],
+  [least, greatest]: readonly [number, number],
+) {
+  const [low, high] = RANGES.trait;
+  const over = greatest - least || 1;
+  const inside = (place: number, most: number): number => Math.min(Math.max(place, MARGIN), most - MARGIN);
+  const x = (sd: number): number => inside((WIDTH * (sd - low)) / (high - low), WIDTH);
+  const y = (value: number): number =>
+    inside(HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - least)) / over, HEIGHT);
+  const where = (place: Place): number => x(trait ? (place.positions[trait.name] ?? 0) : 0);
+  const dots = people.map(({ measures, place }, i) => {
+    return draw("circle", { class: `person ${classOf(model, i)}`, r: 1.4, cx: where(place).toFixed(1), cy: y(measures[name]).toFixed(1) });
+  });
+  const line = draw("polyline", { class: "trail" });
+  const here = draw("circle", { class: "now", r: 3.6 });
+  const said = make("dd", {});
+  const average = at(model.average, model)[name];
+  const element = make("div", { class: "measure" },
+    make("dt", {}, capital(label)),
+    said,
+    make("dd", { class: "plot", "aria-hidden": "true" },
+      draw("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}` }, ...dots, line, here)),
+  );
+  const show = (now: Now, measures: readonly Measures[]): void => {
+    const value = now.measures[name];
+    said.replaceChildren(make("b", {}, value.toFixed(digits)), ` ${unit}`, make("small", {}, difference(value - average, digits)));
+    const curve = measures.map((of, i) => `${x(low + ((high - low) * i) / (N_ALONG - 1)).toFixed(1)},${y(of[name]).toFixed(1)}`);
+    put(line, { points: curve.join(" ") });
+    put(here, { cx: where(now.place).toFixed(1), cy: y(value).toFixed(1) });
+  };
+  return { element, show };
+}
+
+function difference(by: number, digits: number): string {
+  const size = Math.abs(by).toFixed(digits);
+  if (Number(size) === 0) return "average";
+  return `${by < 0 ? "\u2212" : "+"}${size}`;
+}
+
+/** How far from anyone the walker is, in a sentence and on a bar. */
+export function plausible(session: Session): Part {
+  const bar = make("div", { class: "far", "aria-hidden": "true" }, make("i"));
+  const words = make("p", {});
+  const trait = mainTrait(session.model);
+  const legend = make("p", { class: "note" },
+    trait?.two_classes
+      ? `Small points: ${many(trait.negative)} (warm) and ${many(trait.positive)} (cool). Line: where the large slider leads.`
+      : "Small points: people. Line: where the large slider leads.");
+  return {
+    element: make("div", { class: "plausible" }, words, bar, legend),
+    show({ place }) {
+      words.textContent = howPlausible(place);
+      bar.style.setProperty("--now", `${Math.min(place.distance / FARTHEST, 1) * 100}%`);
+      bar.style.setProperty("--real", `${(largest(session.model) / FARTHEST) * 100}%`);
+    },
+  };
+}
+
+/** Right end of the bar, in usual distances. */
+const FARTHEST = 6;
+
+/** The farthest of the population, in usual distances. */
+const largest = ({ spread }: Model): number => Math.max(...spread.distances);
+
+export function howPlausible({ distance, percentile }: Place): string {
+  const times = distance.toFixed(1);
+  if (distance < 0.05) return "Nobody and everybody: the average walker.";
+  if (percentile < 1) return "Nearer to the average than any real walker.";
+  if (percentile < 100) return `Plausible: of the real walkers, ${Math.round(percentile)} % are nearer to the average.`;
+  if (distance < 2) return `Rare: ${times} times as far from the average as people usually are.`;
+  if (distance < 4) return `A caricature: ${times} times as far from the average as people usually are.`;
+  return `No human walks so: ${times} times as far from the average as people usually are.`;
+}

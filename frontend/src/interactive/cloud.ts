@@ -1,0 +1,243 @@
+/** The population as a cloud of points along two axes; the walker now made moves through it. */
+
+import { vectorOf } from "../model/mix";
+import type { Model, Numbers } from "../model/model";
+import { placeOf, positionsInCloud, type Place } from "../model/place";
+import { RANGES } from "../model/state";
+import { pick } from "./choice";
+import { draw, freshId, make, put } from "./element";
+import type { Now, Part, Session } from "./session";
+import { capital, classOf, ends, mainTrait, many } from "./words";
+
+const WIDTH = 360;
+const HEIGHT = 300;
+/** Standard deviations from the middle to each edge. */
+const REACH = 6.6;
+/** Points that can be reached have their circles; of the rest one path is drawn. */
+const RADIUS = 3.4;
+/** A click within this distance of a point means the point. */
+const NEAR = 24;
+
+interface Axis {
+  readonly label: string;
+  readonly low: string;
+  readonly high: string;
+  readonly trait: string | null;
+  /** Of each point of the cloud. */
+  readonly points: Numbers;
+  at(place: Place): number;
+}
+
+interface Point {
+  readonly walker: number;
+  readonly cloud: number;
+  readonly circle: SVGCircleElement;
+  x: number;
+  y: number;
+}
+
+const across = (sd: number): number => WIDTH / 2 + (sd / REACH) * (WIDTH / 2);
+const down = (sd: number): number => HEIGHT / 2 - (sd / REACH) * (HEIGHT / 2);
+
+export function cloud(session: Session): Part {
+  const { model } = session;
+  const axes = axesOf(model);
+  let [x, y] = [axes[0]!, axes[Math.min(axes.length - 1, model.traits.length)]!];
+  const points = pointsOf(model);
+  const rest = draw("path", { class: "rest" });
+  const trail = draw("line", { class: "trail" });
+  const cross = draw("g", { class: "here" }, draw("circle", { r: 9, class: "halo" }), draw("circle", { r: 5 }));
+  const names = [draw("text"), draw("text"), draw("text"), draw("text")];
+  const chart = draw("svg",
+    {
+      viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "listbox", tabindex: 0, class: "cloud",
+      "aria-label": "Walkers of the population. Arrow keys go to the next one, Enter lets it walk.",
+    },
+    ...grid(), rest, trail, ...names, ...points.map(({ circle }) => circle), cross,
+  );
+  const said = make("p", { class: "note", "aria-hidden": "true" });
+  let active = -1;
+  let last: Now | undefined;
+
+  const activate = (number: number): void => {
+    active = number;
+    points.forEach(({ circle }, i) => circle.classList.toggle("active", i === number));
+    const point = points[number];
+    if (point) chart.setAttribute("aria-activedescendant", point.circle.id);
+    else chart.removeAttribute("aria-activedescendant");
+    said.textContent = point ? model.walkers[point.walker]!.name : usually(model);
+  };
+  const walk = (number: number): void => {
+    const point = points[number];
+    if (!point) return;
+    activate(number);
+    session.change({ from: point.walker, scene: "one", traits: {}, eigenwalkers: model.eigenwalkers.map(() => 0), bias: null });
+  };
+  const lay = (): void => {
+    points.forEach((point) => {
+      point.x = across(held(x.points[point.cloud]!));
+      point.y = down(held(y.points[point.cloud]!));
+      put(point.circle, { cx: point.x.toFixed(1), cy: point.y.toFixed(1) });
+    });
+    put(rest, { d: restOf(model, x, y) });
+    label(names, x, y);
+    if (last) move(last);
+  };
+  const move = (now: Now): void => {
+    last = now;
+    const [h, v] = [across(held(x.at(now.place))), down(held(y.at(now.place)))];
+    cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
+    put(trail, trailOf(now, x, y));
+    points.forEach(({ circle, walker }) => put(circle, { "aria-selected": String(now.state.from === walker) }));
+  };
+  const choose = (name: string, first: boolean) => {
+    const picked = pick(name, axes.map((value) => ({ value, label: value.label })), (axis) => {
+      if (first) x = axis;
+      else y = axis;
+      lay();
+    });
+    picked.show(first ? x : y);
+    return picked.element;
+  };
+
+  chart.addEventListener("pointermove", (event) => activate(nearest(points, chart, event)));
+  chart.addEventListener("pointerleave", () => activate(-1));
+  chart.addEventListener("click", (event) => walk(nearest(points, chart, event)));
+  chart.addEventListener("focus", () => active < 0 && chart.matches(":focus-visible") && activate(0));
+  chart.addEventListener("blur", () => activate(-1));
+  chart.addEventListener("keydown", (event) => {
+    const way = WAYS[event.key];
+    if (way) activate(towards(points, active, way));
+    else if (event.key === "Enter" || event.key === " ") walk(active);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  lay();
+  activate(-1);
+  return {
+    element: make("div", {}, chart, said, make("div", { class: "pair" }, choose("Across", true), choose("Up", false))),
+    show: move,
+  };
+}
+
+const held = (sd: number): number => Math.min(Math.max(sd, -REACH + 0.2), REACH - 0.2);
+
+function axesOf(model: Model): Axis[] {
+  const main = mainTrait(model);
+  const traits = [...model.traits].sort((a, b) => Number(b === main) - Number(a === main));
+  return [
+    ...traits.map((trait) => ({
+      label: capital(trait.label),
+      low: ends(trait)[0],
+      high: ends(trait)[1],
+      trait: trait.name,
+      points: positionsInCloud(model, trait),
+      at: (place: Place) => place.positions[trait.name] ?? 0,
+    })),
+    ...model.eigenwalkers.map((_, number) => ({
+      label: `Eigenwalker ${number + 1}`,
+      low: "",
+      high: `eigenwalker ${number + 1}`,
+      trait: null,
+      points: model.cloud.scores.map((scores) => scores[number] ?? 0),
+      at: (place: Place) => place.scores[number] ?? 0,
+    })),
+  ];
+}
+
+function pointsOf(model: Model): Point[] {
+  return model.cloud.walker.flatMap((walker, cloud) => {
+    const known = model.walkers[walker];
+    if (!known) return [];
+    const kind = `person ${classOf(model, walker)}`;
+    const circle = draw("circle", { r: RADIUS, id: freshId(), role: "option", class: kind, "aria-label": known.name });
+    return [{ walker, cloud, circle, x: 0, y: 0 }];
+  });
+}
+
+/** Points that stand for someone whom the page does not hold. */
+function restOf(model: Model, x: Axis, y: Axis): string {
+  return model.cloud.walker
+    .flatMap((walker, i) => {
+      if (model.walkers[walker]) return [];
+      const [h, v] = [across(held(x.points[i]!)), down(held(y.points[i]!))];
+      return [`M${h.toFixed(1)} ${v.toFixed(1)}h0`];
+    })
+    .join("");
+}
+
+function grid(): SVGElement[] {
+  const marks = [-6, -3, 0, 3, 6];
+  return marks.flatMap((mark) => {
+    const kind = mark === 0 ? "axis zero" : "axis";
+    return [
+      draw("line", { class: kind, x1: across(mark), x2: across(mark), y1: 0, y2: HEIGHT }),
+      draw("line", { class: kind, y1: down(mark), y2: down(mark), x1: 0, x2: WIDTH }),
+    ];
+  });
+}
+
+function label([left, right, lower, upper]: readonly SVGTextElement[], x: Axis, y: Axis): void {
+  const write = (text: SVGTextElement | undefined, words: string, at: Readonly<Record<string, string | number>>): void => {
+    if (!text) return;
+    text.textContent = words;
+    put(text, at);
+  };
+  write(left, x.low && `\u2190 ${x.low}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
+  write(right, `${x.high} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
+  write(lower, y.low && `\u2193 ${y.low}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
+  write(upper, `\u2191 ${y.high}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
+}
+
+/** Where the slider leads: of the trait across, else of the one upwards, else of the main one. */
+function trailOf({ model, state, own }: Now, x: Axis, y: Axis): Record<string, string> {
+  const name = x.trait ?? y.trait ?? mainTrait(model)?.name;
+  if (name === undefined) return {};
+  const [start, stop] = RANGES.trait.map((steps) =>
+    placeOf(model, vectorOf(model, { ...state, traits: { ...state.traits, [name]: steps } }, own)),
+  );
+  return {
+    x1: across(x.at(start!)).toFixed(1), y1: down(y.at(start!)).toFixed(1),
+    x2: across(x.at(stop!)).toFixed(1), y2: down(y.at(stop!)).toFixed(1),
+  };
+}
+
+const usually = (model: Model): string => {
+  const main = mainTrait(model);
+  if (!main?.two_classes) return "Choose a point, and that walker walks.";
+  return `Choose a point, and that walker walks. Warm: ${many(main.negative)}; cool: ${many(main.positive)}.`;
+};
+
+function nearest(points: readonly Point[], chart: SVGSVGElement, event: MouseEvent): number {
+  const box = chart.getBoundingClientRect();
+  const scale = WIDTH / box.width;
+  const [h, v] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
+  const far = points.map((point) => Math.hypot(point.x - h, point.y - v));
+  const best = far.indexOf(Math.min(...far));
+  return best >= 0 && far[best]! < NEAR * scale ? best : -1;
+}
+
+const WAYS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, -1],
+  ArrowDown: [0, 1],
+};
+
+/** The nearest point that lies more that way than aside; the same where there is none. */
+function towards(points: readonly Point[], from: number, [right, below]: readonly [number, number]): number {
+  const here = points[from];
+  if (!here) return 0;
+  let best = from;
+  let least = Infinity;
+  points.forEach((point, number) => {
+    const [h, v] = [point.x - here.x, point.y - here.y];
+    const ahead = h * right + v * below;
+    const aside = Math.abs(h * below) + Math.abs(v * right);
+    if (number === from || ahead <= 0 || aside > 2 * ahead) return;
+    const cost = ahead + 2 * aside;
+    if (cost < least) [best, least] = [number, cost];
+  });
+  return best;
+}

@@ -1,0 +1,79 @@
+/** A walker of a stimulus file as a feature vector beside those of the population. */
+
+import type { Stimulus, Walker } from "../core/stimulus";
+import { blockOf } from "../model/layout";
+import type { Model, Own } from "../model/model";
+import { CannotOpen } from "./refusal";
+
+/**
+ * The first walker of a stimulus, with its origin of time and the signs of its postures as the
+ * population has them: the same walk, said in the words of the model.
+ */
+export function ownOf(model: Model, { figures }: Stimulus, name: string): Own {
+  const walker = figures.find((figure) => figure.walker)?.walker;
+  if (!walker) throw new CannotOpen(`${name} holds no walker, only trajectories.`);
+  const sorted = sameMarkers(model, walker, name);
+  const signed = sameSigns(model, sameOrigin(sorted));
+  return { name: name.replace(/\.json$/i, ""), vector: vectorOf(model, signed, name) };
+}
+
+/** Its dots in the model's order. */
+function sameMarkers({ markers, harmonics }: Model, walker: Walker, name: string): Walker {
+  const order = markers.map((marker) => walker.markers.indexOf(marker));
+  const missing = markers.find((_, i) => order[i]! < 0);
+  if (missing !== undefined) throw new CannotOpen(`${name}: its walker lacks ${missing}, which all walkers here have.`);
+  if (walker.harmonics.join() !== harmonics.join()) {
+    throw new CannotOpen(`${name}: its postures ride on the harmonics ${walker.harmonics.join(", ")}; here they are ${harmonics.join(", ")}.`);
+  }
+  const sort = <T>(posture: readonly T[]): T[] => order.map((i) => posture[i]!);
+  return { ...walker, markers, p0: sort(walker.p0), p: walker.p.map(sort) };
+}
+
+/** Its clock set so that the first phase is 0. */
+function sameOrigin(walker: Walker): Walker {
+  const { harmonics, phases } = walker;
+  const [first, base] = [phases[0] ?? 0, harmonics[0] ?? 1];
+  return { ...walker, phases: phases.map((phase, i) => phase - (harmonics[i]! / base) * first) };
+}
+
+/** Each posture with the sign of the average walker's; another sign is half a turn of its phase. */
+function sameSigns(model: Model, walker: Walker): Walker {
+  const turned = walker.p.map((posture, i) => {
+    const [start] = blockOf(model, `p${i + 1}`) ?? [0];
+    const flat = posture.flat();
+    return flat.reduce((sum, value, j) => sum + value * model.average[start + j]!, 0) < 0;
+  });
+  // The first phase is 0 by the choice of the origin: its sign turns by half a stride for all.
+  const half = turned[0] ? walker.harmonics.map((harmonic) => (harmonic / walker.harmonics[0]!) * Math.PI) : walker.harmonics.map(() => 0);
+  const phases = walker.phases.map((phase, i) => phase + half[i]! + (turned[i] ? Math.PI : 0));
+  const p = walker.p.map((posture, i) =>
+    turned[i] ? posture.map(([x, y, z]) => [-x, -y, -z] as const) : posture,
+  );
+  return { ...walker, p, phases };
+}
+
+function vectorOf(model: Model, walker: Walker, name: string): number[] {
+  const vector = [...model.average];
+  const put = (block: string, values: readonly number[]): void => {
+    const [start] = blockOf(model, block) ?? [0];
+    values.forEach((value, i) => (vector[start + i] = value));
+  };
+  put("p0", walker.p0.flat());
+  walker.p.forEach((posture, i) => put(`p${i + 1}`, posture.flat()));
+  put("frequency", [walker.frequency_hz]);
+  walker.phases.forEach((phase, i) => {
+    const fixed = model.fixed_phases[i];
+    if (fixed === null || fixed === undefined) return;
+    if (Math.abs(Math.sin((phase - fixed) / 2)) > 1e-6) {
+      throw new CannotOpen(`${name}: phase ${i + 1} of its walker is free; here it is fixed.`);
+    }
+  });
+  const [start, stop] = blockOf(model, "phases") ?? [0, 0];
+  const free = walker.phases.slice(1, 1 + stop - start);
+  put("phases", free.map((phase, i) => nearTo(model.average[start + i]!, phase)));
+  return vector;
+}
+
+/** The same angle, within half a turn of another. */
+const nearTo = (other: number, angle: number): number =>
+  angle - 2 * Math.PI * Math.round((angle - other) / (2 * Math.PI));

@@ -1,0 +1,141 @@
+/** One visit: the model, what was chosen, and what follows from it, told to all parts of the page. */
+
+import { castOf, type Cast } from "../model/cast";
+import { measuresOf, type MeasureName } from "../model/measures";
+import { vectorOf } from "../model/mix";
+import type { Model, Own } from "../model/model";
+import { placeOf, type Place } from "../model/place";
+import { initialState, type State } from "../model/state";
+import { Store } from "../model/store";
+import { walkerOf } from "../model/walker";
+
+/** What is shown at this moment: the state, and what is computed from it once for all parts. */
+export interface Now {
+  readonly model: Model;
+  readonly state: State;
+  readonly own: Own | null;
+  readonly vector: Float64Array;
+  readonly cast: readonly Cast[];
+  readonly place: Place;
+  readonly measures: Readonly<Record<MeasureName, number>>;
+}
+
+/** A piece of the page that shows something of the moment. */
+export interface Part {
+  readonly element: HTMLElement;
+  show(now: Now): void;
+}
+
+/** Changes that follow one another within this time are undone together. */
+const TOGETHER_MS = 700;
+const MOST_UNDONE = 100;
+/** Not worth a step back: how it is looked at, and when. */
+const PASSING: readonly (keyof State)[] = [
+  "playing", "cycle", "dark", "azimuth_deg", "elevation_deg",
+];
+
+export class Session {
+  readonly store: Store;
+  #own: Own | null = null;
+  #past: State[] = [];
+  #lastKept = -Infinity;
+  #undoing = false;
+  #hears: ((now: Now) => void)[] = [];
+  #request = 0;
+
+  constructor(
+    readonly model: Model,
+    state: State = initialState(model),
+  ) {
+    this.store = new Store(state);
+    this.store.listen((after, before) => {
+      this.#keep(after, before);
+      this.#soon();
+    });
+  }
+
+  get state(): State {
+    return this.store.state;
+  }
+
+  get own(): Own | null {
+    return this.#own;
+  }
+
+  /** Let one's own walker walk. */
+  take(own: Own): void {
+    this.#own = own;
+    this.store.change({ from: "own", scene: "one" });
+    this.#soon();
+  }
+
+  change(part: Partial<State>): void {
+    this.store.change(part);
+  }
+
+  /** All as it was when the page was new; how it is looked at stays. */
+  reset(): void {
+    const { dark, playing, cycle } = this.state;
+    this.change({ ...initialState(this.model), dark, playing, cycle });
+  }
+
+  get canUndo(): boolean {
+    return this.#past.length > 0;
+  }
+
+  undo(): void {
+    const before = this.#past.pop();
+    if (!before) return;
+    const { dark, playing, cycle, azimuth_deg, elevation_deg } = this.state;
+    this.#undoing = true;
+    this.change({ ...before, dark, playing, cycle, azimuth_deg, elevation_deg });
+    this.#undoing = false;
+    this.#lastKept = -Infinity;
+  }
+
+  /** Be told once for each frame of the screen in which something changed. */
+  listen(hears: (now: Now) => void): void {
+    this.#hears.push(hears);
+  }
+
+  now(): Now {
+    const { model, state, own } = this;
+    const vector = vectorOf(model, state, own);
+    return {
+      model,
+      state,
+      own,
+      vector,
+      cast: castOf(model, state, own),
+      place: placeOf(model, vector),
+      measures: measuresOf(walkerOf(model, vector)),
+    };
+  }
+
+  /** Tell all parts now. */
+  tell(): void {
+    cancelAnimationFrame(this.#request);
+    this.#request = 0;
+    const now = this.now();
+    for (const hears of this.#hears) hears(now);
+  }
+
+  /** Be silent from now on: another session takes over. */
+  end(): void {
+    cancelAnimationFrame(this.#request);
+    this.#hears = [];
+  }
+
+  #soon(): void {
+    this.#request ||= requestAnimationFrame(() => this.tell());
+  }
+
+  #keep(after: State, before: State): void {
+    if (this.#undoing) return;
+    const keys = Object.keys(after) as (keyof State)[];
+    if (keys.every((key) => PASSING.includes(key) || after[key] === before[key])) return;
+    const time = performance.now();
+    if (time - this.#lastKept > TOGETHER_MS) this.#past = [...this.#past, before].slice(-MOST_UNDONE);
+    this.#lastKept = time;
+  }
+}
