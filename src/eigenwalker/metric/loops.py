@@ -1,0 +1,291 @@
+"""One stride that repeats for ever, from a clip that holds two or more (P2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
+
+from eigenwalker.gait import in_place
+from eigenwalker.gait.frequency import BOUNDS_HZ
+from eigenwalker.gait.steady import closes, closing_step
+from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
+
+REPEATS_BELOW = 0.4
+"""Mean squared distance of postures a period apart, as a share of that of any two: above this
+nothing repeats. Steady walks are below 0.05, acted exhaustion below 0.2."""
+
+AS_DEEP = 3.0
+"""A minimum of the self map counts as the period if it is at most this many times as high as the
+lowest one: people repeat their stride of a moment ago not always best."""
+
+SHALLOW = 0.02
+"""Share by which a minimum may be higher whatever the lowest one is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A clip that goes over into its own beginning.
+
+    Parameters
+    ----------
+    cycle : DataArray of shape (time, marker, axis)
+        One period, evenly sampled from 0 s; after its last frame comes the first.
+    period_s : float
+        Seconds of the period.
+    start_s : float
+        Where in the clip the first of the two periods begins.
+    seam_mm : float
+        Distance, in the mean over markers, of the two postures that a cut would have joined.
+    mismatch_mm : float
+        Distance of corresponding postures in the two periods, in the mean over markers and time:
+        what blending has averaged away.
+    n_periods : int
+        2 where two periods were blended; 1 where the clip holds one only, whose seam was spread
+        over it.
+
+    """
+
+    cycle: xr.DataArray
+    period_s: float
+    start_s: float
+    seam_mm: float
+    mismatch_mm: float
+    n_periods: int
+
+    def __repr__(self) -> str:
+        return (
+            f"Loop({self.cycle.sizes['time']} frames, {self.cycle.sizes['marker']} markers, period "
+            f"{self.period_s:.3f} s, seam {self.seam_mm:.1f} mm)"
+        )
+
+    def trajectories(self, time: ArrayLike | xr.DataArray) -> xr.DataArray:
+        """Return the loop played on, at any times in seconds.
+
+        Parameters
+        ----------
+        time : array of shape (time,)
+            Seconds; 0 is the first frame of the cycle.
+
+        Returns
+        -------
+        DataArray of shape (time, marker, axis)
+
+        """
+        time = np.atleast_1d(np.asarray(time, dtype=float))
+        values = np.concatenate([self.cycle.values, self.cycle.values[:1]])
+        frames = np.linspace(0, self.period_s, len(values))
+        spline = CubicSpline(frames, values, bc_type="periodic")
+        return trajectories_at(time, spline(time % self.period_s), self.cycle.marker.values)
+
+
+def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
+    """Return one period of a clip as a seamless cycle.
+
+    As in Pražák et al. (2010, section 3 and fig. 1, left): the period is where the motion map of
+    the clip with itself has its minima, and two periods are blended along the line of 45 degrees
+    there. Which two is decided by where they differ least.
+
+    Parameters
+    ----------
+    clip : DataArray of shape (time, marker, axis)
+        Trajectories of someone who walks, or does something else over and over, at any frame rate.
+        The steady strides are brought in place first (`in_place`).
+    already_in_place : bool
+        Whether to take the clip as it is, whole and where it is.
+
+    Returns
+    -------
+    Loop
+        Of two periods blended into one. A clip that holds one only is closed by spreading over it
+        what lacks to its beginning.
+
+    Raises
+    ------
+    ValueError
+        If there is less than one period, or nothing repeats.
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1, frequency_hz=0.8)
+    >>> found = loop(walk)
+    >>> round(found.period_s, 3), found.cycle.sizes["time"]
+    (1.25, 150)
+
+    """
+    clip = check_trajectories(clip, complete=already_in_place)
+    walk = clip if already_in_place else in_place(clip)
+    rate_hz = sampling_rate(walk)
+    movement = walk.values.reshape(walk.sizes["time"], -1)
+    period = period_of(movement, rate_hz)
+    if period is not None:
+        return _blended(walk, period, rate_hz)
+    if walk.attrs.get("n_strides") == 1 or (len(movement) > 2 and closes(movement)):
+        return _closed(walk, rate_hz)
+    raise ValueError(
+        f"Nothing repeats in these {len(movement) / rate_hz:.3g} s: no two postures some time "
+        f"apart, from {1 / BOUNDS_HZ[1]:.2g} s to half the clip, are alike throughout. A loop "
+        "needs two periods of one action."
+    )
+
+
+def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
+    """Return the period of a movement in frames, or None if it does not repeat.
+
+    The lines of 45 degrees on which the self map has its minima. Minima at several periods are all
+    used, since a stride is longer or shorter than the next.
+
+    Parameters
+    ----------
+    movement : array of shape (time, feature)
+        Positions, evenly sampled, in place.
+    rate_hz : float
+        Frames a second.
+
+    Returns
+    -------
+    float or None
+        To a fraction of a frame.
+
+    Examples
+    --------
+    >>> angles = 2 * np.pi * np.arange(100) / 33.3
+    >>> round(period_of(np.stack([np.sin(angles), np.cos(2 * angles)], axis=1), 30), 1)
+    33.3
+
+    """
+    n_frames = len(movement)
+    heights = _along_diagonals(movement)
+    lags = np.arange(max(1, int(rate_hz / BOUNDS_HZ[1])), max(1, n_frames // 2 + 2))
+    lags = lags[lags < len(heights) - 1]
+    lags = lags[(heights[lags] < heights[lags - 1]) & (heights[lags] <= heights[lags + 1])]
+    if not lags.size or heights[lags].min() > REPEATS_BELOW:
+        return None
+    deep = heights[lags] <= AS_DEEP * heights[lags].min() + SHALLOW
+    lag = int(lags[deep][0])
+    periods = [_bottom(heights, lag)]
+    for count in range(2, int(n_frames / periods[0])):
+        near = round(count * periods[-1])
+        reach = max(1, lag // 10)
+        window = np.arange(max(near - reach, 1), min(near + reach + 1, len(heights) - 1))
+        if not window.size:
+            break
+        periods.append(_bottom(heights, int(window[heights[window].argmin()])) / count)
+    return float(np.mean(periods))
+
+
+def _along_diagonals(movement: np.ndarray) -> np.ndarray:
+    """Means of the squared self map along its diagonals, as shares of twice the variance.
+
+    ``|x_i - x_j|^2 = |x_i|^2 + |x_j|^2 - 2 x_i x_j``, and sums of the last term over a diagonal
+    are an autocorrelation: no map is filled for them.
+    """
+    n = len(movement)
+    centred = movement - movement.mean(axis=0)
+    size = 1 << max(2 * n - 1, 1).bit_length()
+    spectrum = np.fft.rfft(centred, size, axis=0)
+    power = np.einsum("fc,fc->f", spectrum, spectrum.conj()).real
+    products = np.fft.irfft(power, size)[:n]
+    sums = np.concatenate([[0], np.cumsum(np.einsum("tc,tc->t", centred, centred))])
+    if not sums[-1] > 1e-9 * n:
+        return np.ones(n)
+    lags = np.arange(n)
+    squares = sums[n - lags] + (sums[n] - sums[lags]) - 2 * products
+    return squares / (n - lags) / (2 * sums[-1] / n)
+
+
+def _bottom(heights: np.ndarray, lag: int) -> float:
+    """Lag at the bottom of a parabola through a minimum and its neighbours."""
+    before, here, after = heights[lag - 1 : lag + 2]
+    bend = before - 2 * here + after
+    return lag + float(np.clip(0.5 * (before - after) / bend, -1, 1)) if bend > 0 else float(lag)
+
+
+def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
+    """The two successive periods that differ least, the second passing into the first."""
+    n_frames, n_cycle = walk.sizes["time"], round(period)
+    frames = np.arange(n_frames)
+    path = CubicSpline(frames, walk.values)
+    within = np.arange(n_cycle) * period / n_cycle
+    fading = (1 - np.cos(2 * np.pi * (np.arange(n_cycle) + 0.5) / n_cycle)) / 2
+    pairs = frames[: max(1, n_frames - int(np.ceil(period)))]
+    apart = path(np.minimum(pairs + period, n_frames - 1)) - walk.values[pairs]
+    squares = np.einsum("tma,tma->t", apart, apart)
+    mismatch = np.convolve(squares, fading, "valid" if len(squares) >= n_cycle else "same")
+    mismatch = mismatch[: max(1, int(n_frames - 2 * period) + 1)]
+    start = int(mismatch.argmin())
+    first = start + within
+    second = np.minimum(first + period, n_frames - 1)
+    weight = (1 - np.cos(np.pi * within / period))[:, None, None] / 2
+    values = weight * path(first) + (1 - weight) * path(second)
+    gaps = np.linalg.norm(path(first) - path(second), axis=2).mean(axis=1)
+    cycle = _as_cycle(walk, values, period / rate_hz)
+    if "rotation" in walk.coords:
+        turns = _blended_turns(walk.rotation.values, first, second, weight[..., 0])
+        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, turns))
+    return Loop(
+        cycle,
+        period_s=period / rate_hz,
+        start_s=float(walk.time.values[0] + start / rate_hz),
+        seam_mm=float(gaps[0]),
+        mismatch_mm=float(gaps.mean()),
+        n_periods=2,
+    )
+
+
+def _closed(walk: xr.DataArray, rate_hz: float) -> Loop:
+    """The one period that a clip holds; what lacks to its beginning is spread over it."""
+    values = walk.values
+    n_frames = len(values)
+    gap = values[-1] + closing_step(values) - values[0]
+    share = np.arange(n_frames) / n_frames - 0.5
+    cycle = _as_cycle(walk, values - share[:, None, None] * gap, n_frames / rate_hz)
+    if "rotation" in walk.coords:
+        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, walk.rotation.values))
+    return Loop(
+        cycle,
+        period_s=n_frames / rate_hz,
+        start_s=float(walk.time.values[0]),
+        seam_mm=float(np.linalg.norm(gap, axis=1).mean()),
+        mismatch_mm=0.0,
+        n_periods=1,
+    )
+
+
+def _as_cycle(walk: xr.DataArray, values: np.ndarray, period_s: float) -> xr.DataArray:
+    time = np.arange(len(values)) * period_s / len(values)
+    cycle = trajectories_at(time, values, walk.marker.values)
+    return cycle.assign_attrs(walk.attrs, frequency_hz=1 / period_s, n_strides=1)
+
+
+def _blended_turns(
+    vectors: np.ndarray, first: np.ndarray, second: np.ndarray, weight: np.ndarray
+) -> np.ndarray:
+    """Rotation vectors between frames of the two periods, by the shorter way (normalised sums)."""
+    shape = (len(first), *vectors.shape[1:])
+    quaternions = np.full((*vectors.shape[:2], 4), np.nan)
+    seen = np.isfinite(vectors).all(axis=2)
+    quaternions[seen] = Rotation.from_rotvec(vectors[seen]).as_quat()
+    last = len(vectors) - 1
+
+    def at(moments: np.ndarray) -> np.ndarray:
+        before = np.minimum(moments.astype(int), last)
+        share = (moments - before)[:, None]
+        return _between(quaternions[before], quaternions[np.minimum(before + 1, last)], share)
+
+    blended = _between(at(second), at(first), weight)
+    turns = np.full(shape, np.nan)
+    known = np.isfinite(blended).all(axis=2)
+    turns[known] = Rotation.from_quat(blended[known]).as_rotvec()
+    return turns
+
+
+def _between(start: np.ndarray, stop: np.ndarray, share: np.ndarray) -> np.ndarray:
+    dot = np.einsum("tmq,tmq->tm", start, stop)
+    stop = np.where(dot[..., None] < 0, -stop, stop)
+    mixed = (1 - share[..., None]) * start + share[..., None] * stop
+    return mixed / np.linalg.norm(mixed, axis=2, keepdims=True)
