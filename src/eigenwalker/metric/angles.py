@@ -174,7 +174,7 @@ def _captured(clip: xr.DataArray) -> dict[str, _Turn]:
 
 def _carrying(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> _Turn:
     axes = body_frame(place, part)
-    known = np.isfinite(axes[:, 0]).all(axis=1)
+    known = np.isfinite(axes.sum(axis=(1, 2)))
     return _Turn(Rotation.from_matrix(np.where(known[:, None, None], axes, np.eye(3))), known)
 
 

@@ -1,0 +1,152 @@
+"""Perceived difference from distances of joint groups (Pražák et al. 2010, eqs. 1 to 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import nnls
+from sklearn.base import BaseEstimator, RegressorMixin
+from sklearn.utils import Tags, validation
+from sklearn.utils.validation import check_is_fitted
+
+_validated: Callable[..., Any] = validation.validate_data
+"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
+
+
+class PerceptualMetric(RegressorMixin, BaseEstimator):
+    """Predicts how different observers find two walks: ``c + sum w_k F(d_k)``, no w_k below 0.
+
+    The metric of Pražák et al. (2010): F(d_k) is how far joint group k is apart in the mean of the
+    registered frames, and the difference is the share of times a pair was not chosen as the most
+    similar (P6). For a given F the model is linear, so the best weights are found at once and for
+    sure by non-negative least squares; the paper's 1000 random starts end where this does (A30).
+    The constant is free: it is the difference of two walks that are not the same though their
+    distance is 0 (A38).
+
+    Parameters
+    ----------
+    fit_constant : bool
+        Whether there is a constant c; 0 otherwise.
+
+    Attributes
+    ----------
+    weights_ : array of shape (group,)
+        w_k, 0 or more, per unit of the columns of X.
+    constant_ : float
+        c.
+    relative_weights_ : array of shape (group,)
+        Weights divided by their sum, as figure 5 has them; all 0 where no group tells anything.
+    normalisation_ : float
+        1 over the sum of the weights (A28).
+
+    Examples
+    --------
+    Three groups, of which observers look at the second alone:
+
+    >>> X = [[3.0, 1, 2], [1, 4, 1], [2, 2, 3], [4, 3, 1], [2, 5, 2]]
+    >>> y = [0.3, 0.6, 0.4, 0.5, 0.7]
+    >>> metric = PerceptualMetric().fit(X, y)
+    >>> metric.weights_.round(6).tolist(), round(metric.constant_, 6)
+    ([0.0, 0.1, 0.0], 0.2)
+
+    """
+
+    def __init__(self, fit_constant: bool = True) -> None:
+        self.fit_constant = fit_constant
+
+    def fit(self, X: ArrayLike, y: ArrayLike, sample_weight: ArrayLike | None = None) -> Self:
+        """Find weights and constant.
+
+        Parameters
+        ----------
+        X : array of shape (pair, group)
+            F(d_k), in the mean along the registered path.
+        y : array of shape (pair,)
+            Perceived differences. A walk and itself is no pair (A38).
+        sample_weight : array of shape (pair,), optional
+            How much each pair counts, such as how often it was shown; the paper's count alike.
+
+        """
+        table, differences = _validated(self, X, y, dtype=np.float64, y_numeric=True)
+        self.weights_, self.constant_ = non_negative_fit(
+            table,
+            differences,
+            sample_weight=None if sample_weight is None else _counts(sample_weight, table),
+            fit_constant=self.fit_constant,
+        )
+        total = self.weights_.sum()
+        self.relative_weights_ = self.weights_ / total if total > 0 else self.weights_
+        self.normalisation_ = float(1 / total) if total > 0 else np.inf
+        return self
+
+    def predict(self, X: ArrayLike) -> np.ndarray:
+        """Return the perceived difference of each pair."""
+        check_is_fitted(self)
+        table = _validated(self, X, dtype=np.float64, reset=False)
+        return self.constant_ + table @ self.weights_
+
+    def __sklearn_tags__(self) -> Tags:
+        tags = super().__sklearn_tags__()
+        if tags.regressor_tags is not None:
+            tags.regressor_tags.poor_score = True  # on data that ask for weights below 0
+        return tags
+
+
+def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
+    counts = validation.column_or_1d(np.asarray(sample_weight, dtype=float))
+    validation.check_consistent_length(counts, X)
+    if counts.ndim != 1 or counts.min() < 0 or not counts.sum() > 0:
+        raise ValueError(
+            f"sample_weight must be one number a pair, 0 or more and not all zero; got shape "
+            f"{counts.shape}, from {counts.min():g} to {counts.max():g}."
+        )
+    return counts
+
+
+class Weights(NamedTuple):
+    """Weights of the columns, and the constant."""
+
+    weights: np.ndarray
+    constant: float
+
+
+def non_negative_fit(
+    X: np.ndarray,
+    y: np.ndarray,
+    *,
+    sample_weight: np.ndarray | None = None,
+    fit_constant: bool = True,
+) -> Weights:
+    """Return the weights, none below 0, and the free constant of least squared error.
+
+    Parameters
+    ----------
+    X : array of shape (pair, column)
+        Finite.
+    y : array of shape (pair,)
+        Finite.
+    sample_weight : array of shape (pair,), optional
+        How much each pair counts.
+    fit_constant : bool
+        Whether there is a constant; 0 otherwise.
+
+    Examples
+    --------
+    >>> fitted = non_negative_fit(np.array([[0.0], [1.0], [2.0]]), np.array([1.0, 3.0, 5.0]))
+    >>> fitted.weights.round(6).tolist(), round(fitted.constant, 6)
+    ([2.0], 1.0)
+
+    """
+    counts = np.ones(len(y)) if sample_weight is None else sample_weight
+    middle, level = np.zeros(X.shape[1]), 0.0
+    if fit_constant:
+        middle, level = np.average(X, axis=0, weights=counts), np.average(y, weights=counts)
+    root = np.sqrt(counts)
+    centred = root[:, None] * (X - middle)
+    size = np.linalg.norm(centred, axis=0)
+    size[size == 0] = 1.0
+    weights = nnls(centred / size, root * (y - level))[0] / size
+    return Weights(weights, float(level - middle @ weights))

@@ -1,0 +1,209 @@
+"""The fitted metric: planted weights found again from answers as the paper gathered them."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import lsq_linear
+from scipy.spatial.distance import pdist
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+from eigenwalker.metric.fit_quality import compare_metrics, goodness, leave_walkers_out
+from eigenwalker.metric.observers import bootstrap_weights, difference, split_half
+from eigenwalker.metric.outer_search import fit_from_random_starts, search_shape
+from eigenwalker.metric.perceptual import PerceptualMetric
+from eigenwalker.metric.published import PUBLISHED
+
+N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
+PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
+PLANTED = np.array(list(PUBLISHED["positions-absolute"].group_weights.values()))
+
+
+def distances(seed: int, n_groups: int = 8) -> np.ndarray:
+    """Mean distances of joint groups in mm, pairs x groups, of walkers with places of their own."""
+    rng = np.random.default_rng(seed)
+    groups = [
+        pdist(rng.normal(scale=40 / np.sqrt(6), size=(N_WALKERS, 3))) for _ in range(n_groups)
+    ]
+    return np.column_stack(groups)
+
+
+def answers(
+    perceived: np.ndarray, *, seed: int, temperature: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """How often each observer chose and was shown each pair, in trials of four walkers (P5).
+
+    The pair chosen is that of least perceived difference, with noise of Gumbel's distribution.
+    """
+    rng = np.random.default_rng(seed)
+    at = np.zeros((N_WALKERS, N_WALKERS), dtype=int)
+    for row, (i, j) in enumerate(PAIRS):
+        at[i, j] = at[j, i] = row
+    chosen, shown = np.zeros((2, N_OBSERVERS, len(PAIRS)))
+    for observer, _ in itertools.product(range(N_OBSERVERS), range(N_TRIALS)):
+        four = rng.choice(N_WALKERS, 4, replace=False)
+        six = [at[i, j] for i, j in itertools.combinations(four, 2)]
+        felt = perceived[six] + temperature * rng.gumbel(size=6) * -1
+        shown[observer, six] += 1
+        chosen[observer, six[felt.argmin()]] += 1
+    return chosen, shown
+
+
+@parametrize_with_checks([PerceptualMetric(), PerceptualMetric(fit_constant=False)])
+def test_scikit_learn_finds_nothing_amiss(estimator, check):
+    check(estimator)
+
+
+def study(seed: int, temperature: float = 0.1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A study of the paper's size on planted weights: X, and how often pairs were chosen, shown."""
+    X = distances(seed)
+    told = X @ PLANTED
+    return X, *answers(0.75 * told / told.mean(), seed=seed, temperature=temperature)
+
+
+@pytest.mark.parametrize("temperature", [0.05, 0.1, 0.2])
+def test_planted_weights_are_found_from_as_many_answers_as_the_paper_had(temperature):
+    planted = PLANTED / PLANTED.sum()
+    within = []
+    for seed in range(6):
+        X, chosen, shown = study(seed, temperature)
+        metric = PerceptualMetric().fit(X, difference(chosen.sum(axis=0), shown.sum(axis=0)))
+        assert np.corrcoef(metric.relative_weights_, planted)[0, 1] >= 0.95
+        fitted = bootstrap_weights(X, chosen, shown, pairs=PAIRS, n_samples=200)
+        intervals = fitted.intervals([*range(8)])
+        within += [(intervals.relative_low <= planted) & (planted <= intervals.relative_high)]
+    assert np.mean(within) >= 0.95  # intervals of 95 per cent
+
+
+def test_weights_that_differences_were_made_with_come_back():
+    X = distances(5)
+    metric = PerceptualMetric().fit(X, 0.2 + X @ PLANTED / 100)
+    np.testing.assert_allclose(metric.weights_, PLANTED / 100, atol=1e-12)
+    assert metric.constant_ == pytest.approx(0.2)
+    assert metric.normalisation_ == pytest.approx(100 / PLANTED.sum())
+
+
+def test_mean_difference_of_the_paper_s_design_is_five_sixths():
+    _, chosen, shown = study(0)
+    assert 1 - chosen.sum() / shown.sum() == pytest.approx(5 / 6)  # A31
+
+
+def test_fit_meets_the_conditions_of_the_one_optimum():
+    rng = np.random.default_rng(3)
+    X, y = np.exp(rng.normal(size=(210, 8)) * 3), rng.uniform(size=210)
+    metric = PerceptualMetric().fit(X, y)
+    downhill = X.T @ (y - metric.predict(X)) / np.linalg.norm(X - X.mean(axis=0), axis=0)
+    used = metric.weights_ > 0
+    assert np.abs(downhill[used]).max(initial=0) < 1e-8
+    assert downhill[~used].max(initial=0) < 1e-8
+
+
+def test_fit_agrees_with_another_solver():
+    X, chosen, shown = study(4)
+    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    bounds = ([-np.inf, *[0.0] * 8], np.inf)
+    peer = lsq_linear(np.column_stack([np.ones(210), X]), y, bounds, tol=1e-14).x
+    metric = PerceptualMetric().fit(X, y)
+    np.testing.assert_allclose([metric.constant_, *metric.weights_], peer, atol=1e-6)
+
+
+def test_random_starts_end_at_the_same_optimum():
+    X, chosen, shown = study(6)
+    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    found = fit_from_random_starts(X, y, n_starts=30, seed=1)
+    ours = goodness(y, PerceptualMetric().fit(X, y).predict(X))["rss"]
+    assert ours <= found.rss.min() + 1e-12
+    assert found.rss.min() == pytest.approx(ours, rel=1e-6)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 1000), st.floats(1e-3, 1e3))
+def test_units_of_distances_do_not_change_what_is_predicted(seed, unit):
+    rng = np.random.default_rng(seed)
+    X, y = rng.uniform(size=(30, 4)), rng.uniform(size=30)
+    ours, scaled = PerceptualMetric().fit(X, y), PerceptualMetric().fit(X * unit, y)
+    np.testing.assert_allclose(scaled.predict(X * unit), ours.predict(X), atol=1e-9)
+    np.testing.assert_allclose(scaled.weights_ * unit, ours.weights_, atol=1e-9)
+
+
+def test_pairs_count_as_often_as_their_weight_says():
+    rng = np.random.default_rng(8)
+    X, y, times = rng.uniform(size=(30, 3)), rng.uniform(size=30), rng.integers(0, 4, 30)
+    weighted = PerceptualMetric().fit(X, y, sample_weight=times)
+    repeated = PerceptualMetric().fit(np.repeat(X, times, axis=0), np.repeat(y, times))
+    np.testing.assert_allclose(weighted.weights_, repeated.weights_, atol=1e-12)
+
+
+def test_planted_power_is_found():
+    d = distances(9)
+    found = search_shape(lambda n: d**n, 0.1 + d**0.3 @ PLANTED / 6, bounds=(0.05, 3))
+    assert found.parameter == pytest.approx(0.3, abs=1e-4)
+    assert found.rss <= found.tried_rss.min()
+    np.testing.assert_allclose(found.weights, PLANTED / 6, atol=1e-4)
+
+
+def test_planted_scale_of_the_sigmoid_is_found():
+    d = distances(10)
+    found = search_shape(lambda s: d / (d + s), 0.1 + d / (d + 70) @ PLANTED, bounds=(1, 10_000))
+    assert found.parameter == pytest.approx(70, rel=1e-3)
+
+
+def test_bounds_that_make_no_range_are_refused():
+    with pytest.raises(ValueError, match="two numbers above 0"):
+        search_shape(lambda n: np.ones((3, 1)), [1, 2, 3], bounds=(0, 1))
+
+
+def test_no_walker_of_a_pair_is_among_those_fitted_to():
+    splits = leave_walkers_out(PAIRS)
+    assert sorted(int(out[0]) for _, out in splits) == [*range(210)]
+    for fitted_to, (out,) in splits:
+        assert not {w for row in fitted_to for w in PAIRS[row]} & set(PAIRS[out])
+        assert len(fitted_to) == 19 * 18 // 2
+
+
+def test_three_walkers_are_too_few_to_leave_two_out():
+    with pytest.raises(ValueError, match="four walkers"):
+        leave_walkers_out([("a", "b"), ("a", "c"), ("b", "c")])
+
+
+def test_the_metric_observers_use_predicts_unseen_walkers_better_than_others():
+    X, chosen, shown = study(11)
+    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    noise = np.random.default_rng(0).uniform(size=(210, 1))
+    compared = compare_metrics({"fitted": X, "all alike": X.mean(axis=1), "noise": noise}, y, PAIRS)
+    assert compared.cv_pearson.idxmax() == "fitted"
+    assert compared.cv_pearson["noise"] < 0.2
+    assert compared.cv_rms["fitted"] > compared.rms["fitted"]
+
+
+def test_no_metric_is_above_the_noise_ceiling_and_the_true_one_is_near():
+    X, chosen, shown = study(12, temperature=0.2)
+    truth = -np.exp(-(X @ PLANTED) * 0.75 / (X @ PLANTED).mean() / 0.2)
+    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    found = split_half(chosen, shown)
+    assert found.halves < found.whole < found.ceiling < 1
+    assert np.corrcoef(truth, y)[0, 1] < found.ceiling + 0.02
+
+
+def test_observers_who_guess_have_no_ceiling():
+    _, chosen, shown = study(13, temperature=1e6)
+    assert split_half(chosen, shown).ceiling < 0.4
+
+
+def test_counts_that_cannot_be_are_refused():
+    with pytest.raises(ValueError, match="more often than shown"):
+        split_half([[3.0], [1.0]], [[2.0], [2.0]])
+    with pytest.raises(ValueError, match="1 observer"):
+        split_half([[1.0]], [[2.0]])
+    with pytest.raises(ValueError, match="X has 3"):
+        bootstrap_weights(np.ones((3, 1)), np.ones((2, 4)), np.ones((2, 4)))
+
+
+def test_goodness_of_a_constant_has_no_correlation():
+    found = goodness([0.1, 0.5], [0.3, 0.3])
+    assert np.isnan(found["pearson"])
+    assert found["rms"] == pytest.approx(0.2)
