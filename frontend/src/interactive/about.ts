@@ -5,8 +5,7 @@ import { make } from "./element";
 
 /** One line: how many walkers, and whether they exist. */
 export function peopleIn({ n_walkers, simulated }: Model): string {
-  const people = `${n_walkers} ${n_walkers === 1 ? "walker" : "walkers"}`;
-  return simulated ? `${people} who do not exist: simulated` : `${people}, captured`;
+  return `${n_walkers} ${simulated ? "simulated " : ""}${n_walkers === 1 ? "walker" : "walkers"}`;
 }
 
 /** The ideas in four sentences, and where the model comes from. */
@@ -22,6 +21,7 @@ export function about(model: Model): HTMLElement {
     make("summary", {}, make("h2", {}, "About")),
     make("div", { class: "body" },
       make("p", {}, "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that ride on sines; so walks can be added, averaged and pushed past the end."),
+      ...(model.simulated ? [make("p", {}, "The walkers here are simulated: nobody was captured.")] : []),
       make("p", { class: "note" }, "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait."),
       make("dl", { class: "facts" }, ...facts.flatMap(([term, said]) => [make("dt", {}, term!), make("dd", {}, said!)])),
     ),

@@ -131,11 +131,11 @@ const FARTHEST = 6;
 const largest = ({ spread }: Model): number => Math.max(...spread.distances);
 
 export function howPlausible({ distance, percentile }: Place): string {
-  const times = distance.toFixed(1);
+  const times = `${distance.toFixed(1)} times as far from the average as is usual`;
   if (distance < 0.05) return "Nobody and everybody: the average walker.";
-  if (percentile < 1) return "Nearer to the average than any real walker.";
-  if (percentile < 100) return `Plausible: of the real walkers, ${Math.round(percentile)} % are nearer to the average.`;
-  if (distance < 2) return `Rare: ${times} times as far from the average as people usually are.`;
-  if (distance < 4) return `A caricature: ${times} times as far from the average as people usually are.`;
-  return `No human walks so: ${times} times as far from the average as people usually are.`;
+  if (percentile < 1) return "Nearer to the average than anyone.";
+  if (percentile < 100) return `Plausible: ${Math.round(percentile)} % of the walkers are nearer to the average.`;
+  if (distance < 2) return `Rare: ${times}.`;
+  if (distance < 4) return `A caricature: ${times}.`;
+  return `Nobody walks so: ${times}.`;
 }

@@ -87,17 +87,14 @@ function stagePart(session: Session): Pick<Part, "show"> {
       session.change({ azimuth_deg, elevation_deg });
     },
     ticked: (cycle) => tools.tick(cycle),
-    picked: (number) => {
-      const known = last?.cast[number]?.known ?? null;
-      if (known !== null) session.change({ from: known, scene: "one" });
+    picked: (known) => session.change({ from: known, scene: "one" }),
+    laid: (boxes) => label(labels, last?.cast ?? [], boxes),
+    lacking: (message) => {
+      notices.trouble(message);
+      session.change({ style: "sticks" });
     },
   });
   let last: Now | undefined;
-  const name = (): void => {
-    if (last) label(labels, last, host.clientWidth, host.clientHeight);
-  };
-  const watch = new ResizeObserver(name);
-  watch.observe(host);
   const keys = stageKeys(session);
   host.addEventListener("keydown", keys);
   find("#tools", HTMLDivElement).replaceChildren(tools.element);
@@ -105,7 +102,6 @@ function stagePart(session: Session): Pick<Part, "show"> {
   let saying = 0;
   leave = () => {
     stage.remove();
-    watch.disconnect();
     host.removeEventListener("keydown", keys);
     session.end();
   };
@@ -114,7 +110,6 @@ function stagePart(session: Session): Pick<Part, "show"> {
       last = now;
       stage.show(now.model, now.cast, now.state);
       tools.show(now);
-      name();
       const degrees = Math.round(now.state.azimuth_deg);
       put(host, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
       clearTimeout(saying);
@@ -134,7 +129,7 @@ function furnish(session: Session): Pick<Part, "show">[] {
   find("#corner", HTMLDivElement).replaceChildren(corner.element);
   const insight: Fold[] = [
     section("What changes", [plausible(session), changes(session)], true),
-    section("Among real walkers", [cloud(session)], WIDE.matches),
+    section("Among the others", [cloud(session)], WIDE.matches),
   ];
   const others = otherTraits(session);
   const controls: Fold[] = [

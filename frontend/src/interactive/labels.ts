@@ -1,29 +1,23 @@
 /** Who is who, where several walk: a name below each. */
 
-import { stagingOf } from "../stage/staging";
-import { roomFor } from "../stage/stimulus";
+import type { Cast } from "../model/cast";
+import type { Box } from "../stage/stage";
 import { make } from "./element";
-import type { Now } from "./session";
 import { many } from "./words";
 
 /** More names than these would be in each other's way. */
 const MOST_NAMED = 4;
 
-/** Write the names of those on a stage of some size into an element that lies over it. */
-export function label(element: HTMLElement, { model, cast, state }: Now, width: number, height: number): void {
-  if (cast.length < 2 || cast.length > MOST_NAMED || width === 0 || height === 0) {
-    element.replaceChildren();
-    return;
-  }
-  const room = roomFor(model, cast);
-  const { columns, rows } = stagingOf(cast.length, room, { width_px: width, height_px: height }, state.elevation_deg);
-  const names = cast.map(({ name }, i) => {
-    const row = Math.floor(i / columns);
-    const inRow = Math.min(columns, cast.length - row * columns);
-    const name_ = make("span", {}, inWords(name));
-    name_.style.left = `${50 + (100 * ((i % columns) - (inRow - 1) / 2)) / columns}%`;
-    name_.style.top = `${(100 * (row + 1)) / rows}%`;
-    return name_;
+/** Write the names of a few walkers below where they stand. */
+export function label(element: HTMLElement, cast: readonly Cast[], boxes: readonly Box[]): void {
+  const few = cast.length > 1 && cast.length <= MOST_NAMED;
+  const names = (few ? cast : []).flatMap(({ name }, i) => {
+    const box = boxes[i];
+    if (!box) return [];
+    const tag = make("span", {}, inWords(name));
+    tag.style.left = `${box.left + box.width / 2}px`;
+    tag.style.top = `${box.top + box.height}px`;
+    return [tag];
   });
   element.replaceChildren(...names);
 }
@@ -31,7 +25,7 @@ export function label(element: HTMLElement, { model, cast, state }: Now, width: 
 /** "female tripled" as "women, tripled". */
 function inWords(name: string): string {
   const [first = "", ...others] = name.split(" ");
-  const class_ = many(first);
-  if (class_.endsWith(" walkers")) return name;
-  return [class_, ...others].join(", ").replace(/, (\d+)$/, " $1");
+  const people = many(first);
+  if (people.endsWith(" walkers") || /^\d+$/.test(others[0] ?? "")) return name;
+  return [people, ...others].join(", ");
 }

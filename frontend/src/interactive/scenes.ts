@@ -13,9 +13,9 @@ export function scenes(session: Session): Part {
   const crowd = Math.min(model.walkers.length, MOST_IN_CROWD);
   const options: Option<SceneName>[] = [
     { value: "one", label: "One" },
-    ...(trait?.means ? [{ value: "four" as const, label: "Mean and tripled" }] : []),
+    ...(trait?.means ? [{ value: "four" as const, label: "Means" }] : []),
     ...(several ? [{ value: "side" as const, label: "Side by side" }] : []),
-    ...(several ? [{ value: "crowd" as const, label: "Everyone" }] : []),
+    ...(several ? [{ value: "crowd" as const, label: "All" }] : []),
   ];
   const chosen = choice("On the stage", options, (scene) => session.change({ scene }), { named: false });
   const about = make("p", { class: "note" });

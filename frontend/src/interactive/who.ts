@@ -35,7 +35,6 @@ export function who(session: Session, open: () => void): Part {
     button("Previous", () => next(-1)),
     button("Next", () => next(1)),
     button("Anyone", () => walk(Math.floor(Math.random() * walkers.length))),
-    button("Average", () => walk("average")),
   );
   const bring = make("p", { class: "note" },
     "Your own: drop a capture anywhere on this page, or ",

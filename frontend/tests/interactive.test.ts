@@ -1,0 +1,169 @@
+/** @vitest-environment jsdom */
+/** Parts of the interactive page: sliders, files that are brought, words. */
+
+import { describe, expect, it, vi } from "vitest";
+import { howPlausible } from "../src/interactive/changes";
+import { choice } from "../src/interactive/choice";
+import { make } from "../src/interactive/element";
+import { Notices } from "../src/interactive/notices";
+import { openFile } from "../src/interactive/opening";
+import { ownOf } from "../src/interactive/own";
+import { signed, slider } from "../src/interactive/slider";
+import { goldenModel, posture, stimulusWith } from "./interactive_model";
+import { walkerOf } from "../src/model/walker";
+
+describe("a slider", () => {
+  const made = (): { heard: number[]; one: ReturnType<typeof slider> } => {
+    const heard: number[] = [];
+    const one = slider({
+      label: "Sex", ends: ["woman", "man"], min: -6, max: 6, step: 0.05, usual: 0,
+      said: (value) => signed(value), onInput: (value) => heard.push(value),
+    });
+    return { heard, one };
+  };
+  const move = (input: HTMLInputElement, value: number): void => {
+    input.value = String(value);
+    input.dispatchEvent(new Event("input"));
+  };
+
+  it("says what it is moved to", () => {
+    const { heard, one } = made();
+    move(one.input, -2.5);
+    expect(heard).toEqual([-2.5]);
+    expect(one.input.getAttribute("aria-valuetext")).toBe("\u22122.5 towards woman");
+  });
+
+  it("goes back by a double click", () => {
+    const { heard, one } = made();
+    move(one.input, 4);
+    one.input.dispatchEvent(new Event("dblclick"));
+    expect(heard).toEqual([4, 0]);
+    expect(one.input.value).toBe("0");
+  });
+
+  it("goes back by its button, which is there once it was moved", () => {
+    const { heard, one } = made();
+    expect(one.element.classList.contains("changed")).toBe(false);
+    move(one.input, 1);
+    expect(one.element.classList.contains("changed")).toBe(true);
+    one.element.querySelector("button")!.click();
+    expect(heard).toEqual([1, 0]);
+  });
+
+  it("is caught by its usual place only while it is dragged", () => {
+    const { heard, one } = made();
+    move(one.input, 0.05);
+    one.input.dispatchEvent(new Event("pointerdown"));
+    move(one.input, -0.05);
+    expect(heard).toEqual([0.05, 0]);
+  });
+
+  it("tells nobody when it is told where to stand", () => {
+    const { heard, one } = made();
+    one.show(3);
+    expect(one.input.value).toBe("3");
+    expect(heard).toEqual([]);
+  });
+});
+
+it("one of a row of choices is checked at a time", () => {
+  const heard = vi.fn();
+  const row = choice("View", [{ value: 0, label: "Front" }, { value: 90, label: "Side" }], heard);
+  document.body.append(row.element);
+  row.show(90);
+  const [front, side] = [...row.element.querySelectorAll("input")];
+  expect([front!.checked, side!.checked]).toEqual([false, true]);
+  front!.click();
+  expect(heard).toHaveBeenCalledExactlyOnceWith(0);
+  expect(side!.checked).toBe(false);
+});
+
+it("text of a hostile file stays text", () => {
+  const notices = new Notices();
+  notices.trouble("<img src=x onerror=alert(1)>");
+  expect(notices.element.querySelector("img")).toBeNull();
+  expect(notices.element.querySelector("[role=alert]")!.textContent).toContain("<img");
+  expect(make("p", { title: '"><b>' }).outerHTML).not.toContain("<b>");
+});
+
+it("trouble stays until it is sent away", () => {
+  const notices = new Notices();
+  notices.trouble("This is no capture.");
+  notices.element.querySelector("button")!.click();
+  expect(notices.element.textContent).toBe("");
+});
+
+describe("what is brought", () => {
+  const model = goldenModel();
+  const file = (content: unknown, name = "a.json"): File =>
+    new File([typeof content === "string" ? content : JSON.stringify(content)], name);
+
+  it.each([
+    ["{", /not JSON/],
+    ["null", /neither a model nor a stimulus/],
+    ['{"format": "eigenwalker model"}', /no model of walkers/],
+    ['{"format": "eigenwalker stimulus", "version": 1}', /no stimulus/],
+  ])("is refused in a sentence where it is %s", async (text, sentence) => {
+    await expect(openFile(file(text), model)).rejects.toThrow(sentence);
+  });
+
+  it("is told about the server where only Python can read it", async () => {
+    await expect(openFile(file("", "walk.c3d"), model)).rejects.toThrow(/eigenwalker serve/);
+    await expect(openFile(file("", "people.nc"), model)).rejects.toThrow(/eigenwalker serve/);
+  });
+
+  it("walks, where it is a stimulus", async () => {
+    const walker = walkerOf(model, model.walkers[0]!.vector);
+    const opened = await openFile(file(stimulusWith(walker)), model);
+    expect(opened.kind).toBe("own");
+  });
+});
+
+describe("a walker of a stimulus", () => {
+  const model = goldenModel();
+  const vector = model.walkers[0]!.vector;
+
+  it("comes back as the vector it was made of", () => {
+    const own = ownOf(model, stimulusWith(walkerOf(model, vector)), "mine.json");
+    expect(own.name).toBe("mine");
+    own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
+  });
+
+  it("comes back whatever its origin of time and the signs of its postures", () => {
+    const walker = walkerOf(model, vector);
+    const flip = [1, -1, 1, -1];
+    const other = {
+      ...walker,
+      p: walker.p.map((p, i) => p.map((at) => at.map((x) => x * flip[i]!) as unknown as typeof at)),
+      phases: walker.phases.map((phase, i) => phase + walker.harmonics[i]! * 0.7 + (flip[i]! < 0 ? Math.PI : 0)),
+    };
+    const own = ownOf(model, stimulusWith(other), "mine.json");
+    own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
+  });
+
+  it("walks as it did, half a stride later, where its first posture has the other sign", () => {
+    const walker = walkerOf(model, vector);
+    const other = {
+      ...walker,
+      p: walker.p.map((p, i) => (i === 0 ? p.map((at) => at.map((x) => -x) as unknown as typeof at) : p)),
+    };
+    const own = walkerOf(model, ownOf(model, stimulusWith(other), "mine.json").vector);
+    const [was, is] = [posture(other, 0.1), posture(own, 0.1 + 0.5 / own.frequency_hz)];
+    is.forEach((value, i) => expect(value).toBeCloseTo(was[i]!, 6));
+  });
+
+  it("is refused where it lacks a marker", () => {
+    const walker = walkerOf(model, vector);
+    const other = { ...walker, markers: walker.markers.map((name) => `${name}_of_mine`) };
+    expect(() => ownOf(model, stimulusWith(other), "mine.json")).toThrow(/lacks head/);
+  });
+});
+
+it("a walker is called a caricature only when it is farther than all", () => {
+  const of = (distance: number, percentile: number): string =>
+    howPlausible({ distance, percentile, scores: [], positions: {} });
+  expect(of(0, 0)).toMatch(/average/);
+  expect(of(1, 50)).toBe("Plausible: 50 % of the walkers are nearer to the average.");
+  expect(of(3, 100)).toMatch(/caricature/);
+  expect(of(5, 100)).toMatch(/Nobody walks so: 5\.0 times/);
+});
