@@ -34,17 +34,22 @@ export function painterOn(
   canvas.style.width = `${width_px * scale}px`;
   canvas.style.height = `${height_px * scale}px`;
   const context = contextOf(canvas, { alpha: false });
+  const draw = drawingOf(stimulus, mannequin);
+  const clear = (): void => ground(context, stimulus, fine);
+  return { paint: (time) => draw(context, time, fine), clear };
+}
+
+/** Draws the stimulus as it is at a time; `fine` pixels of the canvas are one of the picture. */
+export type Drawing = (context: CanvasRenderingContext2D, time: number, fine: number) => void;
+
+/** What draws a stimulus on any canvas, over all of its picture. */
+export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Drawing {
   const layer = document.createElement("canvas");
   const frameAt = framesOf(stimulus);
-  const clear = (): void => {
-    context.setTransform(fine, 0, 0, fine, 0, 0);
-    context.fillStyle = stimulus.display.background;
-    context.fillRect(0, 0, width_px, height_px);
-  };
   const carved = stimulus.display.style === "mannequin";
   if (carved && !mannequin) throw new Error("The mannequin's module was not loaded.");
-  const paint = (time: number): void => {
-    clear();
+  return (context, time, fine) => {
+    ground(context, stimulus, fine);
     const all = frameAt(time);
     if (carved) mannequin?.paint(context, all, stimulus, fine);
     for (const shown of all) {
@@ -53,7 +58,12 @@ export function painterOn(
       else if (!carved || !hasLimbs(shown.moving)) drawDots(context, shown, stimulus);
     }
   };
-  return { paint, clear };
+}
+
+function ground(context: CanvasRenderingContext2D, { display }: Stimulus, fine: number): void {
+  context.setTransform(fine, 0, 0, fine, 0, 0);
+  context.fillStyle = display.background;
+  context.fillRect(0, 0, display.width_px, display.height_px);
 }
 
 function fit(canvas: HTMLCanvasElement, width: number, height: number, fine: number): void {

@@ -15,22 +15,34 @@ export interface Cast {
   readonly known: number | null;
 }
 
+/** Parts of the state that make a cast; all else leaves it as it is. */
+const CASTING = [
+  "traits", "kind", "part", "from", "bias", "strengths", "eigenwalkers", "scene", "walkers",
+] as const satisfies readonly (keyof State)[];
+
+/** The cast that was made last of each model: turning a crowd does not make it anew. */
+const last = new WeakMap<Model, { state: State; own: Own | null; cast: readonly Cast[] }>();
+
 /** All who are seen, in order. */
-export function castOf(model: Model, state: State, own: Own | null = null): Cast[] {
+export function castOf(model: Model, state: State, own: Own | null = null): readonly Cast[] {
+  const known = last.get(model);
+  if (known && known.own === own && CASTING.every((part) => known.state[part] === state[part])) return known.cast;
   const all = SCENES[state.scene](model, state, own);
-  return all.length > 0 ? all : one(model, state, own);
+  const cast = all.length > 0 ? all : one(model, state, own);
+  last.set(model, { state, own, cast });
+  return cast;
 }
 
 type Casting = (model: Model, state: State, own: Own | null) => Cast[];
 
 const SCENES: Readonly<Record<SceneName, Casting>> = { one, four, side, crowd };
 
-function cast(model: Model, name: string, vector: Float64Array, known: number | null = null): Cast {
+function member(model: Model, name: string, vector: Float64Array, known: number | null = null): Cast {
   return { name, vector, walker: walkerOf(model, vector), known };
 }
 
 function one(model: Model, state: State, own: Own | null): Cast[] {
-  return [cast(model, nameOf(model, state, own), vectorOf(model, state, own))];
+  return [member(model, nameOf(model, state, own), vectorOf(model, state, own))];
 }
 
 /** Who the walker is made from. */
@@ -48,7 +60,7 @@ function four(model: Model, state: State): Cast[] {
     [`${trait.negative} ${word}`, mean(negative, positive, -times)] as const,
     [`${trait.positive} ${word}`, mean(negative, positive, times)] as const,
   ]);
-  return panels.map(([name, vector]) => cast(model, name.trim(), alone(model, state, vector)));
+  return panels.map(([name, vector]) => member(model, name.trim(), alone(model, state, vector)));
 }
 
 /** The trait of two classes that the four panels show: that of the bias, or the first there is. */
@@ -82,5 +94,5 @@ function crowd(model: Model, state: State): Cast[] {
 function changed(model: Model, state: State, number: number): Cast[] {
   const known = model.walkers[number];
   if (!known) return [];
-  return [cast(model, known.name, vectorOf(model, { ...state, from: number }), number)];
+  return [member(model, known.name, vectorOf(model, { ...state, from: number }), number)];
 }

@@ -5,8 +5,18 @@ import type { Model, Span } from "./model";
 export const blockOf = ({ layout }: Pick<Model, "layout">, block: string): Span | undefined =>
   Object.hasOwn(layout, block) ? layout[block] : undefined;
 
+const found = new WeakMap<Model["layout"], Map<string, readonly number[]>>();
+
 /** Columns of a part of the features, in increasing order: a block, or several joined by "+". */
-export function columnsOf(model: Pick<Model, "layout">, part: string): number[] {
+export function columnsOf({ layout }: Pick<Model, "layout">, part: string): readonly number[] {
+  const known = found.get(layout) ?? new Map<string, readonly number[]>();
+  found.set(layout, known);
+  const columns = known.get(part) ?? gather({ layout }, part);
+  known.set(part, columns);
+  return columns;
+}
+
+function gather(model: Pick<Model, "layout">, part: string): number[] {
   const blocks = Object.keys(model.layout);
   const gathered: Readonly<Record<string, readonly string[]>> = {
     all: blocks,

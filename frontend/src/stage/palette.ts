@@ -1,0 +1,13 @@
+/** Colours of the stage, dark and light; the page's style sheet takes the same. */
+
+export interface Palette {
+  readonly background: string;
+  readonly colour: string;
+  /** Of what is only hinted at: the ground. */
+  readonly faint: string;
+}
+
+export const DARK: Palette = { background: "#0c0d0f", colour: "#ffffff", faint: "#1b2027" };
+export const LIGHT: Palette = { background: "#f8f7f3", colour: "#16181c", faint: "#e9e6de" };
+
+export const paletteOf = (dark: boolean): Palette => (dark ? DARK : LIGHT);

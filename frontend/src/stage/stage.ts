@@ -1,0 +1,322 @@
+/** The stage: draws who is on it at the rate of the screen, and lets itself be turned by dragging. */
+
+import { everyFrame } from "../canvas/clock";
+import { heldMannequin, type MannequinPainter } from "../canvas/mannequin";
+import type { Cast } from "../model/cast";
+import type { Model } from "../model/model";
+import { RANGES, within, wrappedDegrees, type State } from "../model/state";
+import { actOf, type Act } from "./act";
+import { watchGestures } from "./dragging";
+import { boxesOf, stagingOf, type Box, type Room, type Size, type Staging } from "./staging";
+import { roomFor } from "./stimulus";
+
+export type { Box } from "./staging";
+
+/** Told by the stage; all may be left out. */
+export interface Hooks {
+  /** It was turned by dragging. */
+  turned?(azimuth_deg: number, elevation_deg: number): void;
+  /** A frame was drawn; where in its stride the first walker is, from 0 to below 1. */
+  ticked?(cycle: number): void;
+  /** One of several was tapped: its number among the model's walkers. */
+  picked?(known: number): void;
+  /** Where each walker stands now, in pixels of CSS. */
+  laid?(boxes: readonly Box[]): void;
+  /** The mannequin cannot be had; the message is a sentence to show. */
+  lacking?(message: string): void;
+  /** Where the mannequin comes from, if not from the page. */
+  mannequin?(): Promise<MannequinPainter>;
+}
+
+const DEGREES_PER_PX = 0.5;
+/** Finer than this no dot looks better, and a phone gets warm. */
+const MOST_FINE = 2;
+/** A screen that stood still meanwhile does not make up for it. */
+const LONGEST_FRAME_S = 0.1;
+/** How soon a stage that was thrown comes to rest, and when it has. */
+const SLOWING_S = 0.28;
+const RESTS_DEG_S = 4;
+/** How far apart in their strides the walkers of a crowd are: never alike. */
+const GOLDEN = (Math.sqrt(5) - 1) / 2;
+
+interface Shown {
+  readonly model: Model;
+  readonly cast: readonly Cast[];
+  readonly state: State;
+}
+
+/** What the act was made of, and when. */
+interface Built extends Shown {
+  readonly time: number;
+  readonly turned_deg: number;
+}
+
+/** Parts of the state that an act is made of, but for the view and who is seen. */
+const ACTED = ["perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms"] as const;
+
+const sameAct = (one: Shown, other: Shown): boolean =>
+  one.model === other.model &&
+  one.cast === other.cast &&
+  ACTED.every((part) => one.state[part] === other.state[part]);
+
+type Seen = Pick<State, "azimuth_deg" | "elevation_deg">;
+
+const seenAlike = (one: Seen, other: Seen): boolean =>
+  one.azimuth_deg === other.azimuth_deg && one.elevation_deg === other.elevation_deg;
+
+export class Stage {
+  readonly #canvas: HTMLCanvasElement;
+  readonly #context: CanvasRenderingContext2D;
+  readonly #hooks: Hooks;
+  readonly #endings: (() => void)[];
+  #shown: Shown | null = null;
+  #act: Act | null = null;
+  #built: Built | null = null;
+  #boxes: readonly Box[] = [];
+  #room: { cast: readonly Cast[]; room: Room } | null = null;
+  #size: Size = { width_px: 0, height_px: 0 };
+  #fine = 1;
+  #mannequin: MannequinPainter | null = null;
+  #asked = false;
+  #stop: (() => void) | null = null;
+  #time = 0;
+  #inSight = true;
+  #dirty = true;
+  /** Turned by hand: the state follows, and is not heard until it has. */
+  #hand: Seen | null = null;
+  #throw = { right: 0, down: 0 };
+
+  constructor(canvas: HTMLCanvasElement, hooks: Hooks = {}) {
+    const context = canvas.getContext("2d", { alpha: false });
+    if (!context) throw new Error("This browser gives no canvas to draw on.");
+    this.#canvas = canvas;
+    this.#context = context;
+    this.#hooks = hooks;
+    this.#endings = [this.#watchSize(), this.#watchSight(), this.#watchHand()];
+  }
+
+  /** Where in its stride the first walker is, from 0 to below 1. */
+  get cycle(): number {
+    const cycles = this.#act?.cycle(0, this.#time) ?? 0;
+    return cycles - Math.floor(cycles);
+  }
+
+  /** Show these from the next frame on; strides go on where they are. */
+  show(model: Model, cast: readonly Cast[], state: State): void {
+    const before = this.#shown;
+    this.#shown = { model, cast, state };
+    if (this.#hand && !seenAlike(this.#hand, state)) this.#throw = { right: 0, down: 0 };
+    this.#hand = null;
+    if (state.style === "mannequin") this.#askForMannequin();
+    if (state.turning_deg_s === 0) this.#fold();
+    const scrubbed = !before || (!state.playing && before.state.cycle !== state.cycle);
+    if (scrubbed || !this.#built || !sameAct(this.#built, this.#shown)) this.#rebuild(scrubbed);
+    else if (!seenAlike(this.#built.state, state)) this.#look();
+    else this.#wake();
+  }
+
+  /** Stop for good. */
+  remove(): void {
+    this.#sleep();
+    for (const end of this.#endings) end();
+    this.#shown = null;
+  }
+
+  /** Make the act anew, each walker in the stride where it was. */
+  #rebuild(scrubbed = false): void {
+    const shown = this.#shown;
+    if (!shown || this.#size.width_px === 0 || this.#size.height_px === 0) return;
+    const { model, cast } = shown;
+    const state = { ...shown.state, ...this.#hand };
+    if (this.#room?.cast !== cast) this.#room = { cast, room: roomFor(model, cast) };
+    const staging = stagingOf(cast.length, this.#room.room, this.#size, state.elevation_deg);
+    const [size, time, mannequin] = [this.#size, this.#time, this.#mannequin];
+    const cycles = cast.map((_, i) => this.#cycleOf(i, scrubbed));
+    const turned_deg = this.#turnedBy(time);
+    this.#act = actOf({ model, cast, state, size, staging, cycles, time, turned_deg, mannequin });
+    this.#built = { model, cast, state, time, turned_deg };
+    this.#lay(staging);
+    this.#wake();
+  }
+
+  /** See the same act from elsewhere. */
+  #look(): void {
+    const { state, cast } = this.#shown ?? {};
+    if (!state || !cast || !this.#built || !this.#room) return;
+    const view = { ...state, ...this.#hand };
+    const staging = stagingOf(cast.length, this.#room.room, this.#size, view.elevation_deg);
+    if (!this.#act?.turn(view.azimuth_deg, view.elevation_deg, staging)) return this.#rebuild();
+    this.#built = { ...this.#built, state: view };
+    this.#lay(staging);
+    this.#wake();
+  }
+
+  /** How far it has turned by itself. */
+  #turnedBy(time: number): number {
+    const built = this.#built;
+    return built ? built.turned_deg + built.state.turning_deg_s * (time - built.time) : 0;
+  }
+
+  /** From now on it is seen from where it came to by turning itself. */
+  #fold(): void {
+    const { state } = this.#shown ?? {};
+    const turned = this.#turnedBy(this.#time);
+    if (!state || !this.#built || turned === 0) return;
+    this.#built = { ...this.#built, turned_deg: 0, time: this.#time };
+    this.#see(state.azimuth_deg + turned, state.elevation_deg);
+  }
+
+  /** Be seen from there by hand, and say so. */
+  #see(azimuth: number, elevation: number): void {
+    const azimuth_deg = wrappedDegrees(azimuth);
+    const elevation_deg = within(RANGES.elevation_deg, elevation);
+    this.#hand = { azimuth_deg, elevation_deg };
+    this.#look();
+    this.#hooks.turned?.(azimuth_deg, elevation_deg);
+  }
+
+  /** Where in its stride a walker goes on. */
+  #cycleOf(number: number, scrubbed: boolean): number {
+    const { cast, state } = this.#shown!;
+    const lag = state.scene === "crowd" && cast.length > 1 ? GOLDEN * number : 0;
+    if (scrubbed || !this.#act) return state.cycle + lag;
+    const known = this.#built?.state.scene === state.scene ? this.#act.cycle(number, this.#time) : NaN;
+    return Number.isFinite(known) ? known : this.#act.cycle(0, this.#time) + lag;
+  }
+
+  #lay(staging: Staging): void {
+    this.#boxes = boxesOf(staging, this.#size);
+    this.#hooks.laid?.(this.#boxes);
+  }
+
+  /** Draw a frame, and go on drawing while anything moves. */
+  #wake(): void {
+    this.#dirty = true;
+    if (this.#stop || !this.#inSight || document.hidden) return;
+    let before = 0;
+    this.#stop = everyFrame((elapsedMs) => {
+      const lasted = Math.min((elapsedMs - before) / 1000, LONGEST_FRAME_S);
+      before = elapsedMs;
+      const goesOn = this.#frame(lasted);
+      if (!goesOn) this.#stop = null;
+      return goesOn;
+    });
+  }
+
+  #sleep(): void {
+    this.#stop?.();
+    this.#stop = null;
+  }
+
+  /** One frame; whether there will be another. */
+  #frame(lasted: number): boolean {
+    const state = this.#shown?.state;
+    if (!state || !this.#act) return false;
+    if (state.playing) this.#time += lasted;
+    const slides = this.#slide(lasted);
+    if (state.playing || this.#dirty) {
+      this.#dirty = false;
+      this.#act.draw(this.#context, this.#time, this.#fine);
+      this.#hooks.ticked?.(this.cycle);
+    }
+    return state.playing || slides || this.#dirty;
+  }
+
+  /** Turn on after a throw, slower and slower; whether it still turns. */
+  #slide(lasted: number): boolean {
+    const { right, down } = this.#throw;
+    if (Math.hypot(right, down) * DEGREES_PER_PX < RESTS_DEG_S) return false;
+    const slower = Math.exp(-lasted / SLOWING_S);
+    this.#throw = { right: right * slower, down: down * slower };
+    this.#turn(right * lasted, down * lasted);
+    return true;
+  }
+
+  #turn(right: number, down: number): void {
+    const from = this.#hand ?? this.#shown?.state;
+    if (!from) return;
+    this.#see(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
+  }
+
+  #watchHand(): () => void {
+    const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+    return watchGestures(this.#canvas, {
+      begun: () => {
+        this.#throw = { right: 0, down: 0 };
+        this.#fold();
+      },
+      dragged: (right, down) => this.#turn(right, down),
+      thrown: (right, down) => {
+        if (calm.matches) return;
+        this.#throw = { right, down };
+        this.#wake();
+      },
+      tapped: (x, y) => this.#pick(x, y),
+    });
+  }
+
+  /** Whose box a place is in. */
+  #pick(x: number, y: number): void {
+    const cast = this.#shown?.cast ?? [];
+    const number = this.#boxes.findIndex(
+      ({ left, top, width, height }) => x >= left && x < left + width && y >= top && y < top + height,
+    );
+    const known = cast[number]?.known ?? null;
+    if (cast.length > 1 && known !== null) this.#hooks.picked?.(known);
+  }
+
+  #watchSize(): () => void {
+    const measure = (): void => {
+      const { clientWidth, clientHeight } = this.#canvas;
+      const fine = Math.min(window.devicePixelRatio || 1, MOST_FINE);
+      const { width_px, height_px } = this.#size;
+      if (clientWidth === width_px && clientHeight === height_px && fine === this.#fine) return;
+      this.#size = { width_px: clientWidth, height_px: clientHeight };
+      this.#fine = fine;
+      this.#canvas.width = Math.round(clientWidth * fine);
+      this.#canvas.height = Math.round(clientHeight * fine);
+      this.#rebuild();
+      // A canvas that has a new size is empty: it is drawn before the screen shows it.
+      this.#act?.draw(this.#context, this.#time, this.#fine);
+    };
+    const observer = new ResizeObserver(measure);
+    observer.observe(this.#canvas);
+    window.addEventListener("resize", measure);
+    measure();
+    return () => {
+      observer.disconnect();
+      window.removeEventListener("resize", measure);
+    };
+  }
+
+  /** No work while nobody sees it. */
+  #watchSight(): () => void {
+    const look = (): void => {
+      if (this.#inSight && !document.hidden) this.#wake();
+      else this.#sleep();
+    };
+    const observer = new IntersectionObserver((entries) => {
+      this.#inSight = entries.at(-1)!.isIntersecting;
+      look();
+    });
+    observer.observe(this.#canvas);
+    document.addEventListener("visibilitychange", look);
+    return () => {
+      observer.disconnect();
+      document.removeEventListener("visibilitychange", look);
+    };
+  }
+
+  #askForMannequin(): void {
+    if (this.#asked) return;
+    this.#asked = true;
+    const load = this.#hooks.mannequin ?? heldMannequin;
+    load().then(
+      (painter) => {
+        this.#mannequin = painter;
+        this.#rebuild();
+      },
+      (error: unknown) => this.#hooks.lacking?.(error instanceof Error ? error.message : String(error)),
+    );
+  }
+}
