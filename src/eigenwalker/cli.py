@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from eigenwalker import cli_data, cli_stimulus
+from eigenwalker import cli_data, cli_serve, cli_stimulus
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,6 +35,7 @@ app = typer.Typer(
     help="How people walk: from captures to a model, classifiers, and walkers of any trait.",
 )
 app.add_typer(cli_data.app, name="data")
+app.command()(cli_serve.serve)
 app.command()(cli_stimulus.stimulus)
 
 T = TypeVar("T")
@@ -43,6 +44,7 @@ FAILED = 2
 LONGEST_NAME = 24
 """Letters up to which entries of a list are written one after the other."""
 INTERRUPTED = 130
+INDEX = "index.html"
 
 People = Annotated[
     Path | None,
@@ -95,12 +97,19 @@ def demo(
     output: Folder = Path("eigenwalker-demo"),
     trait: Annotated[str, typer.Option(help="Trait of two classes to tell.")] = "sex",
     open_page: Annotated[
-        bool, typer.Option("--open/--no-open", help="Open the report if there is a screen.")
+        bool, typer.Option("--open/--no-open", help="Open the page if there is a screen.")
     ] = True,
     with_flagged: WithFlagged = False,
 ) -> None:
-    """Run the main job: tell a trait from gait, and show walkers of either pole."""
+    """Run the main job, and write a page on which anyone can play with what was found.
+
+    index.html holds the walkers, report.html beside it what tells the trait from gait; both work
+    from the disk, without a network.
+    """
     from eigenwalker.datasets import built_in_capture
+    from eigenwalker.page.interactive import interactive_page
+    from eigenwalker.page.model import page_model
+    from eigenwalker.report.content import Link
     from eigenwalker.report.main_job import write_main_job
 
     population = _population(people, with_flagged)
@@ -110,12 +119,17 @@ def demo(
             population,
             trait,
             example=built_in_capture() if people is None else None,
+            beside=Link("Play with these walkers", INDEX),
             progress=progress,
         )
+    model = page_model(population, first=trait, **cli_serve.model_names(people))
+    index = page.with_name(INDEX)
+    index.write_text(interactive_page(model, report=page.name), encoding="utf-8")
     _print_results(found)
     print(f"Report: {page}")
-    if open_page and _has_screen():
-        typer.launch(str(page))
+    print(f"Page to play with: {index}")
+    if open_page and cli_serve.has_screen():
+        typer.launch(str(index))
 
 
 @app.command()
@@ -498,14 +512,6 @@ def _one_of(value: str, known: object, option: str) -> None:
     names = list(known)  # pyright: ignore[reportArgumentType] - any collection
     if value not in names:
         raise ValueError(f"{option} {value!r} is not known; choose from {names}.")
-
-
-def _has_screen() -> bool:
-    import os
-
-    return sys.platform in ("win32", "darwin") or bool(
-        os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    )
 
 
 @contextmanager

@@ -24,7 +24,7 @@ def main(module: str, function: str, path: str, seconds: int, most_bytes: int) -
     assert spec.loader is not None
     reader = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(reader)
-    _limit(seconds, most_bytes)
+    limit_itself(seconds, most_bytes)
     try:
         arrays = getattr(reader, function)(path)
         if sum(array.nbytes for array in arrays.values()) > most_bytes:
@@ -40,7 +40,7 @@ def main(module: str, function: str, path: str, seconds: int, most_bytes: int) -
     return 0
 
 
-def _limit(seconds: int, most_bytes: int) -> None:
+def limit_itself(seconds: int, most_bytes: int) -> None:
     """Set what the system takes away from a process; Windows has no such limits."""
     try:
         import resource

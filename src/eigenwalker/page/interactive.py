@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import gzip
 import json
+import re
 from collections.abc import Mapping
 from html import escape
 from importlib.resources import files
 from typing import Any
 
-PAGE = "interactive.html"
-CARRIED = {"player": "player.html", "mannequin": "mannequin.js"}
-"""What the page holds to save pages with and to draw bodies with, by the id of its script."""
-_HELD = '<script id="{}" type="application/json">{}</script>'
-_ALONE = "default-src 'none';"
-_WITH_SERVER = "default-src 'none'; connect-src 'self';"
+PAGE, PLAYER, MANNEQUIN = "interactive.html", "player.html", "mannequin.js"
+"""Built from ``frontend/`` when the package is."""
+MOST_GZIPPED = 300_000
+"""Bytes of a page to put on a web host; what draws the mannequin is inside as long as it fits."""
+_SERVER, _NO_SERVER = "connect-src 'self'", "connect-src 'none'"
 
 
 def interactive_page(model: Mapping[str, Any], *, report: str = "", server: bool = False) -> str:
@@ -50,27 +51,38 @@ def interactive_page(model: Mapping[str, Any], *, report: str = "", server: bool
     ('<!doctype html>', True)
 
     """
-    page = built(PAGE)
-    held: dict[str, Any] = {"model": model}
-    held |= {name: built(file) for name, file in CARRIED.items() if _place(name) in page}
-    for name, content in held.items():
-        page = _with(page, _place(name), _HELD.format(name, _as_script(content)))
+    page = _holding(built(PAGE), "model", _as_json(model))
+    page = _holding(page, "player", _as_json(built(PLAYER)))
     about = [("eigenwalker-report", report)] if report else []
     if server:
         about.append(("eigenwalker-server", "1"))
-        page = _with(page, _ALONE, _WITH_SERVER)
+    else:
+        page = _with(page, _SERVER, _NO_SERVER)
     metas = "".join(f'<meta name="{name}" content="{escape(said)}" />' for name, said in about)
-    return _with(page, "<head>", f"<head>{metas}") if metas else page
+    page = _with(page, "<head>", f"<head>{metas}")
+    whole = _holding(page, "mannequin", _as_text(built(MANNEQUIN)))
+    fits = server or len(gzip.compress(whole.encode("utf-8"))) < MOST_GZIPPED
+    return whole if fits else page
 
 
-def _place(name: str) -> str:
-    return _HELD.format(name, "null")
+def _holding(page: str, name: str, content: str) -> str:
+    """The page with content in the script of that id, which nothing runs."""
+    empty = re.compile(rf'(<script id="{name}" type="[a-z/]+">)(?:null)?(</script>)')
+    found = empty.search(page)
+    if found is None:
+        raise ValueError(f"The built {PAGE} has no place for the {name}; build it again.")
+    return page[: found.end(1)] + content + page[found.start(2) :]
 
 
-def _as_script(content: Any) -> str:
+def _as_json(content: Any) -> str:
     """JSON that no script element ends in: a "<" stands in its texts only."""
     text = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return text.replace("<", "\\u003c")
+
+
+def _as_text(script: str) -> str:
+    """A script with its texts written so that they end no element."""
+    return script.replace("</script", "<\\/script").replace("<!--", "<\\!--")
 
 
 def _with(page: str, place: str, content: str) -> str:

@@ -28,6 +28,7 @@ def page_model(
     population: Population,
     *,
     traits: Sequence[str] | None = None,
+    first: str = "",
     title: str = "",
     source: str = "",
 ) -> dict[str, Any]:
@@ -40,6 +41,8 @@ def page_model(
     population : Population
     traits : sequence of str, optional
         Traits to have sliders for, as `contrast` takes them; left out, all that have an axis.
+    first : str
+        A trait to begin with where `traits` is left out: ``"style=feminine:masculine"``.
     title : str
         What the page is called.
     source : str
@@ -63,7 +66,7 @@ def page_model(
     known, layout = population.X[rows], population.layout
     average = known.mean(axis=0)
     points = _evenly(len(rows), MOST_POINTS)
-    axes = model_traits(population, traits)
+    axes = model_traits(population, traits, first=first)
     skeleton = JOINTS.restricted_to(layout.markers)
     shown = _evenly(len(rows), MOST_WALKERS)
     return {

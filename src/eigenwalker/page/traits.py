@@ -31,7 +31,9 @@ def parts_of(population: Population) -> list[str]:
     return [*_TOGETHER, *(name for name in population.layout.blocks if name != "p0")]
 
 
-def model_traits(population: Population, wanted: Sequence[str] | None = None) -> list[dict]:
+def model_traits(
+    population: Population, wanted: Sequence[str] | None = None, *, first: str = ""
+) -> list[dict]:
     """Return each trait that can be an axis: its poles, and a step for each part and kind.
 
     Parameters
@@ -40,6 +42,8 @@ def model_traits(population: Population, wanted: Sequence[str] | None = None) ->
     wanted : sequence of str, optional
         Traits as `contrast` takes them; others are left out. Left out, all columns of the traits
         that have an axis, up to 12.
+    first : str
+        A trait to begin with, in place of its column: ``"style=feminine:masculine"``.
 
     Returns
     -------
@@ -54,8 +58,9 @@ def model_traits(population: Population, wanted: Sequence[str] | None = None) ->
     spaces = _Spaces(population)
     if wanted is not None:
         return [_trait(spaces, name) for name in wanted]
-    found = []
-    for name in map(str, population.traits):
+    found = [_trait(spaces, first)] if first else []
+    begun = {trait["column"] for trait in found}
+    for name in (str(name) for name in population.traits if name not in begun):
         try:
             found.append(_trait(spaces, name))
         except ValueError:  # no trait of its own, or the same for everybody: no slider

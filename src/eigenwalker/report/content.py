@@ -93,8 +93,29 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Link:
+    """Words that lead to a page beside the report.
+
+    Parameters
+    ----------
+    words : str
+        What one comes to.
+    file : str
+        Name of a file in the report's folder.
+
+    """
+
+    words: str
+    file: str
+
+    def __post_init__(self) -> None:
+        if self.file != Path(self.file).name or ":" in self.file:
+            raise ValueError(f"A report links to files beside it; {self.file!r} is none.")
+
+
+@dataclass(frozen=True)
 class Report:
-    """A title, a lead that tells the main result, and sections.
+    """A title, a lead that tells the main result, and sections; perhaps a link to a page beside it.
 
     Examples
     --------
@@ -107,3 +128,4 @@ class Report:
     title: str
     lead: str
     sections: Sequence[Section] = ()
+    beside: Link | None = None

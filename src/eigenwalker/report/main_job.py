@@ -31,6 +31,7 @@ from eigenwalker.report.content import (
     Figure,
     Film,
     Items,
+    Link,
     Report,
     Section,
     Table,
@@ -89,6 +90,7 @@ def write_main_job(
     *,
     example: xr.DataArray | None = None,
     n_permutations: int = 200,
+    beside: Link | None = None,
     progress: Progress | None = None,
 ) -> tuple[Path, Classification | Regression]:
     """Classify a trait, film it, and write a report page on both.
@@ -105,6 +107,8 @@ def write_main_job(
         A walk in place, to show how sines stand for its scores (J fig. 3).
     n_permutations : int
         Random deals of the trait to compare with.
+    beside : Link, optional
+        A page in the same folder for the report to link to.
     progress : callable, optional
         Called with the number of steps done and of all.
 
@@ -130,6 +134,7 @@ def write_main_job(
             Section("Mind", [Items(_cautions(population, found))]),
             Section("Made with", [Code(f"eigenwalker {eigenwalker.__version__}\n{_CITE}")]),
         ],
+        beside=beside,
     )
     return write_report(folder, report), found
 

@@ -12,6 +12,7 @@ import warnings
 from functools import singledispatch
 from importlib.resources import files
 from pathlib import Path
+from urllib.parse import quote
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 import av
@@ -109,6 +110,9 @@ def _fill(body: Element, report: Report) -> None:
     header = SubElement(body, "header")
     _put(header, "h1", report.title)
     _put(header, "p", report.lead, {"class": "lead"})
+    if report.beside is not None:
+        address = quote(report.beside.file)
+        _put(SubElement(header, "p"), "a", report.beside.words, {"href": address})
     if len(report.sections) > 2:
         links = SubElement(SubElement(header, "nav", {"aria-label": "Sections"}), "ul")
         for number, section in enumerate(report.sections, start=1):
