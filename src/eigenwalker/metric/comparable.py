@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
 from eigenwalker.gait import in_place
+from eigenwalker.gait.gaps import MAX_GAP_S, fill_short_gaps
 from eigenwalker.metric.captured_rotations import with_rotations
 from eigenwalker.metric.frame_metrics import By
 from eigenwalker.metric.groups import group_points
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.mocap import virtual_markers
 from eigenwalker.skeleton import JOINTS
+from eigenwalker.trajectories import sampling_rate
 
 
 def comparable_walk(capture: xr.DataArray, *, mannequin: bool = True) -> xr.DataArray:
@@ -47,16 +48,16 @@ def comparable_walk(capture: xr.DataArray, *, mannequin: bool = True) -> xr.Data
 
     """
     joints = with_rotations(virtual_markers(capture, joints="full"), capture)
-    hidden = np.isnan(joints.values).any(axis=(0, 2)) & ~joints.marker.isin(JOINTS.markers).values
-    try:
-        walk, left_out = in_place(joints), []
-    except ValueError:
-        if not hidden.any():
-            raise
-        walk = in_place(joints.isel(marker=~hidden))
-        left_out = joints.marker.values[hidden].tolist()
-    walk = walk.assign_attrs(left_out=left_out)
+    hidden = _hidden(joints)
+    walk = in_place(joints.drop_sel(marker=hidden)).assign_attrs(left_out=hidden)
     return retarget(walk) if mannequin else walk
+
+
+def _hidden(joints: xr.DataArray) -> list[str]:
+    """Return hands, feet and the like that were not seen for longer than can be filled."""
+    _, gaps = fill_short_gaps(joints.values, sampling_rate(joints), MAX_GAP_S)
+    names = {str(joints.marker.values[gap.marker]) for gap in gaps}
+    return sorted(names - set(JOINTS.markers))
 
 
 def by_group(points: pd.DataFrame, by: By) -> pd.DataFrame:
