@@ -76,15 +76,54 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
     if half:
         along, across = diagonal_means(along, half), diagonal_means(across, half)
         means = [diagonal_means(mean, half) for mean in means]
-    mean_xa, mean_ya, mean_xb, mean_yb = means
-    along -= n_points * (mean_xa * mean_xb + mean_ya * mean_yb)
-    across -= n_points * (mean_ya * mean_xb - mean_xa * mean_yb)
+    return _closed_form([*means, along / n_points, across / n_points], middle_a, middle_b)
+
+
+def _closed_form(means: list[np.ndarray], middle_a: np.ndarray, middle_b: np.ndarray) -> Alignment:
+    """Turn and move from means over points of x, y, x', y', x x' + y y' and y x' - x y'."""
+    mean_xa, mean_ya, mean_xb, mean_yb, along, across = means
+    along = along - (mean_xa * mean_xb + mean_ya * mean_yb)
+    across = across - (mean_ya * mean_xb - mean_xa * mean_yb)
     angles = np.arctan2(across, along)
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = mean_xb + middle_b[0], mean_yb + middle_b[1]
     shift_x = mean_xa + middle_a[0] - (cos * x - sin * y)
     shift_y = mean_ya + middle_a[1] - (sin * x + cos * y)
     return Alignment(angles, np.stack([shift_x, shift_y], axis=-1))
+
+
+def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
+    """Return how the frames of one clip are brought over those of another, step by step.
+
+    Parameters
+    ----------
+    a, b : array of shape (step, point, axis)
+        Positions that correspond to each other, none missing.
+    half : int
+        Steps on either side that count too; fewer at the ends.
+
+    Returns
+    -------
+    Alignment
+        One turn and move a step.
+
+    Examples
+    --------
+    >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
+    >>> found = align_steps(posture, posture + np.array([30.0, 0, 0]))
+    >>> found.angles.tolist(), found.shifts.tolist()
+    ([0.0], [[-30.0, 0.0]])
+
+    """
+    middle_a, middle_b = (values[..., :2].mean(axis=(0, 1)) for values in (a, b))
+    (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
+    means = [values.mean(axis=1) for values in (xa, ya, xb, yb)]
+    means += [(xa * xb + ya * yb).mean(axis=1), (ya * xb - xa * yb).mean(axis=1)]
+    sums = np.concatenate([np.zeros((1, 6)), np.cumsum(np.stack(means, axis=1), axis=0)])
+    steps = np.arange(len(a))
+    first, stop = np.maximum(steps - half, 0), np.minimum(steps + half + 1, len(a))
+    windows = (sums[stop] - sums[first]) / (stop - first)[:, None]
+    return _closed_form(list(windows.T), middle_a, middle_b)
 
 
 def _horizontal(values: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -86,7 +86,7 @@ def _map_with_gaps(
     a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
 ) -> np.ndarray:
     """Map in which each cell is made of the points that both frames have."""
-    seen_a, seen_b = (np.isfinite(values).all(axis=2) for values in (a, b))
+    seen_a, seen_b = ~np.isnan(a).any(axis=2), ~np.isnan(b).any(axis=2)
     total = np.zeros((len(a), len(b)))
     weight = (seen_a * weights) @ seen_b.T.astype(float)
     for k, w in enumerate(weights):
@@ -134,6 +134,31 @@ def _powers(
         point = slice(k, k + 1)
         rows_of_map(rows[:, point].copy(), columns[point], one, 0, 1.0, first, distances)
         result[:, first:] += weight * distances[:, first:] ** exponent
+
+
+def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return how far each point of one clip is from the same point of another, frame by frame.
+
+    Parameters
+    ----------
+    a, b : array of shape (step, point, part)
+        As for `point_map`.
+
+    Returns
+    -------
+    array of shape (step, point)
+
+    Examples
+    --------
+    >>> point_distances(np.array([[[1.0, 0, 0, 0]]]), np.array([[[0, 1.0, 0, 0]]])).round(6)
+    array([[3.141593]])
+
+    """
+    apart = np.linalg.norm(a - b, axis=2)
+    if a.shape[2] == 3:
+        return apart
+    together = np.linalg.norm(a + b, axis=2)
+    return 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
 
 
 def in_threads(work: Callable[[int], object], starts: range, *, few: bool = False) -> None:

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation
 
 from eigenwalker.gait import in_place
 from eigenwalker.gait.frequency import BOUNDS_HZ
 from eigenwalker.gait.steady import closes, closing_step
+from eigenwalker.metric.turns_between import between, quaternions_at, vectors_of
 from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
 
 REPEATS_BELOW = 0.4
@@ -225,8 +225,11 @@ def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
     gaps = np.linalg.norm(path(first) - path(second), axis=2).mean(axis=1)
     cycle = _as_cycle(walk, values, period / rate_hz)
     if "rotation" in walk.coords:
-        turns = _blended_turns(walk.rotation.values, first, second, weight[..., 0])
-        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, turns))
+        vectors = walk.rotation.values
+        turns = between(
+            quaternions_at(vectors, second), quaternions_at(vectors, first), weight[..., 0]
+        )
+        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, vectors_of(turns)))
     return Loop(
         cycle,
         period_s=period / rate_hz,
@@ -260,32 +263,3 @@ def _as_cycle(walk: xr.DataArray, values: np.ndarray, period_s: float) -> xr.Dat
     time = np.arange(len(values)) * period_s / len(values)
     cycle = trajectories_at(time, values, walk.marker.values)
     return cycle.assign_attrs(walk.attrs, frequency_hz=1 / period_s, n_strides=1)
-
-
-def _blended_turns(
-    vectors: np.ndarray, first: np.ndarray, second: np.ndarray, weight: np.ndarray
-) -> np.ndarray:
-    """Rotation vectors between frames of the two periods, by the shorter way (normalised sums)."""
-    shape = (len(first), *vectors.shape[1:])
-    quaternions = np.full((*vectors.shape[:2], 4), np.nan)
-    seen = np.isfinite(vectors).all(axis=2)
-    quaternions[seen] = Rotation.from_rotvec(vectors[seen]).as_quat()
-    last = len(vectors) - 1
-
-    def at(moments: np.ndarray) -> np.ndarray:
-        before = np.minimum(moments.astype(int), last)
-        share = (moments - before)[:, None]
-        return _between(quaternions[before], quaternions[np.minimum(before + 1, last)], share)
-
-    blended = _between(at(second), at(first), weight)
-    turns = np.full(shape, np.nan)
-    known = np.isfinite(blended).all(axis=2)
-    turns[known] = Rotation.from_quat(blended[known]).as_rotvec()
-    return turns
-
-
-def _between(start: np.ndarray, stop: np.ndarray, share: np.ndarray) -> np.ndarray:
-    dot = np.einsum("tmq,tmq->tm", start, stop)
-    stop = np.where(dot[..., None] < 0, -stop, stop)
-    mixed = (1 - share[..., None]) * start + share[..., None] * stop
-    return mixed / np.linalg.norm(mixed, axis=2, keepdims=True)

@@ -16,12 +16,13 @@ from eigenwalker.metric.frame_metrics import (
     shape_parameter,
 )
 from eigenwalker.metric.kernels import diagonal_means, point_map
+from eigenwalker.metric.published import metric_named
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 MOST_CELLS = 60_000_000
 """Cells of the largest map: half a gigabyte. Two clips of a minute at 120 Hz stay below."""
 
-_SAME_RATE = 0.01
+SAME_RATE = 0.01
 """Relative difference of frame rates up to which windows of as many frames last as long."""
 
 _UNITS = {"positions": "mm", "velocities": "mm/s", "angles": "rad"}
@@ -31,7 +32,7 @@ def motion_map(
     a: xr.DataArray,
     b: xr.DataArray | None = None,
     *,
-    metric: ComparesFrames = POSITIONS,
+    metric: str | ComparesFrames = POSITIONS,
     window_s: float = 0.0,
     align: bool = False,
 ) -> xr.DataArray:
@@ -46,9 +47,9 @@ def motion_map(
         Trajectories. Points are compared that both clips have.
     b : DataArray of shape (time, marker, axis), optional
         The other clip; left out, the clip is compared to itself.
-    metric : FrameMetric
-        What is compared and how; left out, the mean Euclidean distance of positions in mm, all
-        points weighing the same.
+    metric : FrameMetric or str
+        What is compared and how, or the name of a published metric; left out, the mean Euclidean
+        distance of positions in mm, all points weighing the same.
     window_s : float
         Seconds over which corresponding frames are averaged, fewer at the ends of the clips (P4).
         Both clips must have the same frame rate then.
@@ -79,6 +80,7 @@ def motion_map(
     np.float64(0.0)
 
     """
+    metric = metric_named(metric)
     clips = _both(a, b, metric)
     half = _half_window(clips.a, clips.b, window_s)
     values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
@@ -96,7 +98,7 @@ def motion_maps(
     b: xr.DataArray | None = None,
     *,
     groups: Mapping[str, Sequence[str]],
-    metric: ComparesFrames = POSITIONS,
+    metric: str | ComparesFrames = POSITIONS,
     window_s: float = 0.0,
     align: bool = False,
 ) -> xr.DataArray:
@@ -128,6 +130,7 @@ def motion_maps(
     (['head', 'wrists'], (2, 30, 30))
 
     """
+    metric = metric_named(metric)
     clips = _both(a, b, metric)
     half = _half_window(clips.a, clips.b, window_s)
     present = {name: set(points) & set(clips.names) for name, points in groups.items()}
@@ -301,7 +304,7 @@ def _half_window(a: xr.DataArray, b: xr.DataArray, window_s: float) -> int:
     if window_s == 0:
         return 0
     rates = sampling_rate(a), sampling_rate(b)
-    if abs(rates[0] / rates[1] - 1) > _SAME_RATE:
+    if abs(rates[0] / rates[1] - 1) > SAME_RATE:
         raise ValueError(
             f"The clips have {rates[0]:.6g} and {rates[1]:.6g} frames a second, and a window of "
             "frames needs one rate. Resample one, for instance with trajectories.interp(time=...)."

@@ -169,31 +169,32 @@ def _traced(run):
 def closed_path(cost, shift, limit, band):
     """Path once round two cycles of as many frames each, near the line on which both advance alike.
 
-    Nothing marks the beginning of a cycle, so the path is first laid through two rounds; where it
-    is at the middle, free of both ends, it begins and ends in a second pass.
+    Nothing marks the beginning of a cycle, so a first path is laid from where we happen to begin;
+    where it is half a cycle later, free of both ends, the second one begins and ends.
 
     Parameters: cost (frame, other frame) of both cycles; the shift of the second that suits best
     on the whole; the limits of slope and of the way from that line, in frames.
     """
     n = cost.shape[0]
-    first = limited_path(_unrolled(cost, shift, 2 * n + 1, band), limit, band)
-    begin = 0
-    while first[begin, 0] < n:
-        begin += 1
-    start = (shift + first[begin, 1] - n) % n
-    path = limited_path(_unrolled(cost, start, n + 1, band), limit, band)[:-1]
+    first = limited_path(_unrolled(cost, 0, shift, band), limit, band)
+    middle = 0
+    while first[middle, 0] < n // 2:
+        middle += 1
+    i, j = n // 2, (first[middle, 1] + shift) % n
+    path = limited_path(_unrolled(cost, i, j, band), limit, band)[:-1]
     for step in range(len(path)):
-        path[step, 0] %= n
-        path[step, 1] = (path[step, 1] + start) % n
+        path[step, 0] = (path[step, 0] + i) % n
+        path[step, 1] = (path[step, 1] + j) % n
     return path
 
 
 @compiled
-def _unrolled(cost, shift, size, band):
-    """Piece of the endless map of two cycles, within a band about its diagonal."""
+def _unrolled(cost, first, second, band):
+    """Map of two cycles from given frames on to the same again, within a band on the diagonal."""
     n = cost.shape[0]
-    piece = np.full((size, size), np.inf)
-    for i in range(size):
-        for j in range(max(0, i - band), min(size, i + band + 1)):
-            piece[i, j] = cost[i % n, (j + shift) % n]
+    piece = np.full((n + 1, n + 1), np.inf)
+    for i in range(n + 1):
+        row = cost[(first + i) % n]
+        for j in range(max(0, i - band), min(n + 1, i + band + 1)):
+            piece[i, j] = row[(second + j) % n]
     return piece

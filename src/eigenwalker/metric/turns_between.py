@@ -1,0 +1,67 @@
+"""Rotations between frames, and between two clips: normalised sums of quaternions."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+
+def quaternions_at(vectors: np.ndarray, moments: np.ndarray, *, wraps: bool = False) -> np.ndarray:
+    """Return rotations at moments between frames, by the shorter way.
+
+    Parameters
+    ----------
+    vectors : array of shape (time, marker, 3)
+        Rotation vectors of each frame; NaN where a marker has none.
+    moments : array of shape (moment,)
+        In frames, 0 or more.
+    wraps : bool
+        Whether the first frame follows the last; otherwise the last stands still.
+
+    Returns
+    -------
+    array of shape (moment, marker, 4)
+        Unit quaternions.
+
+    Examples
+    --------
+    >>> quarter = np.array([[[0, 0, 0]], [[0, 0, np.pi / 2]]])
+    >>> vectors_of(quaternions_at(quarter, np.array([0.5])))[0, 0].round(6).tolist()
+    [0.0, 0.0, 0.785398]
+
+    """
+    quaternions = np.full((*vectors.shape[:2], 4), np.nan)
+    seen = np.isfinite(vectors).all(axis=2)
+    quaternions[seen] = Rotation.from_rotvec(vectors[seen]).as_quat()
+    n_frames = len(vectors)
+    before = moments.astype(int)
+    share = (moments - before)[:, None]
+    if wraps:
+        return between(quaternions[before % n_frames], quaternions[(before + 1) % n_frames], share)
+    last = n_frames - 1
+    return between(
+        quaternions[np.minimum(before, last)], quaternions[np.minimum(before + 1, last)], share
+    )
+
+
+def between(start: np.ndarray, stop: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return quaternions of shape (time, marker, 4) a share of the shorter way from start to stop.
+
+    Parameters
+    ----------
+    start, stop : array of shape (time, marker, 4)
+    share : array that broadcasts to (time, marker)
+
+    """
+    dot = np.einsum("tmq,tmq->tm", start, stop)
+    stop = np.where(dot[..., None] < 0, -stop, stop)
+    mixed = (1 - share[..., None]) * start + share[..., None] * stop
+    return mixed / np.linalg.norm(mixed, axis=2, keepdims=True)
+
+
+def vectors_of(quaternions: np.ndarray) -> np.ndarray:
+    """Return rotation vectors of quaternions; NaN where they are."""
+    vectors = np.full((*quaternions.shape[:-1], 3), np.nan)
+    known = np.isfinite(quaternions).all(axis=-1)
+    vectors[known] = Rotation.from_quat(quaternions[known]).as_rotvec()
+    return vectors
