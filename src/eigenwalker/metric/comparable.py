@@ -6,7 +6,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.gait import in_place
-from eigenwalker.gait.gaps import MAX_GAP_S, fill_short_gaps
+from eigenwalker.gait.gaps import MAX_GAP_S, find_gaps
 from eigenwalker.metric.captured_rotations import with_rotations
 from eigenwalker.metric.frame_metrics import By
 from eigenwalker.metric.groups import group_points
@@ -55,7 +55,8 @@ def comparable_walk(capture: xr.DataArray, *, mannequin: bool = True) -> xr.Data
 
 def _hidden(joints: xr.DataArray) -> list[str]:
     """Return hands, feet and the like that were not seen for longer than can be filled."""
-    _, gaps = fill_short_gaps(joints.values, sampling_rate(joints), MAX_GAP_S)
+    longest = MAX_GAP_S * sampling_rate(joints)
+    gaps = [gap for gap in find_gaps(joints.values) if gap.stop - gap.start > longest]
     names = {str(joints.marker.values[gap.marker]) for gap in gaps}
     return sorted(names - set(JOINTS.markers))
 
