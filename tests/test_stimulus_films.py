@@ -161,5 +161,3 @@ def test_an_unknown_suffix_names_those_that_are(shown, tmp_path):
         write_stimulus(shown, tmp_path / "film.avi")
     with pytest.raises(FileNotFoundError, match="make it first"):
         write_stimulus(shown, tmp_path / "nowhere" / "film.gif")
-    with pytest.raises(ValueError, match="mannequin is drawn in the browser"):
-        write_stimulus(make_stimulus(three_dots(), style="mannequin"), tmp_path / "film.gif")

@@ -15,8 +15,9 @@ interface Ball {
   readonly x: number;
   readonly y: number;
   readonly radius: number;
-  /** Towards the observer, in mm. */
+  /** Towards the observer, and radius, in mm. */
   readonly near: number;
+  readonly girth: number;
 }
 
 export const drawFlat: DrawHulls = (context, hulls, look) => {
@@ -27,7 +28,9 @@ export const drawFlat: DrawHulls = (context, hulls, look) => {
     other: ballOf(numbers, HULL * i + 4, look),
     tone: numbers[HULL * i + 8]!,
   }));
-  pieces.sort((a, b) => a.one.near + a.other.near - b.one.near - b.other.near);
+  const near = ({ one, other, tone }: (typeof pieces)[number]): number =>
+    (one.near + other.near) / 2 - (tone < 1 ? one.girth : 0); // joints before the limbs they join
+  pieces.sort((a, b) => near(a) - near(b));
   for (const { one, other, tone } of pieces) {
     const larger = one.radius >= other.radius ? one : other;
     outline(context, one, other);
@@ -45,6 +48,7 @@ function ballOf(numbers: Float32Array, at: number, look: Look): Ball {
     y: look.height_px / 2 - scale * up!,
     radius: scale * radius!,
     near: near!,
+    girth: radius!,
   };
 }
 

@@ -1,11 +1,12 @@
 /** Hulls in three dimensions, with three.js. */
 
 import {
+  type Camera,
+  DynamicDrawUsage,
+  Float32BufferAttribute,
   InstancedBufferGeometry,
   InstancedInterleavedBuffer,
   InterleavedBufferAttribute,
-  Float32BufferAttribute,
-  DynamicDrawUsage,
   LinearSRGBColorSpace,
   Mesh,
   OrthographicCamera,
@@ -62,30 +63,35 @@ export function solidDrawing(): DrawHulls {
 
   const draw: DrawHulls = (context, hulls, look) => {
     if (hulls.count === 0) return;
-    const [width, height] = [look.width_px, look.height_px].map((size) => Math.round(size * look.fine)) as [number, number];
     const { domElement } = renderer;
-    if (domElement.width !== width || domElement.height !== height) renderer.setSize(width, height, false);
+    const width = Math.round(look.width_px * look.fine);
+    const height = Math.round(look.height_px * look.fine);
+    if (domElement.width < width || domElement.height < height) {
+      // It only grows, so that pictures of several sizes take turns in its lower left corner.
+      renderer.setSize(Math.max(domElement.width, width), Math.max(domElement.height, height), false);
+    }
+    renderer.setViewport(0, 0, width, height);
     give(hulls);
     uniforms.colour.value.set(...litColour(look.colour));
-    const camera = look.eye_distance_mm === null ? level : near;
-    aim(look);
-    renderer.render(scene, camera);
-    context.drawImage(domElement, 0, 0, width, height, 0, 0, look.width_px, look.height_px);
+    renderer.render(scene, aimed(look));
+    const top = domElement.height - height;
+    context.drawImage(domElement, 0, top, width, height, 0, 0, look.width_px, look.height_px);
   };
 
-  function aim(look: Look): void {
-    const [across, upwards] = [look.width_px / 2 / look.px_per_mm, look.height_px / 2 / look.px_per_mm];
-    const eye = look.eye_distance_mm;
+  const aimed = ({ width_px, height_px, px_per_mm, eye_distance_mm: eye }: Look): Camera => {
+    const [right, top] = [width_px / 2 / px_per_mm, height_px / 2 / px_per_mm];
     uniforms.eye.value = eye ?? 0;
     if (eye === null) {
-      Object.assign(level, { left: -across, right: across, top: upwards, bottom: -upwards, near: -FAR_MM, far: FAR_MM });
+      Object.assign(level, { left: -right, right, top, bottom: -top, near: -FAR_MM, far: FAR_MM });
       level.updateProjectionMatrix();
-    } else {
-      near.position.z = eye;
-      Object.assign(near, { aspect: across / upwards, fov: (360 / Math.PI) * Math.atan(upwards / eye), near: eye / 1000, far: FAR_MM });
-      near.updateProjectionMatrix();
+      return level;
     }
-  }
+    const fov = (360 / Math.PI) * Math.atan(top / eye);
+    near.position.z = eye;
+    Object.assign(near, { aspect: right / top, fov, near: eye / 1000, far: FAR_MM });
+    near.updateProjectionMatrix();
+    return near;
+  };
   return draw;
 }
 

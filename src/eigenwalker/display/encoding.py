@@ -88,7 +88,7 @@ def encode_film(
     shape: tuple[int, int],
     form: FilmFormat,
     delays: list[Fraction],
-    colours: tuple[str, str],
+    shades: np.ndarray,
     progress: Callable[[int, int], object] | None = None,
 ) -> None:
     """Write frames as a film, which appears when it is whole.
@@ -96,7 +96,7 @@ def encode_film(
     Parameters
     ----------
     frames : iterable of array of uint8 of shape (row, column)
-        How much each pixel is covered, 0 to 255.
+        The number of each pixel's shade; 0 is the ground.
     path : path
         File to write.
     shape : tuple of int
@@ -105,15 +105,16 @@ def encode_film(
         As `film_format` gives it.
     delays : list of Fraction
         Seconds each frame stays, as `frame_delays` gives them.
-    colours : tuple of str
-        Of the ground and of what covers it, as in ``"#000000"``.
+    shades : array of shape (256, 3)
+        Red, green and blue of each shade, 0 to 255: `shades_between` two colours, where a
+        pixel's number is how much of it is covered.
     progress : callable, optional
         Called after each frame with the number of frames written and of all.
 
     """
     whole = path.with_name(f".{path.name}.part")
     try:
-        _encode(frames, whole, shape, form, delays, colours, progress)
+        _encode(frames, whole, shape, form, delays, shades, progress)
         os.replace(whole, path)
     finally:
         whole.unlink(missing_ok=True)
@@ -125,10 +126,10 @@ def _encode(
     shape: tuple[int, int],
     form: FilmFormat,
     delays: list[Fraction],
-    colours: tuple[str, str],
+    shades: np.ndarray,
     progress: Callable[[int, int], object] | None,
 ) -> None:
-    painted = _Gif(shape, colours) if form.codec == "gif" else _Video(shape, colours)
+    painted = _Gif(shades) if form.codec == "gif" else _Video(shape, shades)
     tick = delays[0] if form.codec != "gif" else Fraction(1, 100)
     options = dict(form.container_options)
     if form.codec == "gif":  # the last frame has no next one to tell how long it stays
@@ -153,11 +154,11 @@ def _encode(
 
 
 class _Gif:
-    """Covers as they are, and a palette of 256 shades."""
+    """Numbers of shades as they are, and a palette of them."""
 
-    def __init__(self, shape: tuple[int, int], colours: tuple[str, str]) -> None:
-        shades = np.rint(_shades(colours)).astype(np.uint32)
-        argb = (255 << 24) | (shades[:, 0] << 16) | (shades[:, 1] << 8) | shades[:, 2]
+    def __init__(self, shades: np.ndarray) -> None:
+        red, green, blue = np.rint(shades).astype(np.uint32).T
+        argb = (255 << 24) | (red << 16) | (green << 8) | blue
         self.palette = argb.astype(">u4").view(np.uint8).reshape(256, 4)
 
     def frame(self, cover: np.ndarray) -> av.VideoFrame:
@@ -170,12 +171,11 @@ class _Video:
     It is one frame over and over: both encoders copy what they are given before they return.
     """
 
-    def __init__(self, shape: tuple[int, int], colours: tuple[str, str]) -> None:
+    def __init__(self, shape: tuple[int, int], shades: np.ndarray) -> None:
         n_rows, n_columns = shape
-        red_green_blue = _shades(colours)
-        luma = red_green_blue @ LUMA
-        blue = (red_green_blue[:, 2] - luma) / (2 - 2 * LUMA[2])
-        red = (red_green_blue[:, 0] - luma) / (2 - 2 * LUMA[0])
+        luma = shades @ LUMA
+        blue = (shades[:, 2] - luma) / (2 - 2 * LUMA[2])
+        red = (shades[:, 0] - luma) / (2 - 2 * LUMA[0])
         self.luma = np.rint(16 + luma * (219 / 255)).astype(np.uint8)
         self.chroma = np.rint(128 + np.stack([blue, red]) * (224 / 255)).astype(np.uint8)
         self.whole = av.VideoFrame(n_columns, n_rows, "yuv420p")
@@ -193,10 +193,9 @@ class _Video:
         if not self.grey and cover[box].size:
             half = _halved(box)
             rows, columns = (side.stop - side.start for side in half)
-            corners = cover[box].reshape(rows, 2, columns, 2).astype(np.uint16)
-            mean = corners.sum(axis=(1, 3)) // 4
             for plane, shades in zip(self.colour, self.chroma, strict=True):
-                plane[half] = shades[mean]
+                corners = shades.take(cover[box]).reshape(rows, 2, columns, 2)
+                plane[half] = corners.sum(axis=(1, 3), dtype=np.uint16) // 4
         self.painted = box
         return self.whole
 
@@ -229,7 +228,20 @@ def _box(cover: np.ndarray) -> tuple[slice, slice]:
     return within, slice(columns[0] // 2 * 2, columns[-1] // 2 * 2 + 2)
 
 
-def _shades(colours: tuple[str, str]) -> np.ndarray:
-    """Red, green and blue, 0 to 255, from the ground to full cover: array of shape (256, 3)."""
-    ground, ink = (np.array([int(name[i : i + 2], 16) for i in (1, 3, 5)]) for name in colours)
-    return ground + np.linspace(0, 1, 256)[:, None] * (ink - ground)
+def shades_between(ground: str, ink: str) -> np.ndarray:
+    """Return red, green and blue, 0 to 255, from one colour to another: array of shape (256, 3).
+
+    Examples
+    --------
+    >>> shades_between("#000000", "#ff8000")[[0, 51, 255]].tolist()
+    [[0.0, 0.0, 0.0], [51.0, 25.6, 0.0], [255.0, 128.0, 0.0]]
+
+    """
+    start, end = (np.array(rgb(colour)) for colour in (ground, ink))
+    return start + np.linspace(0, 1, 256)[:, None] * (end - start)
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Return red, green and blue, 0 to 255, of a colour such as ``"#ff8000"``."""
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return red, green, blue

@@ -11,7 +11,13 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from eigenwalker.display.encoding import FilmFormat, encode_film, film_format, frame_delays
+from eigenwalker.display.encoding import (
+    FilmFormat,
+    encode_film,
+    film_format,
+    frame_delays,
+    shades_between,
+)
 from eigenwalker.display.links import LINKS
 from eigenwalker.display.staging import STYLES, Style, positions_at, stage
 from eigenwalker.skeleton import Skeleton
@@ -126,7 +132,7 @@ def write_film(
         shape=scene.shape,
         form=form,
         delays=delays,
-        colours=COLOURS[background],
+        shades=shades_between(*COLOURS[background]),
         progress=progress,
     )
     return path

@@ -1,16 +1,21 @@
-"""Frames of a stimulus as pixels: discs, sticks or blobs."""
+"""Frames of a stimulus as pixels: discs, sticks, blobs or mannequins."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eigenwalker.display.encoding import shades_between
 from eigenwalker.display.raster import draw_discs, draw_lines
 from eigenwalker.skeleton import Skeleton
+from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
+from eigenwalker.stimulus.moving import Moving
 from eigenwalker.stimulus.playing import Played, scene
+from eigenwalker.stimulus.solids import Look, draw_hulls
+from eigenwalker.stimulus.wood import put_wood, wood_shades
 
 if TYPE_CHECKING:
     from eigenwalker.stimulus.stimulus import Stimulus
@@ -51,13 +56,10 @@ def drawn_frames(
     Yields
     ------
     array of uint8 of shape (row, column)
-        How much each pixel is covered; overwritten by the next frame.
+        The number of each pixel's shade (`drawn_shades`), which for dots and sticks is how much of
+        it is covered; overwritten by the next frame.
 
     """
-    if stimulus.display.style == "mannequin":
-        raise ValueError(
-            "The mannequin is drawn in the browser; for a film choose the style 'dots' or 'sticks'."
-        )
     played = stimulus.play(time)
     places = places_px(stimulus, played) - 0.5  # pixels are counted from their centres
     places[~played.visible] = np.nan
@@ -66,16 +68,59 @@ def drawn_frames(
     canvas = np.zeros(shape, np.uint8)
     ends = np.cumsum([0, *(len(figure.dots) for figure in figures)])
     groups = [slice(a, b) for a, b in itertools.pairwise(ends)]
-    for places_now in places:
+    bodies = mannequins(stimulus, figures)
+    for moment, places_now in enumerate(places):
         canvas.fill(0)
-        for figure, dots in zip(figures, groups, strict=True):
+        for number, (figure, dots) in enumerate(zip(figures, groups, strict=True)):
+            if number in bodies:
+                continue
             if figure.blur_mm > 0:
                 _draw_blobs(canvas, places_now[dots], figure.blur_mm * stimulus.display.px_per_mm)
                 continue
             if stimulus.display.style == "sticks" and figure.skeleton.segments:
                 _draw_sticks(canvas, places_now[dots], figure.skeleton, stimulus.display.dot_px)
             draw_discs(canvas, places_now[dots], radius=stimulus.display.dot_px / 2)
+        if bodies:
+            hulls = hulls_of(stimulus, bodies, played, moment)
+            put_wood(canvas, draw_hulls(hulls, look_of(stimulus, shape)))
         yield canvas
+
+
+def drawn_shades(stimulus: Stimulus) -> np.ndarray:
+    """Return the colours of what `drawn_frames` yields: array of shape (256, 3), 0 to 255."""
+    shades = wood_shades if mannequins(stimulus, scene(stimulus.content)) else shades_between
+    return shades(stimulus.display.background, stimulus.display.colour)
+
+
+def mannequins(stimulus: Stimulus, figures: Sequence[Moving]) -> dict[int, Mannequin]:
+    """Return the mannequins among figures by number: masks, limb dots and blobs have no limbs."""
+    if stimulus.display.style != "mannequin":
+        return {}
+    heights = body_heights(stimulus.content)
+    return {
+        number: mannequin_of(figure.skeleton, heights[number])
+        for number, figure in enumerate(figures)
+        if figure.skeleton.segments and figure.blur_mm == 0
+    }
+
+
+def hulls_of(
+    stimulus: Stimulus, bodies: Mapping[int, Mannequin], played: Played, moment: int
+) -> Hulls:
+    """Return the pieces of all mannequins at one of the moments played."""
+    carved = []
+    for number, body in bodies.items():
+        mine = played.figures == number
+        places, visible = played.positions[moment, mine], played.visible[moment, mine]
+        carved.append(hulls_at(body, places, visible, stimulus.content["view"]))
+    return Hulls(*(np.concatenate(parts) for parts in zip(*carved, strict=True)))
+
+
+def look_of(stimulus: Stimulus, shape: tuple[int, int]) -> Look:
+    """Return how hulls of a stimulus are seen in a picture of these rows and columns."""
+    display = stimulus.display
+    middle = ((display.width_px - 1) / 2, (display.height_px - 1) / 2)
+    return Look(shape, display.px_per_mm, middle, stimulus.view.eye_distance_mm)
 
 
 def _draw_sticks(canvas: np.ndarray, places: np.ndarray, skeleton: Skeleton, dot_px: float) -> None:

@@ -9,7 +9,15 @@ import numpy as np
 from matplotlib.image import imsave
 
 from eigenwalker.display.encoding import encode_film, film_format, frame_delays
-from eigenwalker.stimulus.drawing import drawn_frames, places_px
+from eigenwalker.stimulus.drawing import (
+    drawn_frames,
+    drawn_shades,
+    hulls_of,
+    look_of,
+    mannequins,
+    places_px,
+)
+from eigenwalker.stimulus.outlines import svg_hulls
 from eigenwalker.stimulus.playing import scene
 from eigenwalker.stimulus.stimulus import Stimulus
 
@@ -38,7 +46,7 @@ def write_film(stimulus: Stimulus, path: Path, progress: Progress | None = None)
         shape=shape,
         form=form,
         delays=delays,
-        colours=(display.background, display.colour),
+        shades=drawn_shades(stimulus),
         progress=progress,
     )
 
@@ -47,27 +55,29 @@ def write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None = N
     """Write every frame as a PNG into a folder: ``frame_0000.png``, ``frame_0001.png``, ..."""
     folder.mkdir(parents=True, exist_ok=True)
     times = stimulus.frame_times
-    for number, cover in enumerate(drawn_frames(stimulus, times)):
-        imsave(folder / f"frame_{number:04d}.png", _painted(stimulus, cover))
+    colours = np.rint(drawn_shades(stimulus)).astype(np.uint8)
+    for number, shades in enumerate(drawn_frames(stimulus, times)):
+        imsave(folder / f"frame_{number:04d}.png", colours[shades])
         if progress is not None:
             progress(number + 1, len(times))
 
 
 def write_png(stimulus: Stimulus, path: Path, time_s: float = 0.0) -> None:
     """Write one moment as a PNG."""
-    (cover,) = drawn_frames(stimulus, np.array([time_s]))
-    imsave(path, _painted(stimulus, cover), format="png")
+    (shades,) = drawn_frames(stimulus, np.array([time_s]))
+    imsave(path, np.rint(drawn_shades(stimulus)).astype(np.uint8)[shades], format="png")
 
 
 def write_svg(stimulus: Stimulus, path: Path, time_s: float = 0.0) -> None:
-    """Write one moment as a drawing: circles, lines between them, blobs as gradients."""
+    """Write one moment as a drawing: circles, lines between them, blobs and limbs as gradients."""
     path.write_text(drawing(stimulus, time_s), encoding="utf-8")
 
 
 def drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
     """Return one moment as SVG, in pixels of the stimulus.
 
-    Each circle has the name of its dot as its ``class``, and that of its figure's number.
+    Each circle has the name of its dot as its ``class``, and that of its figure's number; pieces of
+    mannequins have the class ``wood``.
 
     Examples
     --------
@@ -85,12 +95,21 @@ def drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
         f'height="{display.height_px}" viewBox="0 0 {display.width_px} {display.height_px}">',
         f'<rect width="100%" height="100%" fill="{display.background}"/>',
     ]
+    figures = scene(stimulus.content)
+    bodies = mannequins(stimulus, figures)
+    if bodies:
+        look = look_of(stimulus, (display.height_px, display.width_px))
+        look = look._replace(middle_px=(display.width_px / 2, display.height_px / 2))
+        lines += svg_hulls(hulls_of(stimulus, bodies, played, 0), look, display.colour)
     first = 0
-    for number, figure in enumerate(scene(stimulus.content)):
+    for number, figure in enumerate(figures):
+        if number in bodies:
+            first += len(figure.dots)
+            continue
         shown = range(first, first + len(figure.dots))
         seen = played.visible[0, first : first + len(figure.dots)]
         spot = places[first : first + len(figure.dots)]
-        if display.style != "dots" and figure.blur_mm == 0:
+        if display.style == "sticks" and figure.blur_mm == 0:
             lines += _svg_sticks(figure.skeleton, spot, seen, display.dot_px, display.colour)
         radius, fill = display.dot_px / 2, display.colour
         if figure.blur_mm > 0:
@@ -130,11 +149,3 @@ def _svg_blob(number: int, colour: str) -> str:
 def _name(dot: str) -> str:
     """A dot's name as a class: letters, digits and underlines."""
     return "".join(letter if letter.isalnum() and letter.isascii() else "_" for letter in dot)
-
-
-def _painted(stimulus: Stimulus, cover: np.ndarray) -> np.ndarray:
-    """Red, green and blue, array of uint8 of shape (row, column, 3)."""
-    names = (stimulus.display.background, stimulus.display.colour)
-    ground, ink = (np.array([int(name[i : i + 2], 16) for i in (1, 3, 5)]) for name in names)
-    shades = ground + np.linspace(0, 1, 256)[:, None] * (ink - ground)
-    return np.rint(shades).astype(np.uint8)[cover]

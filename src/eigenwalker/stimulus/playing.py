@@ -58,7 +58,7 @@ def scene(content: Mapping[str, Any]) -> list[Moving]:
         As `content.checked` returns it.
 
     """
-    figures = [_figure(figure) for figure in content["figures"]]
+    figures = [figure_of(figure) for figure in content["figures"]]
     masks: list[Moving] = []
     for step in content["transforms"]:
         transform = TRANSFORMS[step["name"]]
@@ -133,7 +133,8 @@ def _observer(content: Mapping[str, Any], heading_deg: float) -> np.ndarray:
     return observer_axes(view["view_deg"] + heading_deg, view["elevation_deg"])
 
 
-def _figure(figure: Mapping[str, Any]) -> Moving:
+def figure_of(figure: Mapping[str, Any]) -> Moving:
+    """Return a figure of a stimulus as it stands in the file, in its own frame."""
     given = figure["walker"] or figure["trajectories"]
     skeleton = Skeleton(
         tuple(given["markers"]),

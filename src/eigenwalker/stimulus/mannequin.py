@@ -1,0 +1,157 @@
+"""The mannequin's body: pieces of wood that go with the dots, each the hull of two balls.
+
+``mannequin.json``, which the browser reads too, has their places as weighted means of dots and
+their girth in shares of body height.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Iterator, Mapping
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from eigenwalker.display.projection import observer_axes
+from eigenwalker.skeleton import Skeleton
+from eigenwalker.stimulus.playing import NEAREST_MM, figure_of
+
+UNSIDED = ("head", "sternum", "pelvis")
+
+
+class Mannequin(NamedTuple):
+    """The pieces of one figure.
+
+    Parameters
+    ----------
+    weights : array of shape (piece, 2, dot)
+        Of each dot in the middles of a piece's two balls.
+    radii_mm : array of shape (piece, 2)
+        Of these balls.
+    tones : array of shape (piece,)
+        1 for as bright as the light makes it; joints are darker.
+
+    """
+
+    weights: np.ndarray
+    radii_mm: np.ndarray
+    tones: np.ndarray
+
+
+class Hulls(NamedTuple):
+    """Pieces of wood at one moment, as the observer sees them: to the right, up, towards him.
+
+    Parameters
+    ----------
+    middles : array of shape (piece, 2, 3)
+        Of the two balls whose hull each is, in mm from the centre of the view.
+    radii : array of shape (piece, 2)
+        Millimetres.
+    tones : array of shape (piece,)
+
+    """
+
+    middles: np.ndarray
+    radii: np.ndarray
+    tones: np.ndarray
+
+
+@functools.cache
+def _shape() -> dict[str, Any]:
+    text = files("eigenwalker.stimulus").joinpath("mannequin.json").read_text(encoding="utf-8")
+    return json.loads(text)
+
+
+def body_heights(content: Mapping[str, Any]) -> list[float]:
+    """Return the body height of each figure of a stimulus in mm, by which its mannequin is thick.
+
+    1.15 times the greatest extent of the mean posture on an axis, from the head's middle to the
+    ankles of who stands, of the figure as it stands in the file; times the factors of ``resize``.
+    """
+    heights = []
+    for number, figure in enumerate(content["figures"]):
+        mean = figure_of(figure).mean
+        height = _shape()["body_height"] * float((np.nanmax(mean, 0) - np.nanmin(mean, 0)).max())
+        for step in content["transforms"]:
+            if step["name"] == "resize" and number in (step["figures"] or [number]):
+                height *= step["factor"]
+        heights.append(height)
+    return heights
+
+
+def mannequin_of(skeleton: Skeleton, height_mm: float) -> Mannequin:
+    """Return the pieces of a figure: those whose dots it has, and a rod for other segments.
+
+    Examples
+    --------
+    >>> len(mannequin_of(ew.JOINTS, 1700.0).tones)
+    31
+
+    """
+    known = set(skeleton.markers)
+    pieces = [
+        piece
+        for piece in _sided_pieces()
+        if {*piece["from"], *piece["to"]} <= known and piece.get("unless") not in known
+    ]
+    named = [{*piece["from"], *piece["to"]} for piece in pieces]
+    for one, other in skeleton.segments:
+        if not any({one, other} <= dots for dots in named):
+            radius = _shape()["other_radius"]
+            pieces.append({"from": {one: 1}, "to": {other: 1}, "radii": [radius, radius]})
+    weights = np.zeros((len(pieces), 2, len(skeleton.markers)))
+    for number, piece in enumerate(pieces):
+        for end, ball in enumerate((piece["from"], piece["to"])):
+            for dot, weight in ball.items():
+                weights[number, end, skeleton.index(dot)] = weight
+    radii = np.array([[piece["radii"][0], piece["radii"][-1]] for piece in pieces]).reshape(-1, 2)
+    return Mannequin(weights, height_mm * radii, np.array([p.get("tone", 1.0) for p in pieces]))
+
+
+def _sided_pieces() -> Iterator[dict[str, Any]]:
+    """All pieces; those that name joints without a side stand for one of each side."""
+    for piece in _shape()["pieces"]:
+        whole = {"to": piece["from"], **piece}
+        left, right = (_of_side(whole, side) for side in ("left_", "right_"))
+        yield left
+        if right != left:
+            yield right
+
+
+def _of_side(piece: Mapping[str, Any], side: str) -> dict[str, Any]:
+    def sided(dot: str) -> str:
+        return dot if dot in UNSIDED or dot.startswith(("left_", "right_")) else side + dot
+
+    ends = {end: {sided(d): w for d, w in piece[end].items()} for end in ("from", "to")}
+    unless = {"unless": side + piece["unless"]} if "unless" in piece else {}
+    return {**piece, **ends, **unless}
+
+
+def hulls_at(
+    mannequin: Mannequin, positions: np.ndarray, visible: np.ndarray, view: Mapping[str, Any]
+) -> Hulls:
+    """Return the pieces of a figure at one moment that are to be seen.
+
+    A piece of which a dot is not visible is left out, and one that reaches the observer's eye.
+
+    Parameters
+    ----------
+    mannequin : Mannequin
+        Of the figure.
+    positions : array of shape (dot, 3)
+        Millimetres in the scene.
+    visible : array of bool of shape (dot,)
+    view : mapping
+        The part ``view`` of a stimulus.
+
+    """
+    axes = observer_axes(view["view_deg"], view["elevation_deg"])
+    known = np.where(visible[:, None], positions - np.array(view["centre_mm"]), 0.0)
+    middles = mannequin.weights @ (known @ axes.T)
+    seen = ~((mannequin.weights != 0) & ~visible).any(axis=(1, 2))
+    if view["eye_distance_mm"] is not None:
+        nearest = view["eye_distance_mm"] - NEAREST_MM
+        seen &= (middles[..., 2] + mannequin.radii_mm <= nearest).all(axis=1)
+    return Hulls(middles[seen], mannequin.radii_mm[seen], mannequin.tones[seen])
