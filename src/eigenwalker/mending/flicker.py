@@ -75,7 +75,14 @@ def _calm(positions: np.ndarray) -> np.ndarray:
     """
     if len(positions) <= _AROUND:
         return np.zeros(positions.shape[1], dtype=bool)
-    most = least = np.diff(positions, axis=0)
+    steps = np.diff(positions, axis=0)
+    calm = np.square(steps.max(axis=0) - steps.min(axis=0)).sum(axis=1) <= SUDDEN_MM**2
+    calm[~calm] = _calm_around(steps[:, ~calm])
+    return calm
+
+
+def _calm_around(steps: np.ndarray) -> np.ndarray:
+    most = least = steps
     for apart in (1, 2, 3):  # 2, 4, then 7 steps on end
         most = np.maximum(most[:-apart], most[apart:])
         least = np.minimum(least[:-apart], least[apart:])

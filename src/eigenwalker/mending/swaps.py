@@ -51,9 +51,10 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
     [False, False, False, False, True, True]
 
     """
-    exchanged = np.stack(
-        [_since_exchanged(positions[:, left], positions[:, right]) for left, right in pairs], axis=1
-    )
+    exchanged = np.zeros((len(positions), len(pairs)), dtype=bool)
+    for number in np.flatnonzero(_within_reach(positions, np.array(pairs))).tolist():
+        left, right = pairs[number]
+        exchanged[:, number] = _since_exchanged(positions[:, left], positions[:, right])
     swapped = exchanged.any(axis=0)
     if not swapped.any():
         return exchanged
@@ -66,6 +67,19 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
     sides = _sides(across[:, swapped], _most_rigid(across[:, ~swapped]).sum(axis=1))
     exchanged[:, swapped] = _decided(exchanged[:, swapped], sides)
     return exchanged
+
+
+def _within_reach(positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Return which pairs may change places: whose steps, both together, would reach across.
+
+    By the triangle inequality labels that stay cost `SWAP_MM` each more than exchanged ones only if
+    both steps add up to more than the distance of the two and `SWAP_MM`.
+    """
+    steps = np.diff(positions, axis=0)
+    farthest = np.sqrt(np.einsum("tma,tma->tm", steps, steps).max(axis=0))[pairs].sum(axis=1)
+    across = positions[:, pairs[:, 0]] - positions[:, pairs[:, 1]]
+    nearest = np.sqrt(np.einsum("tpa,tpa->tp", across, across).min(axis=0))
+    return ~(farthest < nearest + SWAP_MM)  # also where markers were not always seen
 
 
 def _decided(exchanged: np.ndarray, sides: np.ndarray) -> np.ndarray:

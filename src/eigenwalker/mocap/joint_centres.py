@@ -147,14 +147,14 @@ def chord(
 
 def unit(vectors: np.ndarray) -> np.ndarray:
     """Return vectors of length 1, NaN where they had none."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    length = np.sqrt(np.einsum("...a,...a->...", vectors, vectors))[..., None]
     return vectors / np.where(length > 0, length, np.nan)
 
 
 def across(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Return the part of vectors at right angles to axes."""
     axes = unit(axes)
-    return vectors - (vectors * axes).sum(axis=-1, keepdims=True) * axes
+    return vectors - np.einsum("...a,...a->...", vectors, axes)[..., None] * axes
 
 
 def bridged(vectors: np.ndarray) -> np.ndarray:
@@ -166,8 +166,11 @@ def bridged(vectors: np.ndarray) -> np.ndarray:
     [0.0, 0.0, 2.0]
 
     """
-    there = ~np.isnan(vectors).any(axis=1)
-    if there.all() or not there.any():
+    missing = np.isnan(vectors)
+    if not missing.any():
+        return vectors
+    there = ~missing.any(axis=1)
+    if not there.any():
         return vectors
     frames = np.arange(len(vectors))
     filled = [np.interp(frames, frames[there], column[there]) for column in vectors.T]

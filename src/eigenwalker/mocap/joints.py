@@ -15,6 +15,7 @@ from eigenwalker.mocap.marker_names import (
     MarkerNames,
     MarkerSet,
     known_sets,
+    marker_names,
     side_pairs,
     subjects,
 )
@@ -156,7 +157,10 @@ def _of_these(walk: xr.DataArray, markers: frozenset[str]) -> dict[str, list[str
 
 def _seen(walk: xr.DataArray) -> list[str]:
     """Return the names of the markers that were seen at all; refuse two people at once."""
-    seen = ~np.isnan(walk.values).all(axis=(0, 2))
+    values = walk.values
+    seen = np.isfinite(values[:1]).any(axis=(0, 2))
+    if not seen.all():
+        seen = ~np.isnan(values).all(axis=(0, 2))
     names = [str(name) for name in walk.marker.values[seen]]
     people = subjects(names)
     plain = [name.rpartition(":")[2] for name in names]
@@ -216,7 +220,7 @@ def _best_set(points: Points, own: Points, measures: Measures, marker_set: str |
             f"marker_set={marker_set!r} is not known; give one of "
             f"{[known.name for known in known_sets()]}."
         )
-    names = MarkerNames(list(points))
+    names = marker_names(tuple(points))
     missing: dict[str, list[str]] = {}
     for known in sets:
         found = _joints_of(points, names, known, measures)

@@ -7,7 +7,7 @@ import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
@@ -144,9 +144,15 @@ class MarkerNames:
         for name, own in zip(names, _without_common_start(names), strict=True):
             for key in (_plain(own), *_side_first(own), *_of_midline(own)):
                 self._known.setdefault(key, name)
+        self._found: dict[str, Found | None] = {}
 
     def find(self, entry: str) -> Found | None:
         """Return the markers of the first alternative of an entry that the capture has in full."""
+        if entry not in self._found:
+            self._found[entry] = self._looked_for(entry)
+        return self._found[entry]
+
+    def _looked_for(self, entry: str) -> Found | None:
         lacking: tuple[str, ...] = ()
         for alternative in entry.split("|"):
             words = [word.strip() for word in alternative.strip().removeprefix("~").split("+")]
@@ -170,6 +176,12 @@ class MarkerNames:
         if word.startswith(mark):
             keys.insert(0, f"{side}|{_plain(word.removeprefix(mark))}")
         return next((self._known[key] for key in keys if key in self._known), None)
+
+
+@lru_cache(maxsize=8)
+def marker_names(names: tuple[str, ...]) -> MarkerNames:
+    """Return the names of a capture, to be asked; captures of one study share what was found."""
+    return MarkerNames(names)
 
 
 def _spelled(word: str) -> str:
@@ -200,6 +212,11 @@ def side_pairs(names: Sequence[str]) -> list[tuple[str, str]]:
     [('LASI', 'RASI'), ('Knee_L', 'Knee_R'), ('left_hip', 'right_hip')]
 
     """
+    return list(_side_pairs(tuple(names)))
+
+
+@lru_cache(maxsize=8)
+def _side_pairs(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     sides: dict[str, dict[str, str]] = {}
     for name, own in zip(names, _without_common_start(names), strict=True):
         keys = _side_first(own)
@@ -208,7 +225,7 @@ def side_pairs(names: Sequence[str]) -> list[tuple[str, str]]:
         for side, _, part in (key.partition("|") for key in keys):
             sides.setdefault(part, {}).setdefault(side, name)
     pairs = [(found["left"], found["right"]) for found in sides.values() if len(found) == 2]
-    return list(dict.fromkeys(pairs))
+    return tuple(dict.fromkeys(pairs))
 
 
 def numbered(names: Sequence[str]) -> list[str]:

@@ -283,6 +283,8 @@ def midpoint(points: Sequence[np.ndarray]) -> np.ndarray:
     [1.0, 50.0, 0.0]
 
     """
+    if not any(np.isnan(point).any() for point in points):
+        return sum(points[1:], points[0]) / len(points)
     if len(points) == 2:
         first, second = points
         apart = bridged(second - first)
@@ -310,7 +312,7 @@ def filled_cluster(points: Sequence[np.ndarray]) -> list[np.ndarray]:
         Unchanged where too few markers are seen.
 
     """
-    if len(points) < 3:
+    if len(points) < 3 or not any(np.isnan(point).any() for point in points):
         return list(points)
     cluster = np.stack(list(points), axis=1)
     there = np.asarray(~np.isnan(cluster).any(axis=2))

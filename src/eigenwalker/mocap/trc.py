@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from eigenwalker.mocap.captured import as_captured, unit_named, without_zeros
@@ -80,6 +81,8 @@ def read_trc(
         short_by=3 if head.tabs else 0,
     )
     refuse_cut_number(content, rows, source)
+    if content[-1:] == b"\t" and len(set(np.isnan(table[-1, -3:]).tolist())) > 1:
+        raise UnreadableFile(source, "three coordinates of the last marker", "fewer: cut short")
     positions = without_zeros(table[:, _IN_FRONT:].reshape(len(table), -1, 3))
     time = table[:, 1]
     if rate_hz is None:

@@ -10,7 +10,7 @@ ground, and the pelvis moves as asked.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -56,7 +56,7 @@ def solve_cycle(person: Mapping[str, float]) -> Cycle:
     body = body_of(person)
     pace = pace_of(person, body)
     own = Ground(person, body, pace)
-    doubled = Ground(person, body, replace(pace, stride=2 * pace.stride))
+    doubled = own.with_stride(2 * pace.stride)
     with one_blas_thread():
         best = _least_change(own, own.prior)
         slope = _change_with_stride(own, doubled, best)

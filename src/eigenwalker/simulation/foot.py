@@ -39,12 +39,12 @@ class Foot:
             Place of the ankle, and its derivative by pitch.
 
         """
+        waves, rolled = _waves(pitch), np.maximum(pitch - TOE_BEND, 0.0)
         heel = np.array([-self.heel - self.ball, 0.0])
-        on_heel, on_heel_slope = _turned(pitch, self.heel, self.height)
-        on_ball, on_ball_slope = _turned(pitch, -self.ball, self.height)
+        on_heel, on_heel_slope = _turned(waves, self.heel, self.height)
+        on_ball, on_ball_slope = _turned(waves, -self.ball, self.height)
         tip = np.array([self.toe, 0.0])
-        rolled = np.maximum(pitch - TOE_BEND, 0.0)
-        toes, toes_slope = _turned(rolled, self.toe, 0.0)
+        toes, toes_slope = _turned(_waves(rolled), self.toe, 0.0)
         lifted = (pitch > TOE_BEND)[:, None]
         place = np.where((pitch < 0)[:, None], heel + on_heel, on_ball - toes + tip)
         slope = np.where((pitch < 0)[:, None], on_heel_slope, on_ball_slope - lifted * toes_slope)
@@ -52,17 +52,17 @@ class Foot:
 
     def ankle_over_ball(self, pitch: np.ndarray) -> np.ndarray:
         """Return how far the ankle is ahead of the ball: array of shape (frame,)."""
-        return _turned(pitch, -self.ball, self.height)[0][:, 0]
+        return self.height * np.sin(pitch) - self.ball * np.cos(pitch)
 
     def sole_under_ankle(self, pitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return heel, ball and tip of the toes from the ankle, and their derivatives by pitch.
 
         Arrays of shape (frame, 3, 2).
         """
-        bend = np.clip(pitch, 0.0, TOE_BEND)
-        heel, heel_slope = _turned(pitch, -self.heel, -self.height)
-        ball, ball_slope = _turned(pitch, self.ball, -self.height)
-        toes, toes_slope = _turned(pitch - bend, self.toe, 0.0)
+        waves, bend = _waves(pitch), np.clip(pitch, 0.0, TOE_BEND)
+        heel, heel_slope = _turned(waves, -self.heel, -self.height)
+        ball, ball_slope = _turned(waves, self.ball, -self.height)
+        toes, toes_slope = _turned(_waves(pitch - bend), self.toe, 0.0)
         bending = ((pitch > 0) & (pitch < TOE_BEND))[:, None]
         return (
             np.stack([heel, ball, ball + toes], axis=1),
@@ -70,12 +70,14 @@ class Foot:
         )
 
 
-def _turned(pitch: np.ndarray, forward: float, up: float) -> tuple[np.ndarray, np.ndarray]:
+def _waves(pitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return np.cos(pitch), np.sin(pitch)
+
+
+def _turned(
+    waves: tuple[np.ndarray, np.ndarray], forward: float, up: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Place of a point of the foot from the ankle, and its derivative by pitch."""
-    cos, sin = np.cos(pitch), np.sin(pitch)
-    place, slope = np.empty((2, len(pitch), 2))
-    place[:, 0] = forward * cos + up * sin
-    place[:, 1] = up * cos - forward * sin
-    slope[:, 0] = place[:, 1]
-    slope[:, 1] = -place[:, 0]
-    return place, slope
+    cos, sin = waves
+    ahead, above = forward * cos + up * sin, up * cos - forward * sin
+    return np.stack([ahead, above], axis=1), np.stack([above, -ahead], axis=1)

@@ -7,6 +7,8 @@ their prints, and the coefficients of the pelvis' path up and ahead.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from copy import copy
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,7 +41,7 @@ _RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 1.5, 5.0
 """How far the pelvis may be from its: other harmonics, the second one of its height, fore-aft."""
 
 
-_ONE = np.ones(_FRAMES)
+_ONE = np.ones(2 * _FRAMES)
 _Demand = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
 
 
@@ -61,16 +63,18 @@ class Ground:
         self.body, self.pace = body, pace
         phase = np.arange(_FRAMES) / _FRAMES
         self.onsets = np.array([0.0, 0.5 + person["step_asymmetry"]])
-        self._phases = (phase - self.onsets[:, None]) % 1.0
-        self._legs = [basis(own, LEG_HARMONICS) for own in self._phases]
+        phases = (phase - self.onsets[:, None]) % 1.0
+        self._own, self._side = phases.ravel(), np.repeat(list(SIDES.values()), _FRAMES)
+        self._legs = [basis(own, LEG_HARMONICS) for own in phases]
         self._trunk = basis(phase, PELVIS_HARMONICS)
+        self._paths = np.concatenate([self._trunk, self._trunk])
         self._yaw = np.radians(person["foot_progression_deg"])
         curves = trunk_curves(person, pace.effort)
         turns = trunk_turns({name: self._trunk @ curve for name, curve in curves.items()}, "pelvis")
         ahead, self.sway, rise = pelvis_paths(person, pace)
-        self._hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
-        for hip in self._hips:
-            hip[:, 1] += self._trunk @ self.sway
+        hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
+        self._hips = np.concatenate(hips)
+        self._hips[:, 1] += np.tile(self._trunk @ self.sway, 2)
         rise[0] = 0.985 * (body.thigh + body.shank) + body.foot.height - body.hip[2]
         self.prior = self._prior(person, rise, ahead[1:])
         self.precision = _precision()
@@ -100,27 +104,40 @@ class Ground:
         pelvis = np.array([np.concatenate([[0.0], ahead]), np.zeros(_PELVIS), rise])
         return legs[:, :-1].reshape(2, 3, _LEG), legs[:, -1], pelvis
 
+    def with_stride(self, stride: float) -> Ground:
+        """Return the same problem for another length of the stride."""
+        other = copy(self)
+        other.pace = replace(self.pace, stride=stride)
+        return other
+
     def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return all residuals, each divided by its tolerance, and their derivatives."""
-        residuals, slopes = [], []
-        for leg in range(len(SIDES)):
-            for miss, by, held, tolerance in self._demands(unknown, leg):
-                if held.any():
-                    residuals.append(miss[held] / tolerance)
-                    slopes.append(self._slopes(by, leg, held) / tolerance)
-        return np.concatenate(residuals), np.concatenate(slopes)
+        held = [
+            (miss, by, rows, tolerance)
+            for miss, by, when, tolerance in self._demands(unknown)
+            if len(rows := np.flatnonzero(when))
+        ]
+        slopes = np.zeros((sum(len(rows) for _, _, rows, _ in held), len(self.prior)))
+        parts = np.split(slopes, np.cumsum([len(rows) for _, _, rows, _ in held])[:-1])
+        for (_, by, rows, tolerance), part in zip(held, parts, strict=True):
+            self._put_slopes(part, {name: slope / tolerance for name, slope in by.items()}, rows)
+        return np.concatenate([miss[rows] / tol for miss, _, rows, tol in held]), slopes
 
-    def _demands(self, unknown: np.ndarray, leg: int) -> Iterator[_Demand]:
-        """Yield what a leg misses over the stride, by what it changes, when, and the tolerance."""
+    def _demands(self, unknown: np.ndarray) -> Iterator[_Demand]:
+        """Yield what the legs miss over the stride, by what it changes, when, and the tolerance.
+
+        Frames of the left leg, then those of the right one.
+        """
         curves, prints, pelvis = self.split(unknown)
-        body, foot, own = self.body, self.body.foot, self._phases[leg]
-        thigh, knee, pitch = curves[leg] @ self._legs[leg].T
+        body, foot, own = self.body, self.body.foot, self._own
+        thigh, knee, pitch = np.concatenate(
+            [leg @ waves.T for leg, waves in zip(curves, self._legs, strict=True)], axis=1
+        )
         shank = thigh - knee
         forward = body.thigh * np.sin(thigh) + body.shank * np.sin(shank)
         down = body.thigh * np.cos(thigh) + body.shank * np.cos(shank)
-        hip = self._hips[leg] + self._trunk @ pelvis.T
-        side = list(SIDES.values())[leg]
-        foot_y = ankle_to_the_side(side, self.pace, body, self._yaw, pitch)
+        hip = self._hips + self._paths @ pelvis.T
+        foot_y = ankle_to_the_side(self._side, self.pace, body, self._yaw, pitch)
         upright = np.sqrt(1 - ((foot_y - hip[:, 1]) / down) ** 2)
         x, z = hip[:, 0] + forward, hip[:, 2] - upright * down
         by_x = {"thigh": down, "knee": -body.shank * np.cos(shank), "ahead": _ONE, "print": -_ONE}
@@ -130,7 +147,8 @@ class Ground:
         stands = own <= self.pace.stance
         over, rolling = foot.ankle_over_print(pitch)
         along = np.cos(self._yaw)
-        miss_x = x - (prints[leg] - self.pace.stride * own) - along * over[:, 0]
+        belt = np.repeat(prints, _FRAMES) - self.pace.stride * own
+        miss_x = x - belt - along * over[:, 0]
         yield miss_x, by_x | {"pitch": -along * rolling[:, 0]}, stands, _CONTACT_MM
         yield z - over[:, 1], by_z | {"pitch": -rolling[:, 1]}, stands, _CONTACT_MM
         yield pitch, {"pitch": _ONE}, (own > _FLAT[0]) & (own < _FLAT[1]), _FLAT_RAD
@@ -142,22 +160,27 @@ class Ground:
             low = ~stands & (miss < 0)
             yield miss, by_z | {"pitch": swinging[:, point, 1]}, low, 2 * _CONTACT_MM
 
-    def _slopes(self, by: Mapping[str, np.ndarray], leg: int, held: np.ndarray) -> np.ndarray:
-        """Return derivatives by the unknowns, where those by angles and the pelvis are given."""
-        first, pelvis = leg * (3 * _LEG + 1), 2 * (3 * _LEG + 1)
-        waves, trunk = self._legs[leg][held], self._trunk[held]
-        slopes = np.zeros((len(waves), len(self.prior)))
-        for number, angle in enumerate(("thigh", "knee", "pitch")):
-            if angle in by:
-                start = first + number * _LEG
-                slopes[:, start : start + _LEG] = by[angle][held, None] * waves
-        if "print" in by:
-            slopes[:, first + 3 * _LEG] = by["print"][held]
+    def _put_slopes(
+        self, slopes: np.ndarray, by: Mapping[str, np.ndarray], rows: np.ndarray
+    ) -> None:
+        """Put in derivatives by the unknowns, where those by angles and the pelvis are given."""
+        of_left = int(np.searchsorted(rows, _FRAMES))
+        legs = (slice(0, of_left), slice(of_left, None))
+        for leg, (here, waves) in enumerate(zip(legs, self._legs, strict=True)):
+            first = leg * (3 * _LEG + 1)
+            frames = rows[here]
+            waves = waves[frames - leg * _FRAMES]
+            for number, angle in enumerate(("thigh", "knee", "pitch")):
+                if angle in by:
+                    start = first + number * _LEG
+                    slopes[here, start : start + _LEG] = by[angle][frames, None] * waves
+            if "print" in by:
+                slopes[here, first + 3 * _LEG] = by["print"][frames]
+        pelvis = 2 * (3 * _LEG + 1)
         if "rise" in by:
-            slopes[:, pelvis : pelvis + _PELVIS] = trunk
+            slopes[:, pelvis : pelvis + _PELVIS] = by["rise"][rows, None] * self._paths[rows]
         if "ahead" in by:
-            slopes[:, pelvis + _PELVIS :] = trunk[:, 1:]
-        return slopes
+            slopes[:, pelvis + _PELVIS :] = by["ahead"][rows, None] * self._paths[rows, 1:]
 
 
 def _precision() -> np.ndarray:
@@ -170,7 +193,7 @@ def _precision() -> np.ndarray:
 
 
 def ankle_to_the_side(
-    side: int, pace: Pace, body: Body, yaw: float, pitch: np.ndarray
+    side: int | np.ndarray, pace: Pace, body: Body, yaw: float, pitch: np.ndarray
 ) -> np.ndarray:
     """Return the lateral place of an ankle: half a step width from the middle.
 

@@ -10,11 +10,17 @@ LONGEST_GAP_S = 0.12
 
 def with_noise(values: np.ndarray, sd_mm: float, chance: np.random.Generator) -> np.ndarray:
     """Return positions with independent noise in each coordinate."""
-    return values + sd_mm * chance.standard_normal(values.shape) if sd_mm else values
+    if not sd_mm:
+        return values
+    noise = chance.standard_normal(values.shape)
+    noise *= sd_mm
+    return np.add(noise, values, out=noise)
 
 
 def with_drift(values: np.ndarray, time: np.ndarray, mm_s: float) -> np.ndarray:
     """Return positions of someone whom the belt slowly carries forward."""
+    if not mm_s:
+        return values
     drifted = values.copy()
     drifted[..., 0] += mm_s * time[:, None]
     return drifted
