@@ -42,6 +42,13 @@ export interface Act {
   turn(azimuth_deg: number, elevation_deg: number, staging: Staging): boolean;
 }
 
+/** How far apart in their strides the walkers of a crowd are: no two are ever alike. */
+const GOLDEN = (Math.sqrt(5) - 1) / 2;
+
+/** How far a walker is ahead of the first one, in cycles. */
+export const lead = ({ scene }: State, number: number): number =>
+  scene === "crowd" ? (GOLDEN * number) % 1 : 0;
+
 export function actOf(script: Script): Act {
   const { state, mannequin } = script;
   const carved = state.style === "mannequin" && mannequin !== null;

@@ -7,10 +7,10 @@ import type { Sight } from "./troupe";
 
 /** Width of a stick beside the diameter of a dot. */
 const STICK = 0.6;
-const TRAIL_S = 0.42;
-const TRAIL_STEPS = 14;
+const TRAIL_S = 0.6;
+const TRAIL_STEPS = 18;
 /** How strong a trail is where it begins. */
-const TRAIL_LIGHT = 0.55;
+const TRAIL_LIGHT = 0.8;
 const GROUND_MM = 470;
 const GROUND_CORNERS = 48;
 
@@ -76,7 +76,7 @@ export function drawTrails(
   for (let step = 1; step <= TRAIL_STEPS; step++) {
     see(time - (step * TRAIL_S) / TRAIL_STEPS, older);
     const left = 1 - step / (TRAIL_STEPS + 1);
-    context.globalAlpha = TRAIL_LIGHT * left * left;
+    context.globalAlpha = TRAIL_LIGHT * left;
     context.lineWidth = Math.max(0.5 * dotPx * left, 0.75);
     context.beginPath();
     for (let i = 0; i < size; i += 2) {

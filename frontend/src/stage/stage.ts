@@ -5,7 +5,7 @@ import { heldMannequin, type MannequinPainter } from "../canvas/mannequin";
 import type { Cast } from "../model/cast";
 import type { Model } from "../model/model";
 import { RANGES, within, wrappedDegrees, type State } from "../model/state";
-import { actOf, type Act } from "./act";
+import { actOf, lead, type Act } from "./act";
 import { watchGestures } from "./dragging";
 import { boxesOf, stagingOf, type Box, type Room, type Size, type Staging } from "./staging";
 import { roomFor } from "./stimulus";
@@ -36,8 +36,6 @@ const LONGEST_FRAME_S = 0.1;
 /** How soon a stage that was thrown comes to rest, and when it has. */
 const SLOWING_S = 0.28;
 const RESTS_DEG_S = 4;
-/** How far apart in their strides the walkers of a crowd are: never alike. */
-const GOLDEN = (Math.sqrt(5) - 1) / 2;
 
 interface Shown {
   readonly model: Model;
@@ -177,11 +175,11 @@ export class Stage {
 
   /** Where in its stride a walker goes on. */
   #cycleOf(number: number, scrubbed: boolean): number {
-    const { cast, state } = this.#shown!;
-    const lag = state.scene === "crowd" && cast.length > 1 ? GOLDEN * number : 0;
-    if (scrubbed || !this.#act) return state.cycle + lag;
+    const { state } = this.#shown!;
+    const ahead = lead(state, number);
+    if (scrubbed || !this.#act) return state.cycle + ahead;
     const known = this.#built?.state.scene === state.scene ? this.#act.cycle(number, this.#time) : NaN;
-    return Number.isFinite(known) ? known : this.#act.cycle(0, this.#time) + lag;
+    return Number.isFinite(known) ? known : this.#act.cycle(0, this.#time) + ahead;
   }
 
   #lay(staging: Staging): void {

@@ -90,8 +90,9 @@ function figureOf(
   const [x, y] = middleOf(walker);
   const own: Vector = [origin[0] - x, origin[1] - y, 0];
   const position = own.map((at, axis) => at + across * right[axis]! + above * up[axis]!);
+  const whole = { ...walker, form: model.form };
   return {
-    walker,
+    walker: whole,
     trajectories: null,
     segments: model.segments,
     pairs: model.pairs,
