@@ -1,0 +1,229 @@
+"""Motion maps drawn, and two walks over each other (Pražák et al. 2010, fig. 1 and 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from eigenwalker.display.bodies import HEAD_MM, INCH_MM, draw_body
+from eigenwalker.display.links import LINKS
+from eigenwalker.display.projection import project
+from eigenwalker.display.style import (
+    BLUE,
+    GREY,
+    INK,
+    PALE,
+    RED,
+    SMALL,
+    USUAL,
+    bare,
+    head_line,
+    new_figure,
+    panels,
+)
+from eigenwalker.skeleton import Skeleton
+
+
+@dataclass(frozen=True)
+class MapPicture:
+    """A motion map and what to draw on it.
+
+    Parameters
+    ----------
+    values : array of shape (time_a, time_b)
+        How different each frame of a is from each of b.
+    times_a, times_b : array
+        Seconds of the frames.
+    title, unit : str
+        What is compared, and the unit of the values.
+    path : array of shape (step, 2), optional
+        Corresponding moments of a and b in seconds: the blending line, red.
+    period : tuple of float, optional
+        Beginnings on a and b, and lengths, of one period of either: a blue frame.
+    marks : array of shape (moment, 2), optional
+        Moments of a and b to mark by a ring.
+    names : tuple of str
+        What a and b are called.
+
+    """
+
+    values: np.ndarray
+    times_a: np.ndarray
+    times_b: np.ndarray
+    title: str
+    unit: str = ""
+    path: np.ndarray | None = None
+    period: tuple[float, float, float, float] | None = None
+    marks: np.ndarray | None = None
+    names: tuple[str, str] = ("first walk", "second walk")
+
+
+def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure:
+    """Return motion maps side by side, dark where frames are alike (fig. 1 and 6).
+
+    Parameters
+    ----------
+    pictures : sequence of MapPicture
+        Each with a scale of its own.
+    n_columns : int
+        Maps in a row.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> t = np.arange(0, 2, 0.1)
+    >>> apart = np.abs(np.sin(np.pi * (t[:, None] - t)))
+    >>> figure = figure_maps([MapPicture(apart, t, t, "a sine and itself")])
+    >>> figure.axes[0].get_title(loc="left")
+    'a sine and itself'
+
+    """
+    n_columns = min(n_columns, len(pictures))
+    n_rows = -(-len(pictures) // n_columns)
+    figure = new_figure(0.3 + 2.7 * n_columns, 0.2 + 2.75 * n_rows)
+    grid = [axes for row in panels(figure, n_rows, n_columns) for axes in row]
+    for axes, picture in zip(grid, pictures, strict=False):
+        _draw_map(figure, axes, picture)
+    for axes in grid[len(pictures) :]:
+        axes.remove()
+    return figure
+
+
+def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
+    a, b = picture.times_a, picture.times_b
+    half_a, half_b = (0.5 * (t[-1] - t[0]) / max(len(t) - 1, 1) for t in (a, b))
+    drawn = axes.imshow(
+        picture.values,
+        cmap="gray",
+        origin="lower",
+        extent=(b[0] - half_b, b[-1] + half_b, a[0] - half_a, a[-1] + half_a),
+        interpolation="nearest",
+        aspect="equal",
+    )
+    if picture.period is not None:
+        start_a, start_b, length_a, length_b = picture.period
+        axes.add_patch(
+            Rectangle((start_b, start_a), length_b, length_a, fc="none", ec=BLUE, lw=1.4)
+        )
+    if picture.path is not None:
+        axes.plot(picture.path[:, 1], picture.path[:, 0], color=RED, lw=1.4)
+    if picture.marks is not None:
+        axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
+    scale = figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
+    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
+    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
+    axes.set_ylabel(f"{picture.names[0]} (s)", parse_math=False)
+    axes.set_xlabel(f"{picture.names[1]} (s)", parse_math=False)
+    head_line(axes, picture.title)
+
+
+def figure_two_walks(
+    first: np.ndarray,
+    second: np.ndarray,
+    markers: Sequence[str],
+    *,
+    names: tuple[str, str] = ("first walk", "second walk"),
+    n_moments: int = 5,
+    skeleton: Skeleton = LINKS,
+) -> Figure:
+    """Return two registered walks over each other at moments of their stride, from two sides.
+
+    Parameters
+    ----------
+    first, second : array of shape (time, marker, axis)
+        Corresponding frames of one stride, in mm.
+    markers : sequence of str
+        Names of the markers.
+    names : tuple of str
+        What the walks are called.
+    n_moments : int
+        Evenly spaced moments to draw.
+    skeleton : Skeleton
+        Who is joined to whom.
+
+    Returns
+    -------
+    Figure
+        Seen from the side above, from the front below; the first walk blue, the second red, their
+        left limbs paler.
+
+    """
+    body = skeleton.restricted_to(markers)
+    frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)
+    views = (90.0, 0.0)
+    seen = {
+        view: [project(walk[frames], view_deg=view) for walk in (first, second)] for view in views
+    }
+    reach = max(np.abs(each[..., 0]).max() for both in seen.values() for each in both) + HEAD_MM
+    low = min(each[..., 1].min() for both in seen.values() for each in both)
+    top = max(each[..., 1].max() for both in seen.values() for each in both) + 1.5 * HEAD_MM
+    pitch, storey = 1.7 * reach, top - low + 150
+    width = pitch * (n_moments - 1) + 2 * reach
+    figure = new_figure(width / INCH_MM, (2 * storey + 250) / INCH_MM)
+    axes = bare(panels(figure, 1, 1)[0][0])
+    for row, view in enumerate(views):
+        for column in range(n_moments):
+            for walk, color in zip(seen[view], (BLUE, RED), strict=True):
+                at = (column * pitch, -row * storey)
+                draw_body(axes, walk[column], body, at=at, color=color, width=1.1, dots=False)
+    for column in range(n_moments):
+        share = f"{100 * column / n_moments:.0f} %"
+        axes.text(column * pitch, low - storey - 90, share, fontsize=SMALL, ha="center", color=GREY)
+    for place, (name, color) in enumerate(zip(names, (BLUE, RED), strict=True)):
+        axes.annotate(
+            name,
+            (0, 1),
+            xycoords="axes fraction",
+            xytext=(0, 2 + 10 * (1 - place)),
+            textcoords="offset points",
+            fontsize=USUAL,
+            color=color,
+            parse_math=False,
+        )
+    axes.set_xlim(-reach, (n_moments - 1) * pitch + reach)
+    axes.set_ylim(low - storey - 150, top)
+    return figure
+
+
+def figure_shares(shares: Mapping[str, float]) -> Figure:
+    """Return how much each part makes of a difference, the largest first.
+
+    Parameters
+    ----------
+    shares : mapping of str to float
+        Shares by name, 0 to 1.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> figure_shares({"calf": 0.2, "forearm": 0.8}).axes[0].get_yticklabels()[0].get_text()
+    'forearm'
+
+    """
+    ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
+    figure = new_figure(3.6, 0.6 + 0.2 * len(ordered))
+    axes = panels(figure, 1, 1)[0][0]
+    places = np.arange(len(ordered))
+    percent = [100 * share for share in ordered.values()]
+    axes.barh(places, percent, height=0.65, color=BLUE)
+    for place, value in zip(places, percent, strict=True):
+        axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
+    axes.set_yticks(places, [name.replace("_", " ") for name in ordered])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.15 * max(percent))
+    axes.set_xlabel("Share of the difference (%)")
+    axes.spines["left"].set_color(PALE)
+    axes.tick_params(axis="y", length=0)
+    return figure
