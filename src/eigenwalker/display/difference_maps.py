@@ -218,7 +218,7 @@ def figure_shares(shares: Mapping[str, float]) -> Figure:
     places = np.arange(len(ordered))
     percent = [100 * share for share in ordered.values()]
     axes.barh(places, percent, height=0.65, color=BLUE)
-    for place, value in zip(places, percent, strict=True):
+    for place, value in enumerate(percent):
         axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
     axes.set_yticks(places, [name.replace("_", " ") for name in ordered])
     axes.invert_yaxis()
