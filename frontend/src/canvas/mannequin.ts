@@ -31,6 +31,11 @@ export const hasLimbs = ({ body, blurMm }: Moving): boolean => body.segments.len
 export async function heldMannequin(): Promise<MannequinPainter> {
   const text = document.querySelector("script#mannequin")?.textContent?.trim();
   if (!text) throw new Error("This page does not hold the mannequin; make it anew with the style 'mannequin'.");
+  return mannequinFrom(text);
+}
+
+/** The painter of a module that is there as text. */
+export async function mannequinFrom(text: string): Promise<MannequinPainter> {
   const address = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
   try {
     const module = (await import(/* @vite-ignore */ address)) as MannequinModule;

@@ -54,10 +54,10 @@ def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarr
     model : mapping
         Of `page_model`.
     state : mapping
-        Any of ``traits`` {name: standard deviations}, ``kind``, ``part``, ``from`` ("average", or
-        the number of a walker of the model), ``bias`` {"trait", "steps"} in half the difference of
-        the classes' means, ``eigenwalkers`` in standard deviations, ``strengths``, 1 being as it
-        is. What is left out changes nothing.
+        Any of ``traits`` {name: standard deviations}, ``kind``, ``part``, ``from`` ("average", the
+        number of a walker of the model, or "own" for the vector ``own``), ``bias`` {"trait",
+        "steps"} in half the difference of the classes' means, ``eigenwalkers`` in standard
+        deviations, ``strengths``, 1 being as it is. What is left out changes nothing.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarr
     True
 
     """
-    vector = _start(model, state.get("from", "average"))
+    vector = _start(model, state)
     kind, part = state.get("kind", "discriminant"), state.get("part", "all")
     for name, steps in state.get("traits", {}).items():
         if steps:
@@ -92,12 +92,17 @@ def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarr
     _check_count("strengths", state.get("strengths", ()), len(model["harmonics"]))
     for number, strength in enumerate(state.get("strengths", ()), start=1):
         vector[slice(*model["layout"][f"p{number}"])] *= strength
+    if not np.isfinite(vector).all():
+        raise ValueError("Some of the numbers chosen are not finite.")
     return vector
 
 
-def _start(model: Mapping[str, Any], start: str | int) -> np.ndarray:
+def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
+    start = state.get("from", "average")
     if start == "average":
         return np.array(model["average"], dtype=float)
+    if start == "own" and state.get("own") is not None:
+        return np.array(state["own"], dtype=float)
     walkers = model["walkers"]
     if not isinstance(start, int) or not 0 <= start < len(walkers):
         raise ValueError(

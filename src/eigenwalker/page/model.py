@@ -15,6 +15,7 @@ from eigenwalker.page.traits import model_traits
 from eigenwalker.population import FLAG, Population
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.space import WalkerSpace
+from eigenwalker.walker import Walker
 
 FORMAT, VERSION = "eigenwalker model", 1
 N_EIGENWALKERS = 10
@@ -64,11 +65,8 @@ def page_model(
     if not len(rows):
         rows = np.arange(len(population))
     known, layout = population.X[rows], population.layout
-    average = known.mean(axis=0)
-    points = _evenly(len(rows), MOST_POINTS)
+    shown, points = _evenly(len(rows), MOST_WALKERS), _evenly(len(rows), MOST_POINTS)
     axes = model_traits(population, traits, first=first)
-    skeleton = JOINTS.restricted_to(layout.markers)
-    shown = _evenly(len(rows), MOST_WALKERS)
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -79,15 +77,8 @@ def page_model(
         "provenance": {str(name): str(said) for name, said in population.provenance.items()},
         "n_walkers": len(rows),
         "n_flagged": len(population) - len(rows),
-        "markers": list(layout.markers),
-        "segments": [list(link) for link in skeleton.segments],
-        "pairs": [list(pair) for pair in skeleton.pairs],
-        "groups": {name: list(members) for name, members in skeleton.groups.items() if members},
-        "form": layout.form,
-        "harmonics": list(layout.harmonics),
-        "fixed_phases": _fixed_phases(population),
-        "layout": {name: [part.start, part.stop] for name, part in layout.blocks.items()},
-        "average": rounded_vectors(average, layout),
+        **_body(layout),
+        "average": rounded_vectors(known.mean(axis=0), layout),
         **_variation(known, layout, points),
         "walkers": _walkers(population, rows[shown], axes),
         "cloud": _cloud(known, points, shown, axes),
@@ -95,12 +86,65 @@ def page_model(
     }
 
 
-def _fixed_phases(population: Population) -> list[float | None]:
-    """The phases that are no features; None for one that is."""
-    layout = population.layout
-    if layout.form == "fourier":
-        return [float(phase) for phase in layout.fixed_phases]
-    return [0.0, *[None] * (len(layout.harmonics) - 1)]
+def walker_model(walker: Walker, *, title: str = "One walker") -> dict[str, Any]:
+    """Return one walker as the page holds it, without a population: it is its own average.
+
+    Parameters
+    ----------
+    walker : Walker
+        Of any markers.
+    title : str
+        What the page is called.
+
+    Returns
+    -------
+    dict
+        As `page_model` returns it.
+
+    Examples
+    --------
+    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
+    >>> walker_model(hop)["average"]
+    [0.0, 0.0, 50.0, 0.0, 0.0, 40.0, 1.0]
+
+    """
+    layout = FeatureLayout.of(walker)
+    vector = layout.vector(walker)
+    own = rounded_vectors(vector, layout)
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "program": f"eigenwalker {eigenwalker.__version__}",
+        "title": title,
+        "source": "",
+        "simulated": False,
+        "provenance": {},
+        "n_walkers": 1,
+        "n_flagged": 0,
+        **_body(layout),
+        "average": own,
+        **_variation(vector[None], layout, np.array([0])),
+        "walkers": [{"name": title, "row": 0, "vector": own, "traits": {}}],
+        "cloud": _cloud(vector[None], np.array([0]), np.array([0]), []),
+        "traits": [],
+    }
+
+
+def _body(layout: FeatureLayout) -> dict[str, Any]:
+    """What walks: markers and how they are joined, and which number of a vector is what."""
+    skeleton = JOINTS.restricted_to(layout.markers)
+    free = layout.form == "eigenposture"
+    unknown = [0.0, *[None] * (len(layout.harmonics) - 1)]
+    return {
+        "markers": list(layout.markers),
+        "segments": [list(link) for link in skeleton.segments],
+        "pairs": [list(pair) for pair in skeleton.pairs],
+        "groups": {name: list(members) for name, members in skeleton.groups.items() if members},
+        "form": layout.form,
+        "harmonics": list(layout.harmonics),
+        "fixed_phases": unknown if free else list(layout.fixed_phases),
+        "layout": {name: [part.start, part.stop] for name, part in layout.blocks.items()},
+    }
 
 
 def _evenly(number: int, most: int) -> np.ndarray:

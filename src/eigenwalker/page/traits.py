@@ -139,4 +139,4 @@ def _told(axis: TraitAxis, n_features: int) -> dict[str, Any]:
     """Where a walker lies along the axis, as a linear function of its features."""
     offset = float(axis.positions(np.zeros((1, n_features)))[0])
     gradient = axis.positions(np.eye(n_features)) - offset
-    return {"offset": significant(offset), "gradient": [significant(each) for each in gradient]}
+    return {"offset": significant(offset), "gradient": [significant(each, 9) for each in gradient]}
