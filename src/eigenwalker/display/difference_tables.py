@@ -62,7 +62,7 @@ def figure_difference_table(
             axes.axhline(border, color="#009988", lw=1.0, ls="--")
             axes.axvline(border, color="#009988", lw=1.0, ls="--")
     if len(order) <= MOST_NAMED:
-        labels = [_short(names[walk]) for walk in order.tolist()]
+        labels = [_short(str(names[walk])) for walk in order]
         axes.set_xticks(range(len(order)), labels, rotation=90, parse_math=False)
         axes.set_yticks(range(len(order)), labels, parse_math=False)
     else:
