@@ -2,14 +2,17 @@
 /** Parts of the interactive page: sliders, files that are brought, words. */
 
 import { describe, expect, it, vi } from "vitest";
-import { howPlausible } from "../src/interactive/changes";
 import { choice } from "../src/interactive/choice";
 import { make } from "../src/interactive/element";
 import { Notices } from "../src/interactive/notices";
 import { openFile } from "../src/interactive/opening";
 import { ownOf } from "../src/interactive/own";
+import { howPlausible, reachOf } from "../src/interactive/plausible";
 import { signed, slider } from "../src/interactive/slider";
 import { goldenModel, posture, stimulusWith } from "./interactive_model";
+import { vectorOf } from "../src/model/mix";
+import { placeOf } from "../src/model/place";
+import { initialState } from "../src/model/state";
 import { walkerOf } from "../src/model/walker";
 
 describe("a slider", () => {
@@ -159,11 +162,26 @@ describe("a walker of a stimulus", () => {
   });
 });
 
-it("a walker is called a caricature only when it is farther than all", () => {
-  const of = (distance: number, percentile: number): string =>
-    howPlausible({ distance, percentile, scores: [], positions: {} });
-  expect(of(0, 0)).toMatch(/average/);
-  expect(of(1, 50)).toBe("Plausible: 50 % of the walkers are nearer to the average.");
-  expect(of(3, 100)).toMatch(/caricature/);
-  expect(of(5, 100)).toMatch(/Nobody walks so: 5\.0 times/);
+describe("plausibility", () => {
+  const model = goldenModel();
+  const reach = reachOf(model);
+  const said = (traits: Record<string, number>): string => {
+    const vector = vectorOf(model, { ...initialState(model), traits });
+    return howPlausible(reach, placeOf(model, vector));
+  };
+
+  it("of the average walker is that of nobody and everybody", () => {
+    expect(said({})).toMatch(/average walker/);
+  });
+
+  it("is lost where a slider goes farther than anyone, however near the average that is", () => {
+    expect(said({ sex: 6 })).toMatch(/^(A caricature|Nobody walks so): 6\.0 SD towards man; the farthest walker is at \d\.\d\.$/);
+    expect(said({ sex: -6 })).toMatch(/ SD towards woman; /);
+  });
+
+  it("is had by everyone of the population", () => {
+    for (const { vector } of model.walkers) {
+      expect(howPlausible(reach, placeOf(model, vector))).toMatch(/^Plausible/);
+    }
+  });
 });

@@ -3,9 +3,17 @@
 import type { Model } from "../model/model";
 import { make } from "./element";
 
-/** One line: how many walkers, and whether they exist. */
-export function peopleIn({ n_walkers, simulated }: Model): string {
-  return `${n_walkers} ${simulated ? "simulated " : ""}${n_walkers === 1 ? "walker" : "walkers"}`;
+/** Where the report lies, if there is one: an address relative to the page. */
+function reportLink(): HTMLElement[] {
+  const said = document.querySelector('meta[name="eigenwalker-report"]')?.getAttribute("content") ?? "";
+  if (!/^[\w.-]+(\/[\w.-]+)*$/.test(said)) return [];
+  return [make("p", {}, make("a", { href: said }, "The report of this population"))];
+}
+
+/** One line: how many walkers, whether they exist, and out of what file. */
+export function peopleIn({ n_walkers, simulated, source }: Model): string {
+  const people = `${n_walkers} ${simulated ? "simulated " : ""}${n_walkers === 1 ? "walker" : "walkers"}`;
+  return source ? `${people} of ${source}` : people;
 }
 
 /** The ideas in four sentences, and where the model comes from. */
@@ -13,7 +21,6 @@ export function about(model: Model): HTMLElement {
   const facts = [
     ["walkers", String(model.n_walkers)],
     ...(model.n_flagged > 0 ? [["left out", `${model.n_flagged}, doubtful captures`]] : []),
-    ...(model.source ? [["file", model.source]] : []),
     ...Object.entries(model.provenance).filter(([name]) => name !== "recipe"),
     ["program", model.program],
   ] as const;
@@ -23,6 +30,7 @@ export function about(model: Model): HTMLElement {
       make("p", {}, "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that ride on sines; so walks can be added, averaged and pushed past the end."),
       ...(model.simulated ? [make("p", {}, "The walkers here are simulated: nobody was captured.")] : []),
       make("p", { class: "note" }, "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait."),
+      ...reportLink(),
       make("dl", { class: "facts" }, ...facts.flatMap(([term, said]) => [make("dt", {}, term!), make("dd", {}, said!)])),
     ),
   );

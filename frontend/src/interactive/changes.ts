@@ -1,4 +1,4 @@
-/** What changes in the body: numbers with small plots, and how plausible the walker is. */
+/** What changes in the body, as numbers with small plots. */
 
 import { MEASURES, measuresOf, type MeasureName } from "../model/measures";
 import { vectorOf } from "../model/mix";
@@ -38,8 +38,13 @@ export function changes(session: Session): Part {
     const values = [...people.map(({ measures }) => measures[measure.name]), ...usual.map((of) => of[measure.name])];
     return plot(model, trait, measure, people, [Math.min(...values), Math.max(...values)]);
   });
+  const legend = trait?.two_classes
+    ? `Small points: ${many(trait.negative)} (warm) and ${many(trait.positive)} (cool). Line: where the large slider leads.`
+    : "Small points: people. Line: where the large slider leads.";
   return {
-    element: make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
+    element: make("div", {},
+      make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
+      make("p", { class: "note" }, legend)),
     show(now) {
       const line = along(model, now.state, now.own, trait);
       for (const one of plots) one.show(now, line);
@@ -103,39 +108,4 @@ function difference(by: number, digits: number): string {
   const size = Math.abs(by).toFixed(digits);
   if (Number(size) === 0) return "average";
   return `${by < 0 ? "\u2212" : "+"}${size}`;
-}
-
-/** How far from anyone the walker is, in a sentence and on a bar. */
-export function plausible(session: Session): Part {
-  const bar = make("div", { class: "far", "aria-hidden": "true" }, make("i"));
-  const words = make("p", {});
-  const trait = mainTrait(session.model);
-  const legend = make("p", { class: "note" },
-    trait?.two_classes
-      ? `Small points: ${many(trait.negative)} (warm) and ${many(trait.positive)} (cool). Line: where the large slider leads.`
-      : "Small points: people. Line: where the large slider leads.");
-  return {
-    element: make("div", { class: "plausible" }, words, bar, legend),
-    show({ place }) {
-      words.textContent = howPlausible(place);
-      bar.style.setProperty("--now", `${Math.min(place.distance / FARTHEST, 1) * 100}%`);
-      bar.style.setProperty("--real", `${(largest(session.model) / FARTHEST) * 100}%`);
-    },
-  };
-}
-
-/** Right end of the bar, in usual distances. */
-const FARTHEST = 6;
-
-/** The farthest of the population, in usual distances. */
-const largest = ({ spread }: Model): number => Math.max(...spread.distances);
-
-export function howPlausible({ distance, percentile }: Place): string {
-  const times = `${distance.toFixed(1)} times as far from the average as is usual`;
-  if (distance < 0.05) return "Nobody and everybody: the average walker.";
-  if (percentile < 1) return "Nearer to the average than anyone.";
-  if (percentile < 100) return `Plausible: ${Math.round(percentile)} % of the walkers are nearer to the average.`;
-  if (distance < 2) return `Rare: ${times}.`;
-  if (distance < 4) return `A caricature: ${times}.`;
-  return `Nobody walks so: ${times}.`;
 }

@@ -55,7 +55,7 @@ export function cloud(session: Session): Part {
     },
     ...grid(), rest, trail, ...names, ...points.map(({ circle }) => circle), cross,
   );
-  const said = make("p", { class: "note", "aria-hidden": "true" });
+  const said = make("p", { class: "note steady", "aria-hidden": "true" });
   let active = -1;
   let last: Now | undefined;
 
@@ -211,8 +211,9 @@ const usually = (model: Model): string => {
 
 function nearest(points: readonly Point[], chart: SVGSVGElement, event: MouseEvent): number {
   const box = chart.getBoundingClientRect();
-  const scale = WIDTH / box.width;
-  const [h, v] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
+  const scale = WIDTH / chart.clientWidth;
+  const h = (event.clientX - box.left - chart.clientLeft) * scale;
+  const v = (event.clientY - box.top - chart.clientTop) * scale;
   const far = points.map((point) => Math.hypot(point.x - h, point.y - v));
   const best = far.indexOf(Math.min(...far));
   return best >= 0 && far[best]! < NEAR * scale ? best : -1;

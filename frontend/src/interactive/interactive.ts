@@ -6,7 +6,7 @@ import type { Model } from "../model/model";
 import { readModel } from "../model/read";
 import { Stage } from "../stage/stage";
 import { classifier } from "./classifier";
-import { changes, plausible } from "./changes";
+import { changes } from "./changes";
 import { cloud } from "./cloud";
 import { about, peopleIn } from "./about";
 import { eigenwalkerSliders } from "./eigenwalkers";
@@ -18,6 +18,7 @@ import { look, transforms } from "./look";
 import { bias, strengths } from "./moler";
 import { Notices } from "./notices";
 import { openFile } from "./opening";
+import { plausible } from "./plausible";
 import { scenes } from "./scenes";
 import { section, words, type Fold } from "./section";
 import { Session, type Now, type Part } from "./session";
@@ -67,8 +68,6 @@ function begin(model: Model, address = ""): void {
   const dark = session?.state.dark ?? start.dark;
   const now = new Session(model, { ...start, dark, playing: start.playing && !calm });
   session = now;
-  document.title = model.title;
-  find("h1", HTMLHeadingElement).textContent = model.title;
   find("#people", HTMLParagraphElement).textContent = peopleIn(model);
   const parts = [stagePart(now), ...furnish(now), addressPart(now)];
   now.listen((moment) => parts.forEach((part) => part.show(moment)));
@@ -94,6 +93,7 @@ function stagePart(session: Session): Pick<Part, "show"> {
       session.change({ style: "sticks" });
     },
   });
+  session.clock = () => stage.cycle;
   let last: Now | undefined;
   const keys = stageKeys(session);
   host.addEventListener("keydown", keys);
@@ -134,9 +134,9 @@ function furnish(session: Session): Pick<Part, "show">[] {
   const others = otherTraits(session);
   const controls: Fold[] = [
     ...(others.element.childElementCount > 0 ? [section("More traits", [others], true)] : []),
-    section("Who walks", [who(session, choose)]),
-    section("Several at once", [scenes(session)]),
-    section("Body or motion", [classifier(session)]),
+    section("Who walks", [who(session, choose)], WIDE.matches),
+    section("Several at once", [scenes(session)], WIDE.matches),
+    section("Body or motion", [classifier(session)], WIDE.matches),
     section("Stride, sway, hop, bounce", [strengths(session), bias(session)]),
     section("Eigenwalkers", [words("What varies most from walker to walker, whatever it means."), eigenwalkerSliders(session)]),
     section("Look", [look(session), transforms(session)]),

@@ -21,7 +21,7 @@ export function pageKeys(session: Session): (event: KeyboardEvent) => void {
     const undoes = (event.ctrlKey || event.metaKey) && !event.shiftKey && event.key.toLowerCase() === "z";
     if (undoes) session.undo();
     else if (event.key !== " " || event.target.closest(TAKES_SPACE)) return;
-    else session.change({ playing: !session.state.playing });
+    else session.play(!session.state.playing);
     event.preventDefault();
   };
 }

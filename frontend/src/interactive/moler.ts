@@ -5,7 +5,7 @@ import { button } from "./choice";
 import { make } from "./element";
 import type { Now, Part, Session } from "./session";
 import { signed, slider } from "./slider";
-import { ends, many } from "./words";
+import { ends, pole } from "./words";
 
 const NAMES = ["Stride", "Sway", "Hop", "Bounce"];
 
@@ -27,6 +27,7 @@ export function strengths(session: Session): Part {
       session.change({ strengths: already ? session.state.strengths.map(() => 1) : alone(number) });
     }, "small");
     only.setAttribute("aria-label", `${label} alone`);
+    one.element.classList.add("solo");
     one.element.querySelector("output")?.after(only);
     return { one, only };
   });
@@ -49,7 +50,7 @@ export function bias(session: Session): Part {
   const traits = session.model.traits.filter(({ means }) => means !== null);
   const sliders = traits.map((trait) =>
     slider({
-      label: `Bias, \u00b11 is the mean of ${many(trait.negative)} or ${many(trait.positive)}`,
+      label: `Bias of ${trait.label}`,
       ends: ends(trait),
       min, max, step: 0.05, usual: 0,
       real: [-1, 1],
@@ -57,8 +58,11 @@ export function bias(session: Session): Part {
       onInput: (steps) => session.change({ bias: steps === 0 ? null : { trait: trait.name, steps } }),
     }),
   );
+  const about = traits.map(({ negative, positive }) =>
+    make("p", { class: "note" }, `Bias: 0 is as it is, \u00b11 half the way between the mean ${pole(negative)} and the mean ${pole(positive)}.`),
+  );
   return {
-    element: make("div", { class: "sliders" }, ...sliders.map(({ element }) => element)),
+    element: make("div", { class: "sliders" }, ...sliders.flatMap(({ element }, i) => [about[i]!, element])),
     show: ({ state }) =>
       sliders.forEach((one, i) => one.show(state.bias?.trait === traits[i]!.name ? state.bias.steps : 0)),
   };

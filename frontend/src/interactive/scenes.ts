@@ -21,7 +21,7 @@ export function scenes(session: Session): Part {
   const about = make("p", { class: "note" });
   const said: Record<SceneName, string> = {
     one: "One walker, changed by all the sliders.",
-    four: trait ? `Mean ${many(trait.negative)} and mean ${many(trait.positive)}; below, what sets them apart tripled.` : "",
+    four: trait ? `Mean ${many(trait.negative)} and mean ${many(trait.positive)}; then both with what sets them apart tripled.` : "",
     side: "Walkers of the population, brought to one tempo.",
     crowd: `${crowd} walkers of the population. Choose one to see it alone.`,
   };

@@ -34,7 +34,14 @@ const PASSING: readonly (keyof State)[] = [
   "playing", "cycle", "dark", "azimuth_deg", "elevation_deg",
 ];
 
+/** What walkers are made from; all else is how they are looked at. */
+const WALKS: readonly (keyof State)[] = [
+  "traits", "kind", "part", "from", "bias", "strengths", "eigenwalkers", "scene", "walkers",
+];
+
 export class Session {
+  /** Where in its stride the walker is while it walks. */
+  clock: () => number = () => 0;
   readonly store: Store;
   #own: Own | null = null;
   #past: State[] = [];
@@ -42,6 +49,7 @@ export class Session {
   #undoing = false;
   #hears: ((now: Now) => void)[] = [];
   #request = 0;
+  #last: Now | null = null;
 
   constructor(
     readonly model: Model,
@@ -73,6 +81,11 @@ export class Session {
     this.store.change(part);
   }
 
+  /** Let it walk, or stand where it is. */
+  play(playing: boolean): void {
+    this.change(playing ? { playing } : { playing, cycle: this.clock() });
+  }
+
   /** All as it was when the page was new; how it is looked at stays. */
   reset(): void {
     const { dark, playing, cycle } = this.state;
@@ -100,16 +113,16 @@ export class Session {
 
   now(): Now {
     const { model, state, own } = this;
-    const vector = vectorOf(model, state, own);
-    return {
-      model,
-      state,
-      own,
-      vector,
-      cast: castOf(model, state, own),
-      place: placeOf(model, vector),
-      measures: measuresOf(walkerOf(model, vector)),
-    };
+    const last = this.#last;
+    const same = last && last.own === own && WALKS.every((key) => last.state[key] === state[key]);
+    if (same) this.#last = { ...last, state };
+    else {
+      const vector = vectorOf(model, state, own);
+      const cast = castOf(model, state, own);
+      const measures = measuresOf(walkerOf(model, vector));
+      this.#last = { model, state, own, vector, cast, place: placeOf(model, vector), measures };
+    }
+    return this.#last!;
   }
 
   /** Tell all parts now. */

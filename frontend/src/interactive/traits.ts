@@ -18,7 +18,8 @@ export function mainSlider(session: Session): Part {
   const element = make("div", { class: "hero" });
   if (!trait) return { element, show: () => {} };
   const one = traitSlider(session, trait);
-  one.element.classList.add("large");
+  one.element.classList.add("large", "fresh");
+  one.input.addEventListener("input", () => one.element.classList.remove("fresh"));
   const far = (): HTMLElement => make("span", { class: "beyond" }, "beyond anyone");
   const scale = make("div", { class: "scale", "aria-hidden": "true" },
     ...SCALE.map((mark) => (Math.abs(mark) === 4.5 ? far() : make("span", {}, signed(mark, 0)))),

@@ -27,7 +27,7 @@ const FINE = 200;
 /** The button that lets it walk or stand; there are two of them, as room allows. */
 export function playButton(session: Session): Part {
   const element = make("button", { type: "button", class: "round" });
-  element.addEventListener("click", () => session.change({ playing: !session.state.playing }));
+  element.addEventListener("click", () => session.play(!session.state.playing));
   let shown: boolean | undefined;
   return {
     element,

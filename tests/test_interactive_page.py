@@ -1,0 +1,390 @@
+"""The interactive page in a real browser: what a visitor does, and what the page does then."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import shutil
+from collections.abc import Iterator
+from importlib.resources import files
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import eigenwalker as ew
+from eigenwalker.page.interactive import interactive_page
+from eigenwalker.page.model import page_model
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+AXE = Path(__file__).parents[1] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "phone": (390, 844), "small": (360, 640)}
+pytestmark = pytest.mark.skipif(
+    CHROMIUM is None, reason="chromium is not installed, so nobody visits the page"
+)
+
+
+@pytest.fixture(scope="module")
+def model() -> dict:
+    return page_model(ew.load_population())
+
+
+@pytest.fixture(scope="module")
+def address(model: dict, tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("page") / "index.html"
+    path.write_text(interactive_page(model, report="report.html"), encoding="utf-8")
+    return path.as_uri()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[playwright.Browser]:
+    with playwright.sync_playwright() as starting:
+        started = starting.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+class Visit:
+    """A visitor's page, and what was amiss on it."""
+
+    def __init__(self, browser: playwright.Browser, address: str, size: str, **options) -> None:
+        width, height = SIZES[size]
+        self.context = browser.new_context(
+            viewport={"width": width, "height": height}, accept_downloads=True, **options
+        )
+        self.page = self.context.new_page()
+        self.amiss: list[str] = []
+        self.asked: list[str] = []
+        self.page.on("pageerror", lambda error: self.amiss.append(str(error)))
+        self.page.on("console", self._heard)
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.goto(address)
+        self.page.locator("#hero input").wait_for()
+
+    def _heard(self, message: playwright.ConsoleMessage) -> None:
+        if message.type in ("error", "warning"):
+            self.amiss.append(message.text)
+
+    def open(self, title: str) -> playwright.Locator:
+        section = self.page.locator("details", has=self.page.locator(f"h2:text-is('{title}')"))
+        if section.get_attribute("open") is None:
+            section.locator("summary").click()
+        return section
+
+    def unfold(self) -> None:
+        unfolding = "document.querySelectorAll('details').forEach((each) => (each.open = true))"
+        self.page.evaluate(unfolding)
+
+    def bring(self, name: str, content: bytes) -> None:
+        """Choose a file, as one who cannot drop it."""
+        self.page.locator("#file").set_input_files(
+            {"name": name, "mimeType": "application/octet-stream", "buffer": content}
+        )
+
+    def state(self) -> dict[str, str]:
+        """What the address says, once it has followed."""
+        self.page.wait_for_timeout(320)  # the address follows a moment later
+        said = self.page.evaluate("location.hash.slice(1)")
+        return dict(part.partition("=")[::2] for part in said.split("&") if part)
+
+    def picture(self) -> bytes:
+        return self.page.locator("#stage canvas").screenshot()
+
+
+@pytest.fixture
+def visit(browser: playwright.Browser, address: str) -> Iterator:
+    visits: list[Visit] = []
+
+    def begin(state: str = "", size: str = "desktop", **options) -> Visit:
+        visits.append(Visit(browser, f"{address}#{state}", size, **options))
+        return visits[-1]
+
+    yield begin
+    for each in visits:
+        each.context.close()
+    assert [amiss for each in visits for amiss in each.amiss] == []
+
+
+def test_the_page_asks_for_nothing(visit):
+    there = visit()
+    there.page.wait_for_timeout(200)
+    assert len(there.asked) == 1
+    page = files("eigenwalker.page").joinpath("interactive.html").read_text("utf-8")
+    assert '<link rel="icon" href="data:,"' in page
+    assert "default-src 'none'" in page
+    assert len(gzip.compress(page.encode())) < 60_000
+
+
+def test_the_large_slider_makes_the_walker_that_python_makes(visit):
+    there = visit("still")
+    before = there.picture()
+    slider = there.page.get_by_role("slider", name="Sex")
+    slider.focus()
+    slider.press("End")
+    assert slider.get_attribute("aria-valuetext") == "+6.0 SD towards man"
+    assert there.state()["t"] == "sex:6"
+    assert there.picture() != before
+    people = ew.load_population()
+    vector = people.average + 6 * ew.trait_axis(people, "sex").step
+    posture = people.walker(vector).mean_posture
+    elbows = posture.sel(marker="left_elbow", axis="y") - posture.sel(
+        marker="right_elbow", axis="y"
+    )
+    shown = there.page.locator(".measure", has_text="Elbows apart").locator("b").inner_text()
+    assert float(shown) == pytest.approx(float(elbows), abs=0.51)
+    assert "the farthest walker is at" in there.page.locator(".verdict").inner_text()
+
+
+def test_a_double_click_puts_a_slider_back(visit):
+    there = visit("t=sex:4,weight_kg:-2")
+    there.page.get_by_role("slider", name="Weight").dblclick(position={"x": 20, "y": 14})
+    assert there.state() == {"t": "sex:4"}
+
+
+def test_everything_can_be_undone_and_reset(visit):
+    there = visit()
+    there.page.get_by_role("slider", name="Sex").press("Home")
+    there.page.get_by_role("button", name="Undo").click()
+    assert there.state() == {}
+    there.page.get_by_role("slider", name="Sex").press("Home")
+    assert there.state() == {"t": "sex:-6"}
+    there.page.get_by_role("button", name="Reset all").click()
+    assert there.state() == {}
+
+
+def test_dragging_turns_the_walker_and_so_do_the_arrows(visit):
+    there = visit("az=0&still")
+    box = there.page.locator("#stage canvas").bounding_box()
+    there.page.mouse.move(box["x"] + 300, box["y"] + 300)
+    there.page.mouse.down()
+    there.page.mouse.move(box["x"] + 400, box["y"] + 300, steps=5)
+    there.page.wait_for_timeout(150)  # a hand that rests throws nothing
+    there.page.mouse.up()
+    dragged = float(there.state()["az"])
+    assert abs(dragged) > 20
+    stage = there.page.get_by_role("slider", name="Walker, seen from")
+    stage.press("ArrowRight")
+    assert float(there.state()["az"]) == pytest.approx(dragged - 5, abs=0.01)
+    assert stage.get_attribute("aria-valuetext") == f"{round(dragged - 5)} degrees"
+
+
+def test_the_space_bar_lets_the_walker_stand_where_it_is(visit):
+    there = visit()
+    there.page.locator("body").press(" ")
+    standing = there.picture()
+    assert "still" in there.state()
+    assert there.picture() == standing
+    there.page.locator("body").press(" ")
+    assert "still" not in there.state()
+
+
+def test_who_asked_for_little_motion_gets_a_walker_that_stands(visit):
+    there = visit(reduced_motion="reduce")
+    assert there.page.get_by_role("button", name="Play").is_visible()
+    assert there.picture() == there.picture()
+
+
+def test_a_point_of_the_cloud_walks_when_it_is_clicked(visit, model):
+    there = visit("t=sex:3&still")
+    section = there.open("Among the others")
+    before = there.picture()
+    there.page.evaluate("document.querySelector('.cloud').scrollIntoView()")
+    chosen = int(np.argmin([scores[0] for scores in model["cloud"]["scores"]]))
+    name = model["walkers"][model["cloud"]["walker"][chosen]]["name"]
+    box = section.get_by_role("option", name=name, exact=True).bounding_box()
+    there.page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    assert there.state()["w"] == str(model["cloud"]["walker"][chosen])
+    assert there.open("Who walks").get_by_role("combobox").inner_text().count(name) == 1
+    assert there.picture() != before
+
+
+def test_the_cloud_can_be_walked_with_the_keyboard(visit):
+    there = visit()
+    cloud = there.open("Among the others").get_by_role("listbox")
+    cloud.focus()
+    cloud.press("ArrowUp")
+    cloud.press("ArrowRight")
+    active = cloud.get_attribute("aria-activedescendant")
+    name = there.page.locator(f"#{active}").get_attribute("aria-label")
+    cloud.press("Enter")
+    walker = int(there.state()["w"])
+    option = cloud.locator("[aria-selected=true]")
+    assert option.count() == 1
+    assert option.get_attribute("aria-label") == name
+    assert name.endswith(str(walker))
+
+
+def test_an_address_tells_all_controls_where_they_stand(visit):
+    state = (
+        "t=sex:-2,happy:3&k=m&p=dynamics&b=sex:1.5&s=1,0,1,-1&az=90&eye=1&trails=1&dark=0&x=invert"
+    )
+    there = visit(state)
+    assert there.state() == dict(part.partition("=")[::2] for part in state.split("&"))
+    assert there.page.locator("html").get_attribute("data-theme") == "light"
+    assert there.page.get_by_role("slider", name="Happy").input_value() == "3"
+    assert there.page.get_by_role("radio", name="Side", exact=True).is_checked()
+    there.open("Body or motion")
+    assert there.page.get_by_role("radio", name="Motion only").is_checked()
+    assert there.page.get_by_role("radio", name="Differs most").is_checked()
+    there.open("Stride, sway, hop, bounce")
+    assert there.page.get_by_role("slider", name="Bounce").input_value() == "-1"
+    there.open("Look")
+    assert there.page.get_by_role("switch", name="Upside down").is_checked()
+
+
+def test_a_hostile_address_is_passed_over(visit):
+    there = visit("t=sex:1e999,__proto__:3&w=-3&s=,,,x")
+    for state in ("x=mask;number:9e9&az=NaN", "%%%&&&==", "p=<script>&as=1&show=two&still"):
+        there.page.evaluate("(hash) => { location.hash = hash }", state)
+        there.page.wait_for_timeout(100)
+    assert there.page.get_by_role("slider", name="Sex").input_value() == "0"
+    assert there.page.get_by_role("alert").inner_text() == ""
+
+
+def test_a_component_walks_alone(visit):
+    there = visit()
+    section = there.open("Stride, sway, hop, bounce")
+    section.get_by_role("button", name="Sway alone").click()
+    assert there.state()["s"] == "0,1,0,0"
+    section.get_by_role("button", name="Sway alone").click()
+    assert "s" not in there.state()
+
+
+def test_several_walk_at_once(visit):
+    there = visit("still")
+    seen = [there.picture()]
+    for scene, said in (("Means", "four"), ("Side by side", "side"), ("All", "crowd")):
+        there.open("Several at once").get_by_role("radio", name=scene, exact=True).click()
+        assert there.state()["show"] == said
+        seen.append(there.picture())
+    assert len(set(seen)) == 4
+    box = there.page.locator("#stage canvas").bounding_box()
+    there.page.mouse.click(box["x"] + 0.05 * box["width"], box["y"] + 0.1 * box["height"])
+    assert there.state()["w"] == "0"
+
+
+def test_a_file_that_cannot_be_read_is_told_and_nothing_is_lost(visit):
+    there = visit("t=sex:2")
+    alert = there.page.get_by_role("alert")
+    for name, content, sentence in (
+        ("broken.json", b"{", "not JSON"),
+        ("list.json", b"[1, 2]", "neither a model nor a stimulus"),
+        ("model.json", b'{"format": "eigenwalker model", "version": 1}', "no model of walkers"),
+        ("<img src=x onerror=alert(1)>.json", b"{}", "<img src=x"),
+        ("walk.c3d", b"\x02P", "eigenwalker serve"),
+        ("people.nc", b"CDF", "eigenwalker serve"),
+    ):
+        there.bring(name, content)
+        alert.get_by_text(sentence).wait_for()
+        alert.get_by_role("button", name="Dismiss").click()
+        assert alert.inner_text() == ""
+    assert there.state() == {"t": "sex:2"}
+
+
+def test_a_dropped_model_is_walked(visit):
+    there = visit("t=sex:2")
+    other = page_model(ew.simulate_population(n_women=4, n_men=3, seed=5), traits=["sex"])
+    there.bring("model.json", json.dumps(other).encode())
+    there.page.get_by_text("7 simulated walkers").first.wait_for()
+    assert there.page.get_by_role("slider", name="Weight").count() == 0
+    assert there.page.get_by_role("slider", name="Sex").input_value() == "0"
+
+
+def test_what_is_saved_is_what_python_reads(visit, tmp_path):
+    there = visit("t=sex:3&still&at=0.25&x=invert&az=90")
+    section = there.open("Keep and share")
+    saved = {}
+    for button in ("Picture", "Film", "Page", "Stimulus"):
+        with there.page.expect_download() as download:
+            section.get_by_role("button", name=button, exact=True).click()
+        saved[button] = tmp_path / download.value.suggested_filename
+        download.value.save_as(saved[button])
+    stimulus = ew.Stimulus.load(saved["Stimulus"])
+    people = ew.load_population()
+    vector = people.average + 3 * ew.trait_axis(people, "sex").step
+    walker = people.walker(vector)
+    np.testing.assert_allclose(stimulus.figures[0].walker.p0, walker.p0, atol=1e-4)
+    assert stimulus.view.view_deg == 90
+    assert [step.name for step in stimulus.transforms] == ["invert"]
+    height, width, _ = imread(saved["Picture"]).shape
+    assert height == width > 500
+    with av.open(str(saved["Film"])) as film:
+        assert film.streams.video[0].average_rate == 60
+        assert sum(1 for _ in film.decode(video=0)) > 100
+    assert "eigenwalker stimulus" in saved["Page"].read_text("utf-8")
+
+
+def test_a_saved_stimulus_that_is_brought_back_walks_the_same(visit, tmp_path):
+    there = visit("t=sex:3&still")
+    before = there.picture()
+    with there.page.expect_download() as download:
+        there.open("Keep and share").get_by_role("button", name="Stimulus").click()
+    path = tmp_path / "mine.json"
+    download.value.save_as(path)
+    there.page.get_by_role("button", name="Reset all").click()
+    assert there.picture() != before
+    there.bring("mine.json", path.read_bytes())
+    there.page.get_by_role("status").get_by_text("mine walks").wait_for()
+    assert there.state()["w"] == "own"
+    assert there.picture() == before
+
+
+def test_the_python_that_is_copied_makes_the_walker_that_is_seen(visit):
+    state = "t=sex:-2,weight_kg:1.5&p=dynamics&k=m&w=4&e=1,0,-2&s=1,0.5,1,1&b=sex:1"
+    there = visit(f"{state}&still")
+    section = there.open("Keep and share")
+    there.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    section.get_by_role("button", name="Copy Python").click()
+    there.page.get_by_role("status").get_by_text("Python copied").wait_for()
+    lines = there.page.evaluate("navigator.clipboard.readText()")
+    made: dict = {}
+    exec(compile(lines, "<copied>", "exec"), made)  # noqa: S102 our own page's lines
+    with there.page.expect_download() as download:
+        section.get_by_role("button", name="Stimulus").click()
+    seen = ew.Stimulus.load(download.value.path()).figures[0].walker
+    np.testing.assert_allclose(made["walker"].p0, seen.p0, atol=1e-4)
+    np.testing.assert_allclose(made["walker"].p, seen.p, atol=1e-4)
+
+
+def test_nothing_hangs_over_the_edge_and_the_large_slider_is_in_reach(visit):
+    there = visit("still&show=side&x=mask,scramble,limb_dots")
+    there.unfold()
+    for width, height in SIZES.values():
+        there.page.set_viewport_size({"width": width, "height": height})
+        assert there.page.evaluate("document.documentElement.scrollWidth") == width
+        wider = """[...document.querySelectorAll("#panel, #insight")]
+            .filter((panel) => panel.scrollWidth > panel.clientWidth + 1).length"""
+        assert there.page.evaluate(wider) == 0
+        box = there.page.locator("#hero input").bounding_box()
+        assert 0 <= box["x"] and box["x"] + box["width"] <= width
+        assert box["y"] + box["height"] <= height
+
+
+@pytest.mark.skipif(not AXE.is_file(), reason="axe-core is not installed in frontend/")
+def test_an_audit_of_accessibility_finds_nothing_serious(visit):
+    there = visit("t=sex:2&show=four&x=mask&still")
+    there.unfold()
+    there.bring("a.c3d", b"no capture")
+    there.page.get_by_role("alert").get_by_text("serve").wait_for()
+    there.page.evaluate(AXE.read_text("utf-8"))
+    for size in ("desktop", "phone"):
+        there.page.set_viewport_size(dict(zip(("width", "height"), SIZES[size], strict=True)))
+        for theme in ("Light page", "Dark page"):
+            there.page.get_by_role("button", name=theme).click()
+            there.page.wait_for_timeout(200)
+            found = there.page.evaluate("axe.run()")
+            assert _serious(found) == [], (size, theme)
+            assert len(found["passes"]) > 20
+
+
+def _serious(found: dict) -> list[tuple]:
+    return [
+        (finding["id"], node["target"], node["failureSummary"])
+        for finding in found["violations"]
+        if finding["impact"] in ("serious", "critical")
+        for node in finding["nodes"]
+    ]
