@@ -86,7 +86,7 @@ def _map_with_gaps(
     a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
 ) -> np.ndarray:
     """Map in which each cell is made of the points that both frames have."""
-    seen_a, seen_b = ~np.isnan(a).any(axis=2), ~np.isnan(b).any(axis=2)
+    seen_a, seen_b = (np.atleast_2d(~np.isnan(values).any(axis=2)) for values in (a, b))
     total = np.zeros((len(a), len(b)))
     weight = (seen_a * weights) @ seen_b.T.astype(float)
     for k, w in enumerate(weights):
@@ -190,16 +190,27 @@ def rows_of_map(rows, columns, weights, code, parameter, first, result):
 
     rows: (frame, point, part); columns: (point, part, other frame); result: (frame, other frame).
     """
-    distances = np.empty(columns.shape[2] - first)
+    n_columns = columns.shape[2] - first
+    distances = np.empty(n_columns, result.dtype)
     for i in range(rows.shape[0]):
         row = result[i, first:]
         row[:] = 0.0
         for k in range(rows.shape[1]):
-            if rows.shape[2] == 3:
-                _distances(rows[i, k], columns[k], first, distances)
-            else:
+            if rows.shape[2] == 4:
                 _angles(rows[i, k], columns[k], first, distances)
-            _add_shaped(distances, weights[k], code, parameter, row)
+                _add_shaped(distances, weights[k], code, parameter, row)
+                continue
+            x, y, z, weight = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2], weights[k]
+            xs, ys, zs = columns[k, 0, first:], columns[k, 1, first:], columns[k, 2, first:]
+            if code == 0:  # the usual shape in one pass
+                for j in range(n_columns):
+                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+                    row[j] += weight * np.sqrt(dx * dx + dy * dy + dz * dz)
+            else:
+                for j in range(n_columns):
+                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+                    distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
+                _add_shaped(distances, weight, code, parameter, row)
 
 
 @compiled
@@ -223,15 +234,6 @@ def rows_of_aligned_map(rows, columns, weights, code, parameter, turns, result):
                 dz = z - zs[j]
                 distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
             _add_shaped(distances, weights[k], code, parameter, row)
-
-
-@compiled
-def _distances(place, columns, first, distances):
-    x, y, z = place[0], place[1], place[2]
-    xs, ys, zs = columns[0, first:], columns[1, first:], columns[2, first:]
-    for j in range(distances.size):
-        dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-        distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
 
 
 @compiled
@@ -274,16 +276,17 @@ def mean_along_path(path, a, b, code, parameter, result):
     path: (step, 2); a, b: (frame, point, part); result: (point,).
     """
     result[:] = 0.0
-    distance = np.empty(1)
-    for k in range(a.shape[1]):
-        for step in range(path.shape[0]):
-            place, other = a[path[step, 0], k], b[path[step, 1], k]
+    n_points, n_parts = a.shape[1], a.shape[2]
+    distances = np.empty(n_points)
+    for step in range(path.shape[0]):
+        places, others = a[path[step, 0]], b[path[step, 1]]
+        for k in range(n_points):
             apart, together = 0.0, 0.0
-            for part in range(a.shape[2]):
-                apart += (place[part] - other[part]) ** 2
-                together += (place[part] + other[part]) ** 2
-            distance[0] = np.sqrt(apart) if a.shape[2] == 3 else angle_between(apart, together)
-            _add_shaped(distance, 1.0 / path.shape[0], code, parameter, result[k : k + 1])
+            for part in range(n_parts):
+                apart += (places[k, part] - others[k, part]) ** 2
+                together += (places[k, part] + others[k, part]) ** 2
+            distances[k] = np.sqrt(apart) if n_parts == 3 else angle_between(apart, together)
+        _add_shaped(distances, 1.0 / path.shape[0], code, parameter, result)
 
 
 @compiled

@@ -186,7 +186,7 @@ def register(
     True
 
     """
-    a, b = _at_one_rate(check_trajectories(a), check_trajectories(b))
+    a, b = at_one_rate(a, b)
     cells = motion_map(a, b, metric=metric, window_s=window_s, align=align)
     if cells.isnull().any():
         raise ValueError(
@@ -202,7 +202,7 @@ def register(
         times=np.stack([a.time.values[path[:, 0]], b.time.values[path[:, 1]]], axis=1),
         map=cells,
         cost=float(cells.values[path[:, 0], path[:, 1]].mean()),
-        alignment=along_path(a, b, path, half) if align else _unmoved(len(path)),
+        alignment=along_path(a, b, path, half) if align else unmoved(len(path)),
         periodic=False,
     )
 
@@ -213,7 +213,8 @@ def along_path(a: xr.DataArray, b: xr.DataArray, path: np.ndarray, half: int) ->
     return align_steps(first[path[:, 0]], second[path[:, 1]], half)
 
 
-def _unmoved(n_steps: int) -> Alignment:
+def unmoved(n_steps: int) -> Alignment:
+    """Return an alignment that turns and moves nothing."""
     return Alignment(np.zeros(n_steps), np.zeros((n_steps, 2)))
 
 
@@ -290,7 +291,9 @@ def _length_s(clip: xr.DataArray) -> float:
     return clip.sizes["time"] / sampling_rate(clip)
 
 
-def _at_one_rate(a: xr.DataArray, b: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+def at_one_rate(a: xr.DataArray, b: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return both clips at the higher of their frame rates."""
+    a, b = check_trajectories(a), check_trajectories(b)
     rates = sampling_rate(a), sampling_rate(b)
     if abs(rates[0] / rates[1] - 1) <= SAME_RATE:
         return a, b

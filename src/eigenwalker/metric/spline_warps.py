@@ -1,0 +1,142 @@
+"""Smooth warps of time for actions that do not repeat (J44)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import BSpline, CubicSpline
+from scipy.optimize import least_squares
+
+from eigenwalker.metric.alignment import align_steps
+from eigenwalker.metric.motion_maps import common_positions, motion_map
+from eigenwalker.metric.registration import Registration, at_one_rate, register, unmoved
+
+_DEGREE = 3
+
+_AT_MOST = 150
+"""Moments at which clips are compared while the warp is sought."""
+
+_STIFFNESS = 1e-3
+"""Weight of a warp's changes of speed beside the movement's variance: enough where nothing moves
+and any warp would do, too little to be seen elsewhere."""
+
+
+def register_by_spline(
+    a: xr.DataArray, b: xr.DataArray, *, n_pieces: int = 6, align: bool = True
+) -> Registration:
+    """Return which moments of two clips of one action correspond, by a smooth warp of time.
+
+    The time of one clip is a cubic B-spline of the other's that always goes forward, so that no
+    frame is held, as a path through the map does. From the registered path (`register`) it
+    is fitted to the positions by least squares; where actions are not periodic, it takes the place
+    of uniform scaling (Troje 2002, discussion).
+
+    Parameters
+    ----------
+    a, b : DataArray of shape (time, marker, axis)
+        Trajectories of one action each, begun and ended alike.
+    n_pieces : int
+        Pieces of the spline: how often the second clip may change its speed.
+    align : bool
+        Whether heading and place are removed, for every pair of moments on its own.
+
+    Returns
+    -------
+    Registration
+        With a step for each frame of the first clip; `times` are exact, `path` the nearest frames.
+
+    Raises
+    ------
+    ValueError
+        If the clips have no points in common, or samples are missing.
+
+    Examples
+    --------
+    The same reach, at first slower and then faster:
+
+    >>> time = np.linspace(0, 1, 101)
+    >>> def reach(t):
+    ...     hand = np.stack([600 * t**2, 200 * np.sin(2 * t), 1000 + 0 * t], axis=-1)
+    ...     return np.stack([hand, hand / 2, 0 * hand], axis=1)
+    >>> names = ["hand", "elbow", "shoulder"]
+    >>> a = ew.label_trajectories(reach(time), markers=names, rate_hz=100)
+    >>> b = ew.label_trajectories(reach(time**1.5), markers=names, rate_hz=100)
+    >>> times = register_by_spline(a, b, align=False).times
+    >>> bool(np.abs(times[:, 0] - times[:, 1] ** 1.5).max() < 0.01)
+    True
+
+    """
+    if n_pieces < 1:
+        raise ValueError(f"n_pieces={n_pieces}; a warp needs 1 or more.")
+    a, b = at_one_rate(a, b)
+    start = register(a, b, align=align, slope_limit=None)
+    first, second = common_positions(a, b)
+    warp = _fitted_warp(a.time.values, first, b.time.values, second, start, n_pieces, align)
+    time = a.time.values
+    other = warp(time)
+    frames = np.abs(np.subtract.outer(other, b.time.values)).argmin(axis=1)
+    path = np.stack([np.arange(len(time)), frames], axis=1)
+    placed = CubicSpline(b.time.values, second)(other)
+    alignment = align_steps(first, placed) if align else unmoved(len(time))
+    cells = motion_map(a, b, align=align)
+    apart = np.linalg.norm(first - alignment.apply(placed), axis=2)
+    return Registration(
+        first=a,
+        second=b,
+        path=path,
+        times=np.stack([time, other], axis=1),
+        map=cells,
+        cost=float(apart.mean()),
+        alignment=alignment,
+        periodic=False,
+    )
+
+
+def _fitted_warp(
+    time: np.ndarray,
+    first: np.ndarray,
+    other: np.ndarray,
+    second: np.ndarray,
+    start: Registration,
+    n_pieces: int,
+    align: bool,
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the time of the second clip as a function of that of the first.
+
+    A B-spline whose coefficients rise always goes forward; their rises are exponentials that sum to
+    what the second clip lasts, so that any parameters make a warp.
+    """
+    length, origin = time[-1] - time[0], time[0]
+    inner = np.linspace(0, 1, n_pieces + 1)
+    knots = np.concatenate([np.zeros(_DEGREE), inner, np.ones(_DEGREE)])
+    moments = np.linspace(0, 1, min(len(time), _AT_MOST))
+    wanted = CubicSpline(time, first)(origin + length * moments)
+    path = CubicSpline(other, second)
+    size = np.sqrt(first.var(axis=0).sum() * len(moments))
+
+    def warp_of(rises: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        steps = np.exp(rises - rises.max())
+        shares = np.concatenate([[0], np.cumsum(steps) / steps.sum()])
+        spline = BSpline(knots, other[0] + (other[-1] - other[0]) * shares, _DEGREE)
+        return lambda moment: np.clip(spline((moment - origin) / length), other[0], other[-1])
+
+    def misfit(rises: np.ndarray) -> np.ndarray:
+        placed = path(warp_of(rises)(origin + length * moments))
+        if align:
+            placed = align_steps(wanted, placed).apply(placed)
+        stiff = _STIFFNESS * (rises - rises.mean())
+        return np.concatenate([(wanted - placed).ravel() / max(size, 1e-9), stiff])
+
+    return warp_of(least_squares(misfit, _rises_of(start, knots, origin, length)).x)
+
+
+def _rises_of(start: Registration, knots: np.ndarray, origin: float, length: float) -> np.ndarray:
+    """Logarithms of how fast the registered path goes, about the middles of the coefficients."""
+    n = len(knots) - _DEGREE - 1
+    averages = np.array([knots[i + 1 : i + 1 + _DEGREE].mean() for i in range(n)])
+    clock, first = np.unique(start.times[:, 0], return_index=True)
+    reached = np.interp(origin + length * averages, clock, start.times[first, 1])
+    rises = np.diff(reached)
+    return np.log(np.maximum(rises, 0.05 * rises.mean()))

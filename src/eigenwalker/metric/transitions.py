@@ -1,0 +1,117 @@
+"""Where one walk can pass into another: the edges of a motion graph (P13)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from scipy.ndimage import minimum_filter
+
+from eigenwalker.metric.alignment import align_steps
+from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames
+from eigenwalker.metric.motion_maps import common_positions, motion_map
+from eigenwalker.trajectories import check_trajectories, sampling_rate
+
+WINDOW_S = 1 / 3
+"""Seconds over which clips are blended in Kovar, Gleicher & Pighin (2002)."""
+
+UNSEEN_S = 0.1
+"""A jump as large as what moves anyway in this time counts as good enough."""
+
+
+def find_transitions(
+    a: xr.DataArray,
+    b: xr.DataArray | None = None,
+    *,
+    metric: str | ComparesFrames = POSITIONS,
+    window_s: float = WINDOW_S,
+    threshold: float | None = None,
+) -> pd.DataFrame:
+    """Return the moments at which one clip can pass into another.
+
+    The transitions of Kovar, Gleicher & Pighin (2002): local minima of the motion map, each pair of
+    frames aligned in heading and place and averaged over a window, that lie below a threshold.
+
+    Parameters
+    ----------
+    a : DataArray of shape (time, marker, axis)
+        Trajectories that are left.
+    b : DataArray of shape (time, marker, axis), optional
+        Those that are entered, at the same frame rate; left out, the same clip, whose moments less
+        than `window_s` apart are no transitions.
+    metric : FrameMetric or str
+        As in `motion_map`.
+    window_s : float
+        Seconds over which the map is averaged: as long as one would blend.
+    threshold : float, optional
+        Largest distance, in the unit of the metric. Left out, the mean distance of frames
+        `UNSEEN_S` apart within the clips.
+
+    Returns
+    -------
+    DataFrame
+        The best first. Columns ``time_a``, ``time_b`` (s), ``distance``, and how the second clip is
+        to be turned about the vertical and then moved: ``angle_deg``, ``shift_x_mm``,
+        ``shift_y_mm``.
+
+    Raises
+    ------
+    ValueError
+        If the clips have no points in common, or samples are missing.
+
+    Examples
+    --------
+    A walk can pass into itself a stride later, and nowhere better:
+
+    >>> walk = ew.simulate_walk(seed=1, frequency_hz=1.0, duration_s=4, rate_hz=50)
+    >>> best = find_transitions(walk).iloc[0]
+    >>> round(abs(best.time_a - best.time_b), 2) % 1
+    np.float64(0.0)
+
+    """
+    a = check_trajectories(a)
+    other = a if b is None else check_trajectories(b)
+    rate_hz = sampling_rate(a)
+    cells = motion_map(a, b, metric=metric, window_s=window_s, align=True).values
+    if b is None:
+        cells = np.where(_far_apart(len(cells), window_s * rate_hz), cells, np.inf)
+    if threshold is None:
+        threshold = float(np.mean([_unseen(clip, metric, window_s) for clip in (a, other)]))
+    lowest = (cells == minimum_filter(cells, size=3, mode="nearest")) & (cells <= threshold)
+    frames = np.argwhere(lowest & np.isfinite(cells))
+    frames = frames[np.argsort(cells[tuple(frames.T)], kind="stable")]
+    positions = common_positions(a, other)
+    half = round(window_s * rate_hz / 2)
+    rows = [_moves(*positions, i, j, half) for i, j in frames.tolist()]
+    moves = np.reshape(rows, (len(rows), 3))
+    return pd.DataFrame(
+        {
+            "time_a": a.time.values[frames[:, 0]],
+            "time_b": other.time.values[frames[:, 1]],
+            "distance": cells[tuple(frames.T)],
+            "angle_deg": np.rad2deg(moves[:, 0]),
+            "shift_x_mm": moves[:, 1],
+            "shift_y_mm": moves[:, 2],
+        }
+    )
+
+
+def _far_apart(n_frames: int, least: float) -> np.ndarray:
+    frames = np.arange(n_frames)
+    return np.abs(frames[:, None] - frames) >= max(least, 1)
+
+
+def _unseen(clip: xr.DataArray, metric: str | ComparesFrames, window_s: float) -> float:
+    """Mean distance of frames `UNSEEN_S` apart, aligned and averaged as in the map."""
+    lag = max(1, round(UNSEEN_S * sampling_rate(clip)))
+    cells = motion_map(clip, metric=metric, window_s=window_s, align=True).values
+    return float(np.mean(np.diagonal(cells, lag))) if len(cells) > lag else 0.0
+
+
+def _moves(a: np.ndarray, b: np.ndarray, i: int, j: int, half: int) -> list[float]:
+    before = min(half, i, j)
+    after = min(half, len(a) - 1 - i, len(b) - 1 - j)
+    length = before + after + 1
+    windows = a[i - before : i + after + 1], b[j - before : j + after + 1]
+    found = align_steps(*windows, length)
+    return [float(found.angles[0]), *found.shifts[0].tolist()]
