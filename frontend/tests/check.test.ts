@@ -1,10 +1,10 @@
 // What is no stimulus is refused, in words; what may be left out is filled in.
 
 import { readFileSync } from "node:fs";
-import { expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 
 import { frameTiming } from "../src/canvas/clock";
-import { NoStimulus, readStimulus } from "../src/core/check";
+import { MOST_WORK, NoStimulus, readStimulus } from "../src/core/check";
 
 const file = new URL("../../tests/golden/stimulus_plain.json", import.meta.url);
 const plain = (): any => JSON.parse(readFileSync(file, "utf8")).stimulus;
@@ -52,6 +52,38 @@ it.each([
   spoil(content);
   expect(() => readStimulus(content)).toThrow(NoStimulus);
   expect(() => readStimulus(content)).toThrow(said);
+});
+
+describe("a chain that no browser could play in time", () => {
+  const clocks = (n: number): any => ({
+    ...plain(),
+    transforms: Array.from({ length: n }, (_, seed) => ({ name: "phase_scramble", seed })),
+  });
+
+  it("is refused with Python's sentence", () => {
+    expect(() => readStimulus(clocks(4))).not.toThrow(); // 15^5 dots
+    expect(() => readStimulus(clocks(5))).toThrow(
+      "This is no stimulus: its chain computes 11390625 dots for one moment, and no more than 1000000 are " +
+        "shown in time; use fewer dots or fewer transforms that give each dot a clock.",
+    );
+  });
+
+  it("counts what masks compute", () => {
+    const content = { ...plain(), transforms: [
+      { name: "delay", markers: ["head"], phase_deg: 10 },
+      { name: "mask", kind: "scrambled", number: 4000, phases: true, box_mm: [900, 900], centre_mm: [0, 0, 900], seed: 1 },
+      { name: "mask", kind: "scrambled", number: 4000, phases: true, box_mm: [900, 900], centre_mm: [0, 0, 900], seed: 2 },
+    ] };
+    expect(() => readStimulus(content)).not.toThrow();
+    content.transforms.push(...content.transforms.slice(1), ...content.transforms.slice(1));
+    content.transforms.push(...content.transforms.slice(1, 5));
+    expect(() => readStimulus(content)).toThrow("computes 1240030 dots");
+  });
+
+  it("has Python's bound", () => {
+    const python = readFileSync(new URL("../../src/eigenwalker/stimulus/content.py", import.meta.url), "utf8");
+    expect(Number(/^MOST_WORK = ([\d_]+)$/m.exec(python)![1]!.replaceAll("_", ""))).toBe(MOST_WORK);
+  });
 });
 
 it("counts the frames that were dropped", () => {

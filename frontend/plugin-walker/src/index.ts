@@ -3,7 +3,8 @@
 import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
 
 import { everyFrame, frameTiming } from "../../src/canvas/clock";
-import { painterOn } from "../../src/canvas/painter";
+import type { MannequinPainter } from "../../src/canvas/mannequin";
+import { painterOn, type Painter } from "../../src/canvas/painter";
 import { readStimulus } from "../../src/core/check";
 import { listen, type Answer } from "./answers";
 import { info } from "./info";
@@ -29,11 +30,38 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
 
   constructor(private readonly jsPsych: JsPsych) {}
 
-  trial(display: HTMLElement, trial: Trial): void {
+  trial(display: HTMLElement, trial: Trial, load: () => void = () => {}): void | Promise<never> {
+    let waiting: Promise<never> | undefined;
+    waiting = this.begin(display, trial, () => {
+      if (waiting) load(); // of a trial that begins at once, jsPsych says itself that it is loaded
+    });
+    return waiting;
+  }
+
+  /** Show the stimulus, of a mannequin once its module is there; what is returned may only fail. */
+  private begin(display: HTMLElement, trial: Trial, begun: () => void): Promise<never> | undefined {
     const stimulus = readStimulus(trial.stimulus);
     const { canvas, buttons } = build(display, trial);
-    const painter = painterOn(canvas, stimulus, trial.scale);
-    const durationMs = trial.stimulus_duration ?? 1000 * stimulus.timing.duration_s;
+    const start = (mannequin?: MannequinPainter): void => {
+      const painter = painterOn(canvas, stimulus, trial.scale, mannequin);
+      const usualMs = 1000 * stimulus.timing.duration_s;
+      this.show(display, trial, painter, trial.stimulus_duration ?? usualMs, buttons);
+      begun();
+    };
+    if (stimulus.display.style === "mannequin") {
+      return new Promise((_, fail) => mannequinPainter().then(start).catch(fail));
+    }
+    start();
+    return undefined;
+  }
+
+  private show(
+    display: HTMLElement,
+    trial: Trial,
+    painter: Painter,
+    durationMs: number,
+    buttons: readonly HTMLButtonElement[],
+  ): void {
     const times: number[] = [];
     let answer: (Answer & { readonly rt: number }) | undefined;
     let silence = (): void => {};
@@ -80,23 +108,24 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     mode: Simulation[1],
     options: Simulation[2],
     load: () => void = () => {},
-  ): void {
+  ): void | Promise<never> {
     const data = this.simulated(trial, options);
     if (mode === "data-only") {
       load();
       this.jsPsych.finishTrial(data);
-      return;
+      return undefined;
     }
     const display = this.jsPsych.getDisplayElement();
-    this.trial(display, trial);
-    load();
-    if (data.rt === null) return;
-    if (data.response_by === "key") {
-      this.jsPsych.pluginAPI.pressKey(String(data.response), data.rt);
-    } else {
-      const button = display.querySelectorAll(".jspsych-walker-buttons button")[Number(data.response)];
-      if (button) this.jsPsych.pluginAPI.clickTarget(button, data.rt);
-    }
+    return this.begin(display, trial, () => {
+      load();
+      if (data.rt === null) return;
+      if (data.response_by === "key") {
+        this.jsPsych.pluginAPI.pressKey(String(data.response), data.rt);
+      } else {
+        const button = display.querySelectorAll(".jspsych-walker-buttons button")[Number(data.response)];
+        if (button) this.jsPsych.pluginAPI.clickTarget(button, data.rt);
+      }
+    });
   }
 
   /** What an observer might have done. */
@@ -115,6 +144,11 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     };
     return pluginAPI.mergeSimulationData(usual, options) as WalkerData;
   }
+}
+
+/** What draws mannequins: a file of its own beside this one, fetched for the first of them. */
+async function mannequinPainter(): Promise<MannequinPainter> {
+  return (await import("../../src/mannequin/mannequin")).mannequinPainter();
 }
 
 /** The canvas, the prompt and the buttons, which wait for the first frame. */

@@ -28,6 +28,9 @@ interface Schema {
   readonly oneOf?: readonly Schema[];
 }
 
+/** Dots that may have to be computed for one moment, as in Python's `content.py`. */
+export const MOST_WORK = 1_000_000;
+
 /** What is no stimulus, and why. */
 export class NoStimulus extends Error {}
 
@@ -73,6 +76,8 @@ function checkWalker(walker: Walker, where: string): void {
 function checkChain({ figures, transforms }: Stimulus): void {
   const dots = figures.map((figure) => (figure.walker ?? figure.trajectories)!.markers);
   const joined = figures.map((figure) => figure.segments.length > 0);
+  const evaluations = figures.map(() => 1);
+  let work = 0;
   transforms.forEach((step, number) => {
     const where = `transforms[${number}] (${step.name})`;
     if (adds(step) && (step.figures ?? figures).length > 1) {
@@ -96,8 +101,27 @@ function checkChain({ figures, transforms }: Stimulus): void {
         dots[figure] = Array.from({ length: step.number }, (_, dot) => `dot_${dot + 1}`);
         joined[figure] = false;
       }
+      if (step.name === "mask") {
+        const clocks = step.phases ? step.number : 1;
+        work += step.number + clocks * evaluations[figure]! * there.length;
+      }
+      evaluations[figure] = moreEvaluations(step, evaluations[figure]!, there.length);
     }
   });
+  work += dots.reduce((sum, there, figure) => sum + evaluations[figure]! * there.length, 0);
+  if (work > MOST_WORK) {
+    throw new NoStimulus(
+      `This is no stimulus: its chain computes ${work} dots for one moment, and no more than ${MOST_WORK} are ` +
+        "shown in time; use fewer dots or fewer transforms that give each dot a clock.",
+    );
+  }
+}
+
+/** How often a figure is computed for one moment, after one more transform. */
+function moreEvaluations(step: Stimulus["transforms"][number], before: number, nDots: number): number {
+  if (step.name === "phase_scramble") return before * nDots;
+  if (step.name === "delay" || step.name === "morph") return before * 2;
+  return step.name === "limb_dots" ? before + 1 : before;
 }
 
 /** Dots that a transform cannot do without. */
