@@ -24,7 +24,7 @@ export function controlsOf(model: Model, change: Change): Controls {
     slider(trait, (alpha) => change({ alpha: { ...shown?.traits, [trait.name]: alpha } })),
   );
   const play = button("Pause", () => change({ playing: !shown?.playing }));
-  const back = button("Average", () =>
+  const back = button("Back to average", () =>
     change({ alpha: {}, bias: null, strengths: [], eigenwalkers: [], start: "average" }),
   );
   const bar = document.createElement("div");
@@ -75,6 +75,8 @@ function slider(
     element,
     show(alpha) {
       if (Number(input.value) !== alpha) input.value = String(alpha);
+      input.style.setProperty("--now", String((Number(input.value) - low) / (high - low)));
+      input.classList.toggle("below", alpha < 0);
       const said = Math.abs(alpha).toFixed(1);
       number.textContent = said === "0.0" ? "0" : `${alpha < 0 ? "\u2212" : "+"}${said}`;
       input.setAttribute("aria-valuetext", `${number.textContent} standard deviations`);

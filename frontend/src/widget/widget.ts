@@ -51,6 +51,7 @@ function walker(shared: Shared, box: HTMLElement): () => void {
   const model = readModel(shared.get("_model"));
   const canvas = document.createElement("canvas");
   canvas.style.height = `${Number(shared.get("height_px"))}px`;
+  canvas.className = "turns";
   canvas.setAttribute("role", "img");
   const tell = teller(shared);
   const change = (part: Record<string, unknown>): void => {
