@@ -163,18 +163,18 @@ def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
     lags = np.arange(max(1, int(rate_hz / BOUNDS_HZ[1])), max(1, n_frames // 2 + 2))
     lags = lags[lags < len(heights) - 1]
     lags = lags[(heights[lags] < heights[lags - 1]) & (heights[lags] <= heights[lags + 1])]
-    if not lags.size or heights[lags].min() > REPEATS_BELOW:
+    bottoms = [_bottom(heights, lag) for lag in lags.tolist()]
+    lowest = min((height for _, height in bottoms), default=np.inf)
+    if lowest > REPEATS_BELOW:
         return None
-    deep = heights[lags] <= AS_DEEP * heights[lags].min() + SHALLOW
-    lag = int(lags[deep][0])
-    periods = [_bottom(heights, lag)]
-    for count in range(2, int(n_frames / periods[0])):
-        near = round(count * periods[-1])
-        reach = max(1, lag // 10)
+    period = next(lag for lag, height in bottoms if height <= AS_DEEP * lowest + SHALLOW)
+    periods = [period]
+    for count in range(2, int(n_frames / period)):
+        near, reach = round(count * periods[-1]), max(1, round(period / 10))
         window = np.arange(max(near - reach, 1), min(near + reach + 1, len(heights) - 1))
         if not window.size:
             break
-        periods.append(_bottom(heights, int(window[heights[window].argmin()])) / count)
+        periods.append(_bottom(heights, int(window[heights[window].argmin()]))[0] / count)
     return float(np.mean(periods))
 
 
@@ -198,11 +198,14 @@ def _along_diagonals(movement: np.ndarray) -> np.ndarray:
     return squares / (n - lags) / (2 * sums[-1] / n)
 
 
-def _bottom(heights: np.ndarray, lag: int) -> float:
-    """Lag at the bottom of a parabola through a minimum and its neighbours."""
-    before, here, after = heights[lag - 1 : lag + 2]
+def _bottom(heights: np.ndarray, lag: int) -> tuple[float, float]:
+    """Where a parabola through a minimum and its neighbours has its bottom, and how low it is."""
+    before, here, after = heights[lag - 1 : lag + 2].tolist()
     bend = before - 2 * here + after
-    return lag + float(np.clip(0.5 * (before - after) / bend, -1, 1)) if bend > 0 else float(lag)
+    if not bend > 0:
+        return float(lag), here
+    aside = min(max(0.5 * (before - after) / bend, -1.0), 1.0)
+    return lag + aside, max(here - 0.5 * bend * aside**2, 0.0)
 
 
 def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
