@@ -1,0 +1,165 @@
+"""Walks of files and populations, named and made ready to be compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.folds import Progress
+from eigenwalker.metric.clip_distances import PreparedClip, prepare
+from eigenwalker.metric.comparable import comparable_walk
+from eigenwalker.metric.retargeting import retarget
+from eigenwalker.mocap import read_mocap
+from eigenwalker.population import Population
+from eigenwalker.report.main_tables import names_of
+from eigenwalker.study_table import FILE, listed
+from eigenwalker.walker import Walker
+
+RATE_HZ = 100.0
+"""Frames a second at which walkers of a population are played, as the paper's clips were."""
+N_STRIDES = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Walks:
+    """Walks by name, and what could not be taken.
+
+    Parameters
+    ----------
+    clips : dict of str to PreparedClip
+        The walks.
+    labels : dict of str to str
+        A class of each walk, such as its style, where one is known.
+    refused : dict of str to str
+        Why captures could not be used, by name.
+
+    """
+
+    clips: dict[str, PreparedClip]
+    labels: dict[str, str] = field(default_factory=dict)
+    refused: dict[str, str] = field(default_factory=dict)
+
+
+def walk_of_capture(
+    path: Path, *, mannequin: bool = True, unit: str | None = None, rate_hz: float | None = None
+) -> xr.DataArray:
+    """Return the steady strides of a capture, ready to be compared (`comparable_walk`)."""
+    return comparable_walk(read_mocap(path, unit=unit, rate_hz=rate_hz), mannequin=mannequin)
+
+
+def walk_of_walker(walker: Walker, *, mannequin: bool = True) -> xr.DataArray:
+    """Return a few strides of a walker, ready to be compared."""
+    time = np.arange(0, N_STRIDES * walker.period_s, 1 / RATE_HZ)
+    walk = walker.trajectories(time)
+    return retarget(walk) if mannequin else walk
+
+
+def walks_of_population(
+    population: Population,
+    *,
+    trait: str | None = None,
+    mannequin: bool = True,
+    progress: Progress | None = None,
+) -> Walks:
+    """Return the walkers of a population as walks, named by file or number.
+
+    Parameters
+    ----------
+    population : Population
+        Its flagged walkers are named as refused; `Population.trusting_all` counts them too.
+    trait : str, optional
+        Trait to be the label.
+    mannequin : bool
+        Whether to show them on the neutral mannequin.
+    progress : callable, optional
+        Called with the number of walkers that are done, and of all.
+
+    """
+    if trait is not None and trait not in population.traits:
+        raise ValueError(
+            f"The population has no trait {trait!r}; it has {list(population.traits.columns)}."
+        )
+    names = names_of(population)
+    clips, refused = {}, {}
+    for row, (name, walker) in enumerate(zip(names, population.walkers, strict=True)):
+        if population.flagged[row]:
+            refused[name] = "flagged"
+        else:
+            clips[name] = prepare(walk_of_walker(walker, mannequin=mannequin))
+        if progress is not None:
+            progress(row + 1, len(names))
+    labels = {}
+    if trait is not None:
+        told = population.traits[trait].astype(str)
+        labels = {name: label for name, label in zip(names, told, strict=True) if name in clips}
+    return Walks(clips, labels, refused)
+
+
+def walks_of_folder(
+    folder: Path,
+    *,
+    trait_from_name: str | None = None,
+    mannequin: bool = True,
+    unit: str | None = None,
+    rate_hz: float | None = None,
+    progress: Progress | None = None,
+) -> Walks:
+    """Return the captures of a folder and its subfolders as walks, named by file.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to look.
+    trait_from_name : str, optional
+        Pattern over names with a named group, which is the label: ``walk_(?P<style>[a-z]+)_``.
+    mannequin, unit, rate_hz
+        As in `walk_of_capture`.
+    progress : callable, optional
+        Called with the number of captures that are done, and of all.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds no captures, or the pattern makes no sense.
+
+    """
+    table = listed(folder, None, trait_from_name)
+    named = [column for column in table if column != FILE]
+    clips: dict[str, PreparedClip] = {}
+    labels, refused = {}, {}
+    for done, row in enumerate(table.to_dict("records"), start=1):
+        name = str(row[FILE])
+        try:
+            walk = walk_of_capture(folder / name, mannequin=mannequin, unit=unit, rate_hz=rate_hz)
+            clips[name] = repeating(walk)
+            labels |= {name: str(row[named[0]])} if named else {}
+        except (ValueError, OSError) as error:
+            refused[name] = str(error)
+        if progress is not None:
+            progress(done, len(table))
+    return Walks(with_like_rotations(clips), labels, refused)
+
+
+def with_like_rotations(clips: dict[str, PreparedClip]) -> dict[str, PreparedClip]:
+    """Return clips that all have captured rotations, or none of them: others tell less by them."""
+    if all("rotation" in each.clip.coords for each in clips.values()):
+        return clips
+    return {
+        name: replace(
+            each,
+            clip=each.clip.drop_vars("rotation", errors="ignore"),
+            cycle=None if each.cycle is None else each.cycle.drop_vars("rotation", errors="ignore"),
+        )
+        for name, each in clips.items()
+    }
+
+
+def repeating(walk: xr.DataArray) -> PreparedClip:
+    """Return a walk made ready; refuse what does not repeat, as it would change how all compare."""
+    prepared = prepare(walk)
+    if prepared.cycle is None:
+        raise ValueError(prepared.complaint)
+    return prepared
