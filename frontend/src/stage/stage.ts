@@ -99,6 +99,11 @@ export class Stage {
     return cycles - Math.floor(cycles);
   }
 
+  /** What draws mannequins, once it was asked for and is there. */
+  get mannequin(): MannequinPainter | null {
+    return this.#mannequin;
+  }
+
   /** Show these from the next frame on; strides go on where they are. */
   show(model: Model, cast: readonly Cast[], state: State): void {
     const before = this.#shown;
