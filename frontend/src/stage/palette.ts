@@ -7,7 +7,7 @@ export interface Palette {
   readonly faint: string;
 }
 
-export const DARK: Palette = { background: "#0c0d0f", colour: "#ffffff", faint: "#1b2027" };
-export const LIGHT: Palette = { background: "#f8f7f3", colour: "#16181c", faint: "#e9e6de" };
+export const DARK: Palette = { background: "#0c0d0f", colour: "#ffffff", faint: "#16191e" };
+export const LIGHT: Palette = { background: "#f8f7f3", colour: "#16181c", faint: "#efede6" };
 
 export const paletteOf = (dark: boolean): Palette => (dark ? DARK : LIGHT);

@@ -2,6 +2,7 @@
 
 import { everyFrame } from "../canvas/clock";
 import { heldMannequin, type MannequinPainter } from "../canvas/mannequin";
+import { flatPainter } from "../mannequin/painting";
 import type { Cast } from "../model/cast";
 import type { Model } from "../model/model";
 import { RANGES, within, wrappedDegrees, type State } from "../model/state";
@@ -22,7 +23,7 @@ export interface Hooks {
   picked?(known: number): void;
   /** Where each walker stands now, in pixels of CSS. */
   laid?(boxes: readonly Box[]): void;
-  /** The mannequin cannot be had; the message is a sentence to show. */
+  /** The mannequin is drawn flat, as what draws it in three dimensions is not there; the message says why. */
   lacking?(message: string): void;
   /** Where the mannequin comes from, if not from the page. */
   mannequin?(): Promise<MannequinPainter>;
@@ -310,16 +311,20 @@ export class Stage {
     };
   }
 
+  /** In three dimensions where the page holds what draws it, else flat. */
   #askForMannequin(): void {
     if (this.#asked) return;
     this.#asked = true;
     const load = this.#hooks.mannequin ?? heldMannequin;
-    load().then(
-      (painter) => {
+    const lacking = (error: unknown): MannequinPainter => {
+      this.#hooks.lacking?.(error instanceof Error ? error.message : String(error));
+      return flatPainter();
+    };
+    void load()
+      .catch(lacking)
+      .then((painter) => {
         this.#mannequin = painter;
         this.#rebuild();
-      },
-      (error: unknown) => this.#hooks.lacking?.(error instanceof Error ? error.message : String(error)),
-    );
+      });
   }
 }
