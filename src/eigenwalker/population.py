@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -19,11 +20,14 @@ from eigenwalker.correspondence import (
 )
 from eigenwalker.features import FeatureLayout, circular_mean, wrap_phase
 from eigenwalker.gait import stance_speed
+from eigenwalker.moving_svg import beside, html_table
 from eigenwalker.population_file import read_population, write_population
 from eigenwalker.walker import Walker
 
 FLAG = "flag"
 """Column of the traits that says why a walker is left out of averages and curves; empty if not."""
+MOST_SHOWN = 12
+"""Traits that a notebook tells of."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +92,21 @@ class Population:
             f"Population({len(self)} walkers, {self.flagged.sum()} flagged, "
             f"{len(self.feature_names)} features; traits: {traits})"
         )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the average walker, and what is known of all of them."""
+        named = self.traits.drop(columns=FLAG)
+        rows = [
+            [escape(str(name)), escape(_summary(named[name])), str(int(named[name].notna().sum()))]
+            for name in list(named)[:MOST_SHOWN]
+        ]
+        if len(named.columns) > MOST_SHOWN:
+            rows.append([f"and {len(named.columns) - MOST_SHOWN} more", "", ""])
+        flagged = f", {self.flagged.sum()} flagged" if self.flagged.any() else ""
+        title = f"Population of {len(self)} walkers{flagged}, {len(self.feature_names)} features"
+        head = [["<i>trait</i>", "<i>values</i>", "<i>known of</i>"]] if rows else []
+        drawing = self.layout.walker(self.average).moving_svg()
+        return beside(drawing, html_table([*head, *rows], title=title))
 
     def __len__(self) -> int:
         return len(self.walkers)
@@ -363,6 +382,18 @@ class Population:
             columns = self.layout.columns("phases")
             table[:, columns] = wrap_phase(table[:, columns], around=self._phase_centre)
         return table
+
+
+def _summary(values: pd.Series) -> str:
+    """Values of a trait in a few words."""
+    known = values.dropna()
+    if pd.api.types.is_numeric_dtype(known) and not pd.api.types.is_bool_dtype(known):
+        if known.empty:
+            return ""
+        return f"{known.min():.4g} to {known.max():.4g}, mean {known.mean():.4g}"
+    counts = known.astype(str).value_counts()
+    said = ", ".join(f"{count} {str(value)[:40]}" for value, count in counts.head(4).items())
+    return said + (f", {len(counts) - 4} others" if len(counts) > 4 else "")
 
 
 def _read_only(values: np.ndarray) -> np.ndarray:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from eigenwalker.moving_svg import N_FRAMES, beside, html_table, stride_svg
+from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import AXES, trajectories_at
 
 Form = Literal["eigenposture", "fourier"]
@@ -132,6 +135,44 @@ class Walker:
         return (
             f"Walker({len(self.markers)} markers, {len(self.p)} postures in the {self.form} form, "
             f"{self.frequency_hz:.3f} Hz{explained})"
+        )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the walker, walking, and the numbers that tell how."""
+        facts = {
+            "strides a second": f"{self.frequency_hz:.3f} Hz, {self.period_s:.2f} s each",
+            "markers": str(len(self.markers)),
+            "postures": f"{len(self.p)}, on harmonics {', '.join(map(str, self.harmonics))}",
+            "form": self.form,
+        }
+        if np.isfinite(self.speed_mm_s):
+            facts["speed"] = f"{self.speed_mm_s / 1000:.2f} m/s"
+        if self.fit is not None:
+            facts["R\N{SUPERSCRIPT TWO} of its capture"] = f"{self.fit.r2:.3f}"
+        rows = [[escape(name), escape(said)] for name, said in facts.items()]
+        return beside(self.moving_svg(), html_table(rows, title="Walker"))
+
+    def moving_svg(self, *, height_px: int = 200) -> str:
+        """Return one stride as a small drawing that plays for ever.
+
+        Parameters
+        ----------
+        height_px : int
+
+        Returns
+        -------
+        str
+            SVG, in the colour of the text around it.
+
+        """
+        body = JOINTS.restricted_to(self.markers)
+        time = self.time_origin_s + np.arange(N_FRAMES) * self.period_s / N_FRAMES
+        return stride_svg(
+            self.trajectories(time).values,
+            period_s=self.period_s,
+            segments=[(body.index(one), body.index(other)) for one, other in body.segments],
+            height_px=height_px,
+            label=f"A walker of {len(self.markers)} points at {self.frequency_hz:.2f} Hz",
         )
 
     def _amiss(self) -> list[str]:
