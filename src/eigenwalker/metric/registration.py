@@ -109,25 +109,21 @@ class Registration:
             Of equal times; markers that both have.
 
         """
-        halfway = self.times.mean(axis=1)
-        ahead = _smooth(self.times[:, 1] - self.times[:, 0], self.periodic)
+        once = [_length_s(self.first), _length_s(self.second)] if self.periodic else [1.0, 1.0]
+        moments = self.times / once  # seconds; of strides, parts of the cycle
+        halfway, lead = moments.mean(axis=1), _smooth(moments[:, 1] - moments[:, 0], self.periodic)
         n_frames = max(self.first.sizes["time"], self.second.sizes["time"])
-        stop = halfway[0] + self._period_s if self.periodic else halfway[-1]
+        stop = halfway[0] + 1 if self.periodic else halfway[-1]
         clock = np.linspace(halfway[0], stop, n_frames, endpoint=not self.periodic)
+        ahead = np.interp(clock, halfway, lead, period=1 if self.periodic else None) / 2
         names = common_names(self.first.marker.values, self.second.marker.values)
-        lead = np.interp(clock, halfway, ahead) / 2
-        first = _played(self.first.sel(marker=names), clock - lead, self.periodic)
-        second = _played(self.second.sel(marker=names), clock + lead, self.periodic)
+        first = _played(self.first.sel(marker=names), (clock - ahead) * once[0], self.periodic)
+        second = _played(self.second.sel(marker=names), (clock + ahead) * once[1], self.periodic)
         angles = np.interp(clock, halfway, np.unwrap(self.alignment.angles))
         shifts = [np.interp(clock, halfway, along) for along in self.alignment.shifts.T]
         second = Alignment(angles, np.stack(shifts, axis=1)).apply(second)
-        time = clock - clock[0]
+        time = (clock - clock[0]) * np.mean(once)
         return trajectories_at(time, first, names), trajectories_at(time, second, names)
-
-    @property
-    def _period_s(self) -> float:
-        """Seconds of a stride on the common clock."""
-        return float(np.mean([_length_s(self.first), _length_s(self.second)]))
 
 
 def register(
