@@ -17,6 +17,9 @@ const MARGIN = 5;
 /** Points of the curve from one end of the slider to the other. */
 const N_ALONG = 9;
 
+/** What the line depends on, beside the traits. */
+const LINED = ["kind", "part", "from", "bias", "strengths", "eigenwalkers"] as const;
+
 type Measures = Readonly<Record<MeasureName, number>>;
 
 const at = (vector: ArrayLike<number>, model: Model): Measures =>
@@ -41,15 +44,28 @@ export function changes(session: Session): Part {
   const legend = trait?.two_classes
     ? `Small points: ${many(trait.negative)} (warm) and ${many(trait.positive)} (cool). Line: where the large slider leads.`
     : "Small points: people. Line: where the large slider leads.";
+  let line = usual;
+  let last: Now | undefined;
   return {
     element: make("div", {},
       make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
       make("p", { class: "note" }, legend)),
     show(now) {
-      const line = along(model, now.state, now.own, trait);
+      if (!last || !sameLine(last, now, trait)) line = along(model, now.state, now.own, trait);
+      last = now;
       for (const one of plots) one.show(now, line);
     },
   };
+}
+
+/** Whether the main slider leads through the same walkers as before: it may have moved itself. */
+function sameLine(before: Now, { state, own }: Now, trait: Trait | undefined): boolean {
+  const others = (traits: State["traits"]): string => JSON.stringify({ ...traits, [trait?.name ?? ""]: 0 });
+  return (
+    before.own === own &&
+    LINED.every((key) => before.state[key] === state[key]) &&
+    others(before.state.traits) === others(state.traits)
+  );
 }
 
 /** The measures from one end of the main slider to the other, all else as it is. */

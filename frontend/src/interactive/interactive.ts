@@ -68,7 +68,6 @@ function begin(model: Model, address = ""): void {
   const dark = session?.state.dark ?? start.dark;
   const now = new Session(model, { ...start, dark, playing: start.playing && !calm });
   session = now;
-  find("#people", HTMLParagraphElement).textContent = peopleIn(model);
   const parts = [stagePart(now), ...furnish(now), addressPart(now)];
   now.listen((moment) => parts.forEach((part) => part.show(moment)));
   now.tell();
@@ -80,6 +79,7 @@ function stagePart(session: Session): Pick<Part, "show"> {
   const hint = find("#hint", HTMLParagraphElement);
   const labels = find("#labels", HTMLDivElement);
   const caption = find("#caption", HTMLParagraphElement);
+  const people = find("#people", HTMLParagraphElement);
   const stage = new Stage(canvas, {
     turned: (azimuth_deg, elevation_deg) => {
       hint.classList.add("done");
@@ -110,6 +110,8 @@ function stagePart(session: Session): Pick<Part, "show"> {
       last = now;
       stage.show(now.model, now.cast, now.state);
       tools.show(now);
+      const who = now.state.scene === "one" && now.state.from !== "average" ? [now.cast[0]!.name] : [];
+      people.textContent = [peopleIn(now.model), ...who].join(" \u00b7 ");
       const degrees = Math.round(now.state.azimuth_deg);
       put(host, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
       clearTimeout(saying);
