@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from eigenwalker.display.bodies import HEAD_MM, INCH_MM, draw_body
+from eigenwalker.display.difference_tables import short_name
 from eigenwalker.display.links import LINKS
 from eigenwalker.display.projection import project
 from eigenwalker.display.style import (
@@ -121,8 +122,8 @@ def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
     scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
     scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
-    axes.set_ylabel(f"{picture.names[0]} (s)", parse_math=False)
-    axes.set_xlabel(f"{picture.names[1]} (s)", parse_math=False)
+    axes.set_ylabel(f"{short_name(picture.names[0])} (s)", parse_math=False)
+    axes.set_xlabel(f"{short_name(picture.names[1])} (s)", parse_math=False)
     head_line(axes, picture.title)
 
 

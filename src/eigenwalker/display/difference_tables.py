@@ -12,7 +12,7 @@ from eigenwalker.display.style import BLUE, GREY, INK, RED, SMALL, new_figure, p
 
 MOST_NAMED = 45
 """Walks up to which each gets its name; more would stand over each other."""
-_LONGEST = 18
+_LONGEST = 15
 _LOOK = ((BLUE, "o"), (RED, "^"), ("#009988", "s"), ("#AA4499", "D"), (GREY, "v"))
 """Colours and marks of clusters; beyond five they repeat."""
 
@@ -62,7 +62,7 @@ def figure_difference_table(
             axes.axhline(border, color="#009988", lw=1.0, ls="--")
             axes.axvline(border, color="#009988", lw=1.0, ls="--")
     if len(order) <= MOST_NAMED:
-        labels = [_short(str(names[walk])) for walk in order]
+        labels = [short_name(str(names[walk])) for walk in order]
         axes.set_xticks(range(len(order)), labels, rotation=90, parse_math=False)
         axes.set_yticks(range(len(order)), labels, parse_math=False)
     else:
@@ -105,7 +105,7 @@ def figure_map_of_walks(
     if len(places) <= MOST_NAMED:
         for place, name in zip(places, names, strict=True):
             axes.annotate(
-                _short(name),
+                short_name(name),
                 tuple(place),
                 xytext=(3, 3),
                 textcoords="offset points",
@@ -122,6 +122,16 @@ def figure_map_of_walks(
     return figure
 
 
-def _short(name: str) -> str:
-    """A name with its middle left out where it is long: what tells files apart is at their ends."""
-    return name if len(name) <= _LONGEST else f"{name[:7]}\N{HORIZONTAL ELLIPSIS}{name[-10:]}"
+def short_name(name: str) -> str:
+    """Return a name that fits beside a picture: what tells files apart is mostly at their ends.
+
+    Examples
+    --------
+    >>> short_name("dataset-2_walk_normal_001.bvh")
+    'datase…rmal_001'
+
+    """
+    stem = name.rpartition(".")[0] or name
+    if len(stem) <= _LONGEST:
+        return stem
+    return f"{stem[:6]}\N{HORIZONTAL ELLIPSIS}{stem[-8:]}"

@@ -82,7 +82,8 @@ def joint_quaternions(
     -------
     DataArray of shape (time, joint, quaternion)
         Quaternions (x, y, z, w); NaN where the joints were not seen. Bones (`BONES`) that the clip
-        lacks are left out.
+        lacks are left out, and so are the clavicles of the mannequin (`retarget`), which are
+        parts of its build.
 
     Raises
     ------
@@ -104,10 +105,11 @@ def joint_quaternions(
     _refuse_missing(place)
     captured = {} if from_positions else _captured(clip)
     room = {"pelvis": _carrying(place, "pelvis"), "trunk": _carrying(place, "trunk")}
+    built = clip.attrs.get("retargeted", False)
     turns: dict[str, np.ndarray] = {}
     for name in BONES:
         bone = BONE[name]
-        if not {bone.start, bone.end} <= set(place):
+        if not {bone.start, bone.end} <= set(place) or (built and "clavicle" in name):
             continue
         carrier = room[bone.carrier]
         turned = carrier.then(_swing_and_twist(place, bone, carrier))

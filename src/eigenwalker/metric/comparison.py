@@ -19,7 +19,7 @@ from eigenwalker.metric.clip_distances import (
 )
 from eigenwalker.metric.comparable import by_group
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric
-from eigenwalker.metric.groups import group_points
+from eigenwalker.metric.groups import GROUPS, group_points
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration
 
@@ -124,7 +124,8 @@ def _apart(a: PreparedClip, b: PreparedClip) -> pd.DataFrame:
         points = clip_components(a, b, metric=metric).to_frame().T
         means = by_group(points, by).iloc[0]
         table[columns[by]] = np.rad2deg(means) if by == "angles" else means
-    return pd.DataFrame(table)
+    found = pd.DataFrame(table)
+    return found.loc[[group for group in GROUPS if group in found.index]]
 
 
 def all_metrics(clips: Mapping[str, Clip], *, progress: Progress | None = None) -> pd.DataFrame:

@@ -147,6 +147,11 @@ def with_like_rotations(clips: dict[str, PreparedClip]) -> dict[str, PreparedCli
     """Return clips that all have captured rotations, or none of them: others tell less by them."""
     if all("rotation" in each.clip.coords for each in clips.values()):
         return clips
+    return without_rotations(clips)
+
+
+def without_rotations(clips: dict[str, PreparedClip]) -> dict[str, PreparedClip]:
+    """Return clips without their captured rotations: positions alone tell joint angles then."""
     return {
         name: replace(
             each,
