@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
@@ -51,6 +52,20 @@ Clip = xr.DataArray | PreparedClip
 def prepare(clip: Clip) -> PreparedClip:
     """Return a clip made ready to be compared.
 
+    Parameters
+    ----------
+    clip : DataArray of shape (time, marker, axis), or PreparedClip
+        Markers that were never seen are left out.
+
+    Returns
+    -------
+    PreparedClip
+
+    Raises
+    ------
+    ValueError
+        If it is one frame, or has gaps that are too long to be filled.
+
     Examples
     --------
     >>> prepare(ew.simulate_walk(seed=1)).cycle.sizes["time"]
@@ -59,11 +74,15 @@ def prepare(clip: Clip) -> PreparedClip:
     """
     if isinstance(clip, PreparedClip):
         return clip
-    clip = check_trajectories(clip)
+    clip = check_trajectories(clip).dropna("marker", how="all")
+    if not clip.sizes["marker"]:
+        raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
     try:
         return PreparedClip(clip, common_clock(loop(clip)))
     except ValueError as error:
-        filled, _ = fill_short_gaps(clip.values, sampling_rate(clip))
+        filled, gaps = fill_short_gaps(clip.values, sampling_rate(clip))
+        if gaps:
+            raise
         return PreparedClip(clip.copy(data=filled), None, str(error))
 
 
@@ -254,12 +273,24 @@ def pair_components(
     steps = _Steps(progress, len(clips))
     prepared = {name: steps.after(prepare(clip)) for name, clip in clips.items()}
     pairs = np.array(list(combinations(range(len(clips)), 2)))
-    if all(clip.cycle is not None for clip in prepared.values()):
+    if still := [name for name, clip in prepared.items() if clip.cycle is None]:
+        _tell_of_actions(still, prepared)
+    if not still:
         values, points = _of_strides(list(prepared.values()), pairs, asked, steps)
     else:
         values, points = _of_actions(list(prepared.values()), pairs, asked, steps)
     index = pd.MultiIndex.from_tuples(combinations(clips, 2), names=["first", "second"])
     return pd.DataFrame(values, index=index, columns=points)
+
+
+def _tell_of_actions(still: list[str], prepared: Mapping[str, PreparedClip]) -> None:
+    """Warn where clips that repeat are compared like those that do not."""
+    if len(still) < len(prepared):
+        warnings.warn(
+            f"All clips are compared from end to end, as {still[:6]} do not repeat: "
+            f"{prepared[still[0]].complaint} Leave them out to compare strides.",
+            stacklevel=3,
+        )
 
 
 class _Steps:
