@@ -23,7 +23,6 @@ from eigenwalker.population import FLAG, Population
 from eigenwalker.simulation import simulate_population
 
 GOLDEN = Path(__file__).parent / "golden"
-MICROMETRE = 1e-3
 MIX = {"sex": 3.0, "weight_kg": -2.0, "age_years": 0.5}
 
 
@@ -51,7 +50,7 @@ def test_a_walker_of_the_page_is_that_of_python(people, model, kind, part):
     shown = mixed_walker(as_the_page_reads(model), state)
     time = np.linspace(0, 3, 50)
     apart = shown.trajectories(time).values - people.walker(vector).trajectories(time).values
-    assert np.abs(apart).max() < 1e-5
+    assert np.abs(apart).max() < 1e-6
 
 
 def test_a_bias_of_one_is_the_mean_of_a_class(people, model):
@@ -91,7 +90,6 @@ def test_the_page_tells_where_a_walker_lies_along_a_trait(people, model):
     told = next(t["told"] for t in model["traits"] if t["name"] == "weight_kg")
     found = told["offset"] + people.X @ told["gradient"]
     np.testing.assert_allclose(found, axis.positions(people.X), atol=1e-6)
-    np.testing.assert_allclose(model["cloud"]["positions"]["weight_kg"], found, atol=1e-4)
 
 
 @given(st.integers(0, 39), st.floats(-6, 6), st.floats(-6, 6))

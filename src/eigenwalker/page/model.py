@@ -35,7 +35,8 @@ def page_model(
 ) -> dict[str, Any]:
     """Return a population as plain lists and numbers, for the page to play with.
 
-    Flagged walkers are left out. Numbers are rounded to a millionth of a millimetre.
+    Flagged walkers are left out. Numbers are rounded, so that walkers are those of Python to a
+    millionth of a millimetre.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ def page_model(
         "average": rounded_vectors(known.mean(axis=0), layout),
         **_variation(known, layout, points),
         "walkers": _walkers(population, rows[shown], axes),
-        "cloud": _cloud(known, points, shown, axes),
+        "cloud": _cloud(known, points, shown),
         "traits": axes,
     }
 
@@ -125,7 +126,7 @@ def walker_model(walker: Walker, *, title: str = "One walker") -> dict[str, Any]
         "average": own,
         **_variation(vector[None], layout, np.array([0])),
         "walkers": [{"name": title, "row": 0, "vector": own, "traits": {}}],
-        "cloud": _cloud(vector[None], np.array([0]), np.array([0]), []),
+        "cloud": _cloud(vector[None], np.array([0]), np.array([0])),
         "traits": [],
     }
 
@@ -185,23 +186,16 @@ def _space(known: np.ndarray) -> WalkerSpace | None:
         return None
 
 
-def _cloud(
-    known: np.ndarray, points: np.ndarray, shown: np.ndarray, axes: list[dict]
-) -> dict[str, Any]:
-    """Every walker as a point: its scores, and where it lies along each trait."""
+def _cloud(known: np.ndarray, points: np.ndarray, shown: np.ndarray) -> dict[str, Any]:
+    """Every walker as a point: its scores in standard deviations of the walkers."""
     space = _space(known)
     if space is None:
-        return {"n": 0, "scores": [], "positions": {}, "walker": []}
+        return {"n": 0, "scores": [], "walker": []}
     scores = space.transform(known[points]) / np.sqrt(space.explained_variance_)
-    told = {axis["name"]: axis["told"] for axis in axes}
     place = {int(row): number for number, row in enumerate(shown)}
     return {
         "n": len(points),
         "scores": rounded(scores[:, :N_EIGENWALKERS], 4),
-        "positions": {
-            name: rounded(each["offset"] + known[points] @ each["gradient"], 4)
-            for name, each in told.items()
-        },
         "walker": [place.get(int(point), -1) for point in points],
     }
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from eigenwalker.features import FeatureLayout
 
-DECIMALS = 6
-"""Of millimetres: a millionth."""
-FINER = 4
+DECIMALS = 7
+"""Of millimetres: what a walker is made of adds up to within a millionth."""
+FINER = 3
 """More decimals for hertz and radians, which limbs of hundreds of mm multiply."""
 
 
@@ -18,7 +18,7 @@ def rounded(values: np.ndarray, decimals: int = DECIMALS) -> list:
     Examples
     --------
     >>> rounded(np.array([[1.23456789, -1e-9]]))
-    [[1.234568, 0.0]]
+    [[1.2345679, 0.0]]
 
     """
     return (np.round(values, decimals) + 0.0).tolist()
