@@ -1,9 +1,9 @@
 // @vitest-environment jsdom
 // What is kept of the stage; films and pictures are made in a real browser, see test_interactive.
 
-import { readFileSync } from "node:fs";
 import { beforeEach, describe, expect, it } from "vitest";
 
+import golden from "../../tests/golden/model.json";
 import { readStimulus } from "../src/core/check";
 import { castOf } from "../src/model/cast";
 import { readModel } from "../src/model/read";
@@ -11,8 +11,7 @@ import { initialState, TRANSFORM_NAMES, usualSettings, type State } from "../src
 import { encodeFilm, NoFilm } from "../src/stage/film";
 import { pageFile, stimulusFile, type Kept } from "../src/stage/saving";
 
-const here = (path: string): string => readFileSync(new URL(path, import.meta.url), "utf8");
-const model = readModel(JSON.parse(here("../../tests/golden/model.json")).model);
+const model = readModel(golden.model);
 const PLAYER =
   "<!doctype html><meta content=\"script-src 'unsafe-inline'\">" +
   '<script id="stimulus" type="application/json">null</script><script>$&</script>';

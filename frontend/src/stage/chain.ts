@@ -13,8 +13,9 @@ const ARM_SWING = ["left_elbow", "left_wrist", "right_elbow", "right_wrist"];
 /** What a step may be made from: the figure as the chain so far leaves it, and who it is. */
 interface Before {
   readonly stimulus: Stimulus;
-  readonly moving: Moving;
   readonly figure: number;
+  /** The figure, worked out when it is asked for. */
+  readonly moving: () => Moving;
   readonly groups: Readonly<Record<string, readonly string[]>>;
 }
 
@@ -23,8 +24,8 @@ type Making<Name extends TransformName> = (settings: Settings<Name>, before: Bef
 
 /** Steps in the order in which they act; each is made for one figure. */
 const MAKING: { readonly [Name in TransformName]: Making<Name> } = {
-  arm_swing: ({ factor }, { moving, figure }) => {
-    const markers = ARM_SWING.filter((name) => moving.index(name) >= 0);
+  arm_swing: ({ factor }, { stimulus, figure }) => {
+    const markers = ARM_SWING.filter((name) => markersOf(stimulus, figure).includes(name));
     return markers.length > 0 ? { name: "gain", markers, factor, axes: "xyz", figures: [figure] } : null;
   },
   reverse: (_, { stimulus, figure }) => ({
@@ -35,26 +36,27 @@ const MAKING: { readonly [Name in TransformName]: Making<Name> } = {
   phase_scramble: (settings, { figure }) => ({ name: "phase_scramble", ...settings, figures: [figure] }),
   mirror: (_, { figure }) => ({ name: "mirror", figures: [figure] }),
   invert: (_, { figure }) => ({ name: "invert", figures: [figure] }),
-  occlude: ({ part }, { moving, figure, groups }) => {
+  occlude: ({ part }, { stimulus, figure, groups }) => {
     const hidden = Object.hasOwn(groups, part) ? groups[part]! : [];
-    const markers = moving.body.dots.filter((name) => hidden.includes(name));
+    const markers = markersOf(stimulus, figure).filter((name) => hidden.includes(name));
     return markers.length > 0 ? { name: "occlude", markers, figures: [figure] } : null;
   },
   scramble: (settings, { stimulus, moving, figure }) => {
-    return { name: "scramble", ...settings, box_mm: extentOf(moving, stimulus), figures: [figure] };
+    return { name: "scramble", ...settings, box_mm: extentOf(moving(), stimulus), figures: [figure] };
   },
-  limb_dots: (settings, { moving, figure }) => {
-    const places = moving.body.segments.length > 0 ? settings.places : "joints";
+  limb_dots: (settings, { stimulus, figure }) => {
+    const places = stimulus.figures[figure]!.segments.length > 0 ? settings.places : "joints";
     return { name: "limb_dots", ...settings, places, asynchrony: 1, figures: [figure] };
   },
   blur: ({ sd_mm }, { figure }) => ({ name: "blur", sd_mm, figures: [figure] }),
   mask: (settings, { stimulus, moving, figure }) => {
-    const [width, height] = extentOf(moving, stimulus);
+    const there = moving();
+    const [width, height] = extentOf(there, stimulus);
     return {
       name: "mask",
       ...settings,
       box_mm: [Math.round(MASK_ROOM[0] * width), Math.round(MASK_ROOM[1] * height)],
-      centre_mm: rounded(moving.middle),
+      centre_mm: rounded(there.middle),
       direction_deg: null,
       phases: false,
       figures: [figure],
@@ -79,15 +81,19 @@ export function chained(
 ): Stimulus {
   const names = (Object.keys(MAKING) as TransformName[]).filter((name) => name in transforms);
   return names.reduce((so_far, name) => {
-    const moving = scene(so_far);
+    const make = MAKING[name] as (settings: unknown, before: Before) => Made;
+    let figures: readonly Moving[] | undefined;
     const steps = stimulus.figures.map((_, figure) => {
-      const make = MAKING[name] as (settings: unknown, before: Before) => Made;
-      return make(transforms[name], { stimulus: so_far, moving: moving[figure]!, figure, groups });
+      const moving = (): Moving => (figures ??= scene(so_far))[figure]!;
+      return make(transforms[name], { stimulus: so_far, figure, moving, groups });
     });
     const made = steps.filter((step) => step !== null);
     return { ...so_far, transforms: [...so_far.transforms, ...together(made)] };
   }, stimulus);
 }
+
+const markersOf = ({ figures }: Stimulus, figure: number): readonly string[] =>
+  figures[figure]!.walker?.markers ?? [];
 
 /** Steps that differ in nothing but their figure, as one. */
 function together(steps: readonly Step[]): Step[] {
