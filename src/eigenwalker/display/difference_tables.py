@@ -13,8 +13,9 @@ from eigenwalker.display.style import BLUE, GREY, INK, RED, SMALL, new_figure, p
 MOST_NAMED = 45
 """Walks up to which each gets its name; more would stand over each other."""
 _LONGEST = 15
-_LOOK = ((BLUE, "o"), (RED, "^"), ("#009988", "s"), ("#AA4499", "D"), (GREY, "v"))
-"""Colours and marks of clusters; beyond five they repeat."""
+_INKS = (BLUE, RED, "#009988", "#AA4499", GREY)
+_LOOK = tuple(zip(_INKS * 2, "o^sDv" + "v*PXd", strict=True))
+"""Colours and marks of classes; beyond ten they repeat."""
 
 
 def figure_difference_table(
@@ -75,7 +76,7 @@ def figure_difference_table(
 
 
 def figure_map_of_walks(
-    places: ArrayLike, names: Sequence[str], *, clusters: ArrayLike | None = None
+    places: ArrayLike, classes: Sequence[str], *, names: Sequence[str] | None = None
 ) -> Figure:
     """Return walks as points, near each other if they are alike.
 
@@ -83,38 +84,43 @@ def figure_map_of_walks(
     ----------
     places : array of shape (walk, 2)
         As `map_of_walks` gives them.
-    names : sequence of str
-        One name a walk; written where there are few.
-    clusters : array of int of shape (walk,), optional
-        Colours and marks.
+    classes : sequence of str
+        The cluster or label of each walk, told by colour and mark.
+    names : sequence of str, optional
+        Written beside the points.
 
     Returns
     -------
     Figure
 
+    Examples
+    --------
+    >>> figure = figure_map_of_walks([[0, 0], [1, 2]], ["slow", "fast"])
+    >>> [text.get_text() for text in figure.legends[0].get_texts()]
+    ['fast (1)', 'slow (1)']
+
     """
-    places = np.asarray(places, dtype=float)
-    of = np.zeros(len(places), dtype=int) if clusters is None else np.asarray(clusters)
-    figure = new_figure(4.6, 3.8)
+    places, of = np.asarray(places, dtype=float), np.asarray(classes)
+    figure = new_figure(4.8, 3.9)
     axes = panels(figure, 1, 1)[0][0]
-    for cluster in range(of.max() + 1):
-        color, mark = _LOOK[cluster % len(_LOOK)]
-        chosen = places[of == cluster]
-        label = f"cluster {cluster + 1} ({len(chosen)})"
+    for number, name in enumerate(np.unique(of)):
+        color, mark = _LOOK[number % len(_LOOK)]
+        chosen = places[of == name]
+        label = f"{name} ({len(chosen)})"
         axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)
-    if len(places) <= MOST_NAMED:
-        for place, name in zip(places, names, strict=True):
-            axes.annotate(
-                short_name(name),
-                tuple(place),
-                xytext=(3, 3),
-                textcoords="offset points",
-                fontsize=SMALL - 1.5,
-                color=GREY,
-                parse_math=False,
-            )
-    if clusters is not None:
-        axes.legend(fontsize=SMALL, frameon=False, loc="best")
+    for place, name in zip(places, names or [], strict=False):
+        axes.annotate(
+            short_name(name),
+            tuple(place),
+            xytext=(3, 3),
+            textcoords="offset points",
+            fontsize=SMALL - 1.5,
+            color=GREY,
+            parse_math=False,
+        )
+    figure.legend(
+        loc="outside upper left", ncols=4, fontsize=SMALL, frameon=False, handletextpad=0.1
+    )
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
     axes.set_xlabel("First dimension")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from eigenwalker.report.page import write_report
 from eigenwalker.report.two_walks import CITE, SCALE_IS_UNKNOWN
 
 MOST_ROWS = 60
+MOST_NAMED_POINTS = 30
 TABLE_NAME = "differences.csv"
 
 
@@ -138,11 +140,11 @@ def write_all_pairs(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     table.to_csv(folder / TABLE_NAME, index_label="walk")
-    names = [str(name) for name in table.index]
+    names = telling_names([str(name) for name in table.index])
     order = order_of_walks(table)
     clusters = clusters_of_walks(table, min(n_clusters, len(names)))
     sections = [
-        Section("All pairs", _pictures(table, names, order, clusters)),
+        Section("All pairs", _pictures(table, names, order, clusters, walks)),
         Section("Each walk", [_each_walk(table, names, order, clusters, walks)]),
     ]
     if walks.labels:
@@ -153,6 +155,20 @@ def write_all_pairs(
     sections.append(Section("How this was done", [Text(_method(metric)), Text(CITE)]))
     lead = " ".join(summary(table, metric))
     return write_report(folder, Report(f"{len(names)} walks compared", lead, sections))
+
+
+def telling_names(names: list[str]) -> list[str]:
+    """Return names without what all of them begin with, up to a separator.
+
+    Examples
+    --------
+    >>> telling_names(["walk_sad_1.bvh", "walk_happy_2.bvh"])
+    ['sad_1.bvh', 'happy_2.bvh']
+
+    """
+    shared = os.path.commonprefix(names)  # noqa: RUF071 - letters are what is wanted
+    kept = max((shared.rfind(mark) for mark in "/_- "), default=-1) + 1
+    return [name[kept:] for name in names]
 
 
 def summary(table: pd.DataFrame, metric: str) -> list[str]:
@@ -173,7 +189,7 @@ def summary(table: pd.DataFrame, metric: str) -> list[str]:
 
 
 def _pictures(
-    table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray
+    table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray, walks: Walks
 ) -> list[Block]:
     heat = Figure(
         figure_difference_table(table, names, order=order, clusters=clusters),
@@ -181,10 +197,14 @@ def _pictures(
         "component of the table's rows; dashed lines part neighbours of different clusters.",
         f"A square grey picture of {len(names)} by {len(names)} differences.",
     )
+    classes, told = [f"cluster {each + 1}" for each in clusters], "cluster (k-means on the rows)"
+    if walks.labels:
+        classes, told = [walks.labels.get(str(name), "none") for name in table.index], "label"
+    few = names if len(names) <= MOST_NAMED_POINTS and not walks.labels else None
     places = Figure(
-        figure_map_of_walks(map_of_walks(table), names, clusters=clusters),
+        figure_map_of_walks(map_of_walks(table), classes, names=few),
         "A map on which distances are as near to the differences as two dimensions allow "
-        "(classical scaling), coloured by cluster (k-means on the table's rows).",
+        f"(classical scaling), coloured by {told}.",
         f"{len(names)} points in clusters of {np.bincount(clusters).tolist()}.",
     )
     return [heat, places]
@@ -202,7 +222,7 @@ def _each_walk(
         rows.append(
             [
                 names[walk],
-                walks.labels.get(names[walk]),
+                walks.labels.get(str(table.index[walk])),
                 int(clusters[walk]) + 1,
                 f"{100 * belongs[walk, clusters[walk]]:.0f} %",
                 names[nearest],
