@@ -278,9 +278,12 @@ describe("the stage", () => {
     expect(stage.cycle).toBeCloseTo(0.75, 9);
   });
 
+  /** A pointer that moves every 10 ms. */
+  let time = 0;
   const pointer = (type: string, x: number, y: number): void => {
     const event = new MouseEvent(type, { clientX: x, clientY: y, button: 0 });
-    canvas.dispatchEvent(Object.assign(event, { pointerId: 1 }));
+    Object.defineProperties(event, { pointerId: { value: 1 }, timeStamp: { value: (time += 10) } });
+    canvas.dispatchEvent(event);
   };
 
   it("is turned by dragging, and tells so", () => {
