@@ -18,7 +18,7 @@ from scipy import ndimage
 import eigenwalker as ew
 from eigenwalker.page import stand_alone, stand_alone_page
 from eigenwalker.stimulus import Figure, Stimulus, make_stimulus
-from eigenwalker.stimulus.drawing import drawn_frames, places_px
+from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades, places_px
 from eigenwalker.stimulus.write import write_stimulus
 
 SIZE_PX = (640, 480)
@@ -38,12 +38,17 @@ def shown(**options) -> Stimulus:
     return replace(stimulus, display=replace(stimulus.display, dot_px=7.0))
 
 
+SOFT_GL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""WebGL without a graphics card."""
+
+
 def in_chromium(page: str, folder: Path, *options: str, at: str = "") -> str:
     """What chromium says of a page."""
     assert CHROMIUM is not None
     path = folder / "page.html"
     path.write_text(page, encoding="utf-8")
-    flags = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run"]
+    flags = ["--headless", "--no-sandbox", "--hide-scrollbars", "--no-first-run"]
+    flags += [] if set(options) & set(SOFT_GL) else ["--disable-gpu"]
     flags += [f"--user-data-dir={folder / 'profile'}", "--disable-background-networking"]
     flags += [f"--window-size={SIZE_PX[0]},{SIZE_PX[1]}", "--force-device-scale-factor=1"]
     answer = subprocess.run(
@@ -55,13 +60,28 @@ def in_chromium(page: str, folder: Path, *options: str, at: str = "") -> str:
     return answer.stdout.decode()
 
 
-def screenshot(stimulus: Stimulus, time_s: float, folder: Path) -> np.ndarray:
+def screenshot(stimulus: Stimulus, time_s: float, folder: Path, *options: str) -> np.ndarray:
     """How bright each pixel is, 0 to 1: the stimulus fills the window and stands still."""
+    return coloured(stimulus, time_s, folder, *options).mean(axis=2)
+
+
+def coloured(stimulus: Stimulus, time_s: float, folder: Path, *options: str) -> np.ndarray:
+    """Red, green and blue of each pixel, 0 to 1."""
     picture = folder / "picture.png"
     in_chromium(
-        stand_alone_page(stimulus), folder, f"--screenshot={picture}", at=f"t={time_s}&bare"
+        stand_alone_page(stimulus),
+        folder,
+        f"--screenshot={picture}",
+        *options,
+        at=f"t={time_s}&bare",
     )
-    return np.asarray(imread(picture))[..., :3].mean(axis=2)
+    return np.asarray(imread(picture))[..., :3]
+
+
+def in_film(stimulus: Stimulus, time_s: float) -> np.ndarray:
+    """Red, green and blue, 0 to 1, as Python's films have them."""
+    (numbers,) = drawn_frames(stimulus, np.array([time_s]))
+    return (drawn_shades(stimulus) / 255)[numbers]
 
 
 def test_the_page_loads_nothing():
@@ -132,10 +152,53 @@ def test_the_browser_draws_what_films_show(transform: str, tmp_path: Path):
     stimulus = shown(style="dots" if transform == "blur" else transform)
     if transform == "blur":
         stimulus = stimulus.then("blur", sd_mm=60)
-    in_film = next(iter(drawn_frames(stimulus, np.array([0.3])))) / 255
-    in_browser = screenshot(stimulus, 0.3, tmp_path)
-    assert np.abs(in_film - in_browser).mean() < 0.002
-    assert np.abs(in_film - in_browser).max() < 0.5  # softer edges, nothing more
+    apart = np.abs(in_film(stimulus, 0.3).mean(axis=2) - screenshot(stimulus, 0.3, tmp_path))
+    assert apart.mean() < 0.002
+    assert apart.max() < 0.5  # softer edges, nothing more
+
+
+def test_only_pages_of_mannequins_hold_three_dimensions():
+    plain, wooden = stand_alone_page(shown()), stand_alone_page(shown(style="mannequin"))
+    assert len(plain) < 60_000 < 500_000 < len(wooden) < 700_000
+    assert "blob:" not in plain.split("<title>")[0]
+    assert "script-src 'unsafe-inline' blob:;" in wooden
+    assert wooden.count("</script>") == plain.count("</script>") + 1
+    assert "<!--" not in wooden
+
+
+def three_kinds() -> list[Stimulus]:
+    """Level; in perspective, from above, in wood's colours; two figures, one behind the other."""
+    wood = {"colour": "#c8965a", "background": "#e8f0ff"}
+    other = Figure(average_walker(), position_mm=(-300, 250, 0), heading_deg=120)
+    return [
+        shown(style="mannequin"),
+        shown(style="mannequin", eye_distance_mm=3000, elevation_deg=20, **wood),
+        shown_all([average_walker(), other], style="mannequin", view_deg=0).then("invert"),
+    ]
+
+
+def shown_all(figures, **options) -> Stimulus:
+    return make_stimulus(figures, size_px=SIZE_PX, **options)
+
+
+@drawn
+@pytest.mark.parametrize("kind", range(3))
+def test_the_browser_and_films_show_the_same_mannequin(kind: int, tmp_path: Path):
+    stimulus = three_kinds()[kind]
+    ground = in_film(replace(stimulus, figures=stimulus.figures[:1]), 0.3)[0, 0]
+    browser, film = coloured(stimulus, 0.3, tmp_path, *SOFT_GL), in_film(stimulus, 0.3)
+    one, other = (np.abs(picture - ground).max(axis=2) > 0.06 for picture in (browser, film))
+    assert one.mean() > 0.02
+    assert (one & other).sum() / (one | other).sum() > 0.97
+    assert np.abs(browser - film)[one & other].mean() < 0.01
+
+
+@drawn
+def test_without_webgl_the_mannequin_is_drawn_flat(tmp_path: Path):
+    stimulus = shown(style="mannequin")
+    flat = screenshot(stimulus, 0.3, tmp_path, "--disable-3d-apis")
+    film = in_film(stimulus, 0.3).mean(axis=2)
+    assert ((flat > 0.1) & (film > 0.1)).sum() / ((flat > 0.1) | (film > 0.1)).sum() > 0.9
 
 
 @drawn
