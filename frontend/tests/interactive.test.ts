@@ -5,7 +5,7 @@ import { describe, expect, it, vi } from "vitest";
 import { choice } from "../src/interactive/choice";
 import { make } from "../src/interactive/element";
 import { Notices } from "../src/interactive/notices";
-import { openFile } from "../src/interactive/opening";
+import { bundles, openFiles } from "../src/interactive/opening";
 import { ownOf } from "../src/interactive/own";
 import { howPlausible, reachOf } from "../src/interactive/plausible";
 import { signed, slider } from "../src/interactive/slider";
@@ -98,6 +98,7 @@ it("trouble stays until it is sent away", () => {
 
 describe("what is brought", () => {
   const model = goldenModel();
+  const held = { model, population: "" };
   const file = (content: unknown, name = "a.json"): File =>
     new File([typeof content === "string" ? content : JSON.stringify(content)], name);
 
@@ -107,17 +108,23 @@ describe("what is brought", () => {
     ['{"format": "eigenwalker model"}', /no model of walkers/],
     ['{"format": "eigenwalker stimulus", "version": 1}', /no stimulus/],
   ])("is refused in a sentence where it is %s", async (text, sentence) => {
-    await expect(openFile(file(text), model)).rejects.toThrow(sentence);
+    await expect(openFiles([file(text)], held)).rejects.toThrow(sentence);
   });
 
   it("is told about the server where only Python can read it", async () => {
-    await expect(openFile(file("", "walk.c3d"), model)).rejects.toThrow(/eigenwalker serve/);
-    await expect(openFile(file("", "people.nc"), model)).rejects.toThrow(/eigenwalker serve/);
+    await expect(openFiles([file("", "walk.c3d")], held)).rejects.toThrow(/eigenwalker serve/);
+    await expect(openFiles([file("", "people.nc")], held)).rejects.toThrow(/eigenwalker serve/);
+  });
+
+  it("is opened together where it is captures, and alone where it is not", () => {
+    const names = (bundle: readonly File[]): string[] => bundle.map(({ name }) => name);
+    const brought = ["a.amc", "m.json", "a.asf", "p.nc"].map((name) => file("", name));
+    expect(bundles(brought).map(names)).toEqual([["m.json"], ["p.nc"], ["a.amc", "a.asf"]]);
   });
 
   it("walks, where it is a stimulus", async () => {
     const walker = walkerOf(model, model.walkers[0]!.vector);
-    const opened = await openFile(file(stimulusWith(walker)), model);
+    const opened = await openFiles([file(stimulusWith(walker))], held);
     expect(opened.kind).toBe("own");
   });
 });

@@ -1,6 +1,9 @@
-/** Where files come in: dropped anywhere on the page, or chosen. */
+/** Where files come in: dropped anywhere on the page, folders too, or chosen. */
 
 import { find } from "./element";
+
+/** More than these at once is a mistake. */
+const MOST_FILES = 500;
 
 /** Hand over files that are dropped or chosen; the returned function opens the choosing. */
 export function takeFiles(take: (files: readonly File[]) => void): () => void {
@@ -19,11 +22,35 @@ export function takeFiles(take: (files: readonly File[]) => void): () => void {
     if (!brings(event)) return;
     event.preventDefault();
     veil.hidden = true;
-    take([...(event.dataTransfer?.files ?? [])]);
+    void dropped(event.dataTransfer!).then(take);
   });
   input.addEventListener("change", () => {
     take([...(input.files ?? [])]);
     input.value = "";
   });
   return () => input.click();
+}
+
+/** What was dropped, with all that is in folders. */
+async function dropped({ items, files }: DataTransfer): Promise<File[]> {
+  const plain = [...files];
+  const entries = [...items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
+  if (!entries.some(({ isDirectory }) => isDirectory)) return plain;
+  const found: File[] = [];
+  for (const entry of entries) await gather(entry, found);
+  return found;
+}
+
+async function gather(entry: FileSystemEntry, found: File[]): Promise<void> {
+  if (found.length >= MOST_FILES || entry.name.startsWith(".")) return;
+  if (entry.isFile) {
+    found.push(await new Promise<File>((take, fail) => (entry as FileSystemFileEntry).file(take, fail)));
+    return;
+  }
+  const reader = (entry as FileSystemDirectoryEntry).createReader();
+  const some = (): Promise<FileSystemEntry[]> => new Promise((take, fail) => reader.readEntries(take, fail));
+  // A folder is read in pieces, the last of which is empty.
+  for (let inside = await some(); inside.length > 0; inside = await some()) {
+    for (const each of inside) await gather(each, found);
+  }
 }

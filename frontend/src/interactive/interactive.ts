@@ -2,8 +2,6 @@
 
 import { addressOf, stateOf } from "../model/address";
 import { captionOf } from "../model/captions";
-import type { Model } from "../model/model";
-import { readModel } from "../model/read";
 import { Stage } from "../stage/stage";
 import { classifier } from "./classifier";
 import { changes } from "./changes";
@@ -17,7 +15,7 @@ import { label } from "./labels";
 import { look, transforms } from "./look";
 import { bias, strengths } from "./moler";
 import { Notices } from "./notices";
-import { openFile } from "./opening";
+import { bundles, heldIn, openFiles, type Held } from "./opening";
 import { plausible } from "./plausible";
 import { scenes } from "./scenes";
 import { section, words, type Fold } from "./section";
@@ -34,6 +32,7 @@ const REST_MS = 250;
 const WIDE = window.matchMedia("(min-width: 100rem)");
 
 const notices = new Notices();
+let held: Held | null = null;
 let session: Session | null = null;
 /** Ends what belongs to the session shown. */
 let leave = (): void => {};
@@ -42,27 +41,31 @@ const canvas = find("#stage canvas", HTMLCanvasElement);
 const host = find("#stage", HTMLDivElement);
 const choose = takeFiles((files) => void take(files));
 
-/** Open files one after another; what cannot be read is said, and all else stays. */
+/** Open what is brought; what cannot be read is said, and all else stays. */
 async function take(files: readonly File[]): Promise<void> {
-  for (const file of files) {
+  for (const bundle of bundles(files)) {
+    const name = bundle.length === 1 ? bundle[0]!.name : `${bundle.length} files`;
+    const done = notices.busy(`Reading ${name} \u2026`);
     try {
-      const opened = await openFile(file, session?.model ?? null);
-      if (opened.kind === "model") {
-        begin(opened.model);
-        notices.news(`${file.name}: ${peopleIn(opened.model)}`);
-      } else {
-        session?.take(opened.own);
-        notices.news([`${opened.own.name} walks.`, ...opened.told].join(" "));
-      }
+      const opened = await openFiles(bundle, held);
+      if (opened.kind === "model") begin(opened.held);
+      else session?.take(opened.own);
+      const walks = opened.kind === "model" ? `${name}: ${peopleIn(opened.held.model)}.` : `${opened.own.name} walks.`;
+      if (opened.told.length > 0) notices.told([walks, ...opened.told]);
+      else notices.news(walks);
     } catch (error) {
       notices.caught(error);
+    } finally {
+      done();
     }
   }
 }
 
 /** Show a model, from its start or as the address says. */
-function begin(model: Model, address = ""): void {
+function begin(next: Held, address = ""): void {
   leave();
+  held = next;
+  const { model } = next;
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   const start = stateOf(address, model);
   const dark = session?.state.dark ?? start.dark;
@@ -208,10 +211,10 @@ function addressPart(session: Session): Pick<Part, "show"> {
 const current = (): Session | null => session;
 
 /** The model that the page holds; null where it holds none. */
-function heldModel(): Model | null {
-  const held = find("#model", HTMLScriptElement).textContent ?? "null";
-  const content: unknown = JSON.parse(held);
-  return content === null ? null : readModel(content);
+function inPage(): Held | null {
+  const text = find("#model", HTMLScriptElement).textContent ?? "null";
+  const content: unknown = JSON.parse(text);
+  return content === null ? null : heldIn(content);
 }
 
 function start(): void {
@@ -221,8 +224,8 @@ function start(): void {
     if (session) session.change(stateOf(location.hash.slice(1), session.model));
   });
   try {
-    const model = heldModel();
-    if (model) begin(model, location.hash.slice(1));
+    const inside = inPage();
+    if (inside) begin(inside, location.hash.slice(1));
     else {
       notices.trouble("This page holds no walkers yet: drop a model on it, or choose one.");
       find("#corner", HTMLDivElement).append(askForFile());

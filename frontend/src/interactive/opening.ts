@@ -1,4 +1,4 @@
-/** Files that someone brings: a model, a stimulus, a population, a capture. */
+/** Files that someone brings: a model, a stimulus, a population, captures. */
 
 import { NoStimulus, readStimulus } from "../core/check";
 import type { Model, Own } from "../model/model";
@@ -7,31 +7,62 @@ import { ownOf } from "./own";
 import { CannotOpen } from "./refusal";
 import { hasServer, readCapture, readPopulation } from "./server";
 
-/** What a file turned out to be. */
+/** What files turned out to be. */
 export type Opened =
-  | { readonly kind: "model"; readonly model: Model }
+  | { readonly kind: "model"; readonly held: Held; readonly told: readonly string[] }
   | { readonly kind: "own"; readonly own: Own; readonly told: readonly string[] };
+
+/** A model, and the name under which the server keeps its population; empty where it does not. */
+export interface Held {
+  readonly model: Model;
+  readonly population: string;
+}
 
 /** More than any text that the page itself reads. */
 const MOST_TEXT_BYTES = 64e6;
 const POPULATION = /\.nc$/i;
 const TEXT = /\.json$/i;
+/** Needed beside a capture, and no capture itself. */
+const BESIDE = /\.asf$/i;
 
-/** Read one file, by the page itself where it can, else by the server. */
-export async function openFile(file: File, model: Model | null): Promise<Opened> {
-  if (TEXT.test(file.name)) return openText(file, model);
-  const what = POPULATION.test(file.name) ? "a population" : "a capture";
+/** The model in a parsed file, checked. */
+export function heldIn(content: unknown): Held {
+  const kept = content && typeof content === "object" && "population" in content ? content.population : "";
+  return { model: readModel(content), population: typeof kept === "string" ? kept : "" };
+}
+
+/** What is brought together, parted into what is opened one after the other. */
+export function bundles(files: readonly File[]): File[][] {
+  const alone = files.filter(({ name }) => TEXT.test(name) || POPULATION.test(name));
+  const others = files.filter((file) => !alone.includes(file));
+  return [...alone.map((file) => [file]), ...(others.length > 0 ? [others] : [])];
+}
+
+/** Read what belongs together, by the page itself where it can, else by the server. */
+export async function openFiles(files: readonly File[], held: Held | null): Promise<Opened> {
+  const [file, ...others] = files;
+  if (!file) throw new CannotOpen("There is no file in that.");
+  if (TEXT.test(file.name)) return openText(file, held?.model ?? null);
+  const people = POPULATION.test(file.name);
   if (!hasServer()) {
-    throw new CannotOpen(
-      `${file.name}: a page alone cannot read ${what}. Run "eigenwalker serve" and drop it there.`,
-    );
+    const what = people ? "a population" : others.length > 0 ? "captures" : "a capture";
+    throw new CannotOpen(`${file.name}: a page alone cannot read ${what}. Run "eigenwalker serve" and drop it there.`);
   }
-  if (POPULATION.test(file.name)) return { kind: "model", model: readModel(await readPopulation(file)) };
-  const { name, vector, told } = await readCapture(file);
-  if (model && vector.length !== model.average.length) {
-    throw new CannotOpen(`${file.name} came as ${vector.length} numbers; walkers here have ${model.average.length}.`);
+  const captures = files.filter(({ name }) => !BESIDE.test(name));
+  if (people || captures.length > 1) {
+    const { model, told } = await readPopulation(files);
+    return { kind: "model", held: heldIn(model), told };
   }
-  return { kind: "own", own: { name, vector }, told };
+  return openCapture(files, held);
+}
+
+async function openCapture(files: readonly File[], held: Held | null): Promise<Opened> {
+  const told = "The server does not keep the population shown here; drop its .nc file first.";
+  if (!held?.population) throw new CannotOpen(told);
+  const capture = await readCapture(files, held.population);
+  const [came, wanted] = [capture.vector.length, held.model.average.length];
+  if (came !== wanted) throw new CannotOpen(`${capture.name} came as ${came} numbers; walkers here have ${wanted}.`);
+  return { kind: "own", own: { name: capture.name, vector: capture.vector }, told: capture.told };
 }
 
 async function openText(file: File, model: Model | null): Promise<Opened> {
@@ -41,7 +72,7 @@ async function openText(file: File, model: Model | null): Promise<Opened> {
   const content = parsed(await file.text(), file.name);
   const format = content && typeof content === "object" && "format" in content ? content.format : null;
   try {
-    if (format === "eigenwalker model") return { kind: "model", model: readModel(content) };
+    if (format === "eigenwalker model") return { kind: "model", held: { ...heldIn(content), population: "" }, told: [] };
     if (format === "eigenwalker stimulus" && model) {
       return { kind: "own", own: ownOf(model, readStimulus(content), file.name), told: [] };
     }

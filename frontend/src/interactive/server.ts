@@ -13,24 +13,44 @@ export class ServerSays extends Error {}
 export const hasServer = (): boolean =>
   document.querySelector('meta[name="eigenwalker-server"]')?.getAttribute("content") === "1";
 
-/** A capture read, fitted and put into the population's correspondence. */
-export async function readCapture(file: File): Promise<Capture> {
-  const answer: unknown = await (await post("capture", { name: file.name }, file)).json();
-  if (!isCapture(answer)) throw new ServerSays(`The server's answer about ${file.name} is no walker.`);
+/** A model that is not yet checked, and what became of the captures it was made of. */
+export interface Population {
+  readonly model: unknown;
+  readonly told: readonly string[];
+}
+
+/** A capture, and the files it needs beside it, as a walker of a population that the server keeps. */
+export async function readCapture(files: readonly File[], population: string): Promise<Capture> {
+  const answer: unknown = await (await post("capture", { ...sent(files), population }, new Blob([...files]))).json();
+  if (!isCapture(answer)) throw new ServerSays(`The server's answer about ${files[0]?.name} is no walker.`);
   return answer;
 }
 
-/** A model of a population's file, not yet checked. */
-export async function readPopulation(file: File): Promise<unknown> {
-  return (await post("population", { name: file.name }, file)).json();
+/** A population's file, or many captures and perhaps a table of their traits, as a model. */
+export async function readPopulation(files: readonly File[]): Promise<Population> {
+  const answer: unknown = await (await post("population", sent(files), new Blob([...files]))).json();
+  if (!answer || typeof answer !== "object" || !("model" in answer)) {
+    throw new ServerSays(`The server's answer about ${files[0]?.name} is no population.`);
+  }
+  return { model: answer.model, told: "told" in answer && areSentences(answer.told) ? answer.told : [] };
 }
+
+/** One file by its name; several by names and sizes, one after the other. */
+function sent(files: readonly File[]): Record<string, string> {
+  const [first, ...others] = files;
+  if (first && others.length === 0) return { name: first.name };
+  return { files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
+}
+
+const areSentences = (told: unknown): told is string[] =>
+  Array.isArray(told) && told.every((sentence) => typeof sentence === "string");
 
 /** A film of a stimulus. */
 export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif"): Promise<Blob> {
   return (await post("film", { format }, stimulus)).blob();
 }
 
-async function post(what: string, query: Record<string, string>, body: BodyInit): Promise<Response> {
+async function post(what: string, query: Readonly<Record<string, string>>, body: BodyInit): Promise<Response> {
   let answer: Response;
   try {
     answer = await fetch(`/api/${what}?${new URLSearchParams(query)}`, { method: "POST", body });
@@ -53,6 +73,6 @@ function isCapture(answer: unknown): answer is Capture {
   return (
     typeof name === "string" &&
     Array.isArray(vector) && vector.every(Number.isFinite) &&
-    Array.isArray(told) && told.every((sentence) => typeof sentence === "string")
+    areSentences(told)
   );
 }
