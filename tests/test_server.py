@@ -139,8 +139,8 @@ def test_a_population_is_loaded_and_captures_are_compared_with_it(client, captur
     others.save(tmp_path / "others.nc")
     sent = (tmp_path / "others.nc").read_bytes()
     answer = client.post("/api/population?name=others.nc", content=sent).json()
-    assert (answer["n_walkers"], answer["title"]) == (6, "others")
-    query = {"name": "walk.c3d", "population": answer["population"]}
+    assert (answer["model"]["n_walkers"], answer["model"]["title"]) == (6, "others")
+    query = {"name": "walk.c3d", "population": answer["model"]["population"]}
     told = client.post("/api/capture", params=query, content=capture_file.read_bytes()).json()
     vector = others.vector(walker_from_file(capture_file)[0])
     np.testing.assert_allclose(told["vector"], vector, atol=1e-9)
@@ -156,10 +156,9 @@ def test_captures_sent_together_become_a_population(client, tmp_path):
     (tmp_path / "traits.csv").write_text(table)
     files += [tmp_path / "bad.c3d", tmp_path / "traits.csv"]
     names, content = sent_together(files)
-    answer = client.post("/api/capture", params={"files": names}, content=content).json()
-    assert answer["n_walkers"] == 4
-    assert [trait["name"] for trait in answer["traits"]] == ["sex"]
-    assert len(answer["population"]) == 16
+    answer = client.post("/api/population", params={"files": names}, content=content).json()
+    assert answer["model"]["n_walkers"] == 4
+    assert [trait["name"] for trait in answer["model"]["traits"]] == ["sex"]
     assert answer["told"][0].startswith("bad.c3d: refused.")
 
 

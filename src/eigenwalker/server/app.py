@@ -17,7 +17,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from eigenwalker.page.interactive import interactive_page
 from eigenwalker.page.model import page_model
 from eigenwalker.population import Population
-from eigenwalker.server import child_side, tasks, upload
+from eigenwalker.server import tasks, upload
 from eigenwalker.server.guard import Guard
 from eigenwalker.server.tasks import Refused, Workshop
 from eigenwalker.server.upload import TooLarge, kept, listed, parted
@@ -27,8 +27,6 @@ MOST_PIXELS = 2e9
 """Of all frames of a film: a minute at 60 Hz of 700 x 700."""
 MOST_STIMULUS = 64_000_000
 MOST_POPULATIONS = 20
-_TOGETHER = 2
-"""Files that may be one capture and what explains it; more are captures to make people of."""
 _SERVED = "served"
 _KEPT = re.compile(f"{_SERVED}|[0-9a-f]{{16}}")
 """Names under which populations are kept."""
@@ -43,13 +41,12 @@ def make_app(
 ) -> FastAPI:
     """Return the application that serves the interactive page of a population.
 
-    ========================= ===============================================================
+    ========================= ===================================================================
     ``GET /``                 the page
-    ``POST /api/capture``     a capture as a point of the population's space; of several captures
-                              the model of the population that they make
-    ``POST /api/population``  the model of a population's file
+    ``POST /api/capture``     a capture as a point of the population's space
+    ``POST /api/population``  the model of a population's file, or of many captures
     ``POST /api/film``        a film of a stimulus
-    ========================= ===============================================================
+    ========================= ===================================================================
 
     Whatever is sent is read by a process of its own, one at a time, within limits of time and
     memory, and removed afterwards. What cannot be used is refused with a sentence (``detail``).
@@ -102,43 +99,33 @@ async def read_capture(
     unit: str | None = None,
     rate: float | None = None,
 ) -> dict[str, Any]:
-    """A capture, and the files it needs beside it, as a walker of the population.
-
-    Of several captures, the model of the population that they make.
-    """
+    """A capture, and the files it needs beside it, as a walker of the population."""
     workshop = _workshop(request)
     people = workshop.folder / f"{population}.nc"
     if not _KEPT.fullmatch(population) or not people.is_file():
         raise Refused("That population is no longer here; load it again.")
     with workshop.bench() as bench:
-        folder = Path(bench)
-        (folder / "captures").mkdir()
-        paths = await _received(request, folder / "captures", name, files)
+        paths = await _received(request, Path(bench), name, files)
         asked = {
             "files": [path.name for path in paths],
             "population": str(people),
             "unit": unit,
             "rate_hz": rate,
         }
-        task = tasks.CAPTURE if len(paths) <= _TOGETHER else tasks.STUDY
-        answer = await workshop.done(task, folder, asked)
-        return _with_population(answer, workshop, folder)
+        return await workshop.done(tasks.CAPTURE, Path(bench), asked)
 
 
-async def read_population(request: Request, name: str) -> dict[str, Any]:
-    """The model of a population's file."""
+async def read_population(request: Request, name: str = "", files: str = "") -> dict[str, Any]:
+    """The model of a population's file, or of captures that are made into a population."""
     workshop = _workshop(request)
     with workshop.bench() as bench:
         folder = Path(bench)
-        (path,) = await _received(request, folder, name, "")
-        answer = await workshop.done(tasks.POPULATION, folder, {"files": [path.name]})
-        return _with_population(answer, workshop, folder)
-
-
-def _with_population(answer: dict[str, Any], workshop: Workshop, folder: Path) -> dict[str, Any]:
-    """A model with the name under which its population is kept; other answers as they are."""
-    people = folder / child_side.PEOPLE
-    return answer | {"population": _keep(workshop, people)} if people.is_file() else answer
+        task, into = (tasks.STUDY, folder / "captures") if files else (tasks.POPULATION, folder)
+        into.mkdir(exist_ok=True)
+        paths = await _received(request, into, name, files)
+        answer = await workshop.done(task, folder, {"files": [path.name for path in paths]})
+        answer["model"]["population"] = _keep(workshop, folder / "people.nc")
+        return answer
 
 
 def _keep(workshop: Workshop, people: Path) -> str:

@@ -20,8 +20,6 @@ REFUSED = 3
 TOO_LARGE = 4
 ANSWER = "answer.json"
 ASKED = "task.json"
-PEOPLE = "people.nc"
-"""Where a task leaves the population that its model is of."""
 
 Asked = dict[str, Any]
 
@@ -47,16 +45,17 @@ def main(task: str, folder: str, seconds: int, most_bytes: int) -> int:
 
 
 def capture(folder: Path, asked: Asked) -> Asked:
-    """A capture as a point of a population's space; of several captures a population."""
+    """A capture as a point of a population's space."""
     from eigenwalker.attempts import walker_from_file
     from eigenwalker.measures import walker_measures
     from eigenwalker.mocap import is_capture
     from eigenwalker.population import FLAG, Population
 
-    files = [folder / "captures" / name for name in asked["files"]]
+    files = [folder / name for name in asked["files"]]
     captures = [path for path in files if is_capture(path)] or files[:1]
     if len(captures) > 1:
-        return _study(folder, asked)
+        named = ", ".join(path.name for path in captures[:3])
+        raise ValueError(f"{len(captures)} captures came ({named}); one at a time is compared.")
     people = Population.load(Path(asked["population"]))
     first = people.walkers[0]
     walker, facts = walker_from_file(
@@ -102,22 +101,21 @@ def population(folder: Path, asked: Asked) -> Asked:
     from eigenwalker.population import Population
 
     path = folder / asked["files"][0]
-    return _model(Population.load(path), folder, path.stem)
+    return {"model": _model(Population.load(path), folder, path.stem), "told": []}
 
 
-def _study(folder: Path, asked: Asked) -> Asked:
+def study(folder: Path, asked: Asked) -> Asked:
     """A population made of captures, and what became of each that is not in it."""
     from eigenwalker.study import fit_folder
 
     captures = folder / "captures"
-    how = {name: asked[name] for name in ("unit", "rate_hz")}
-    found = fit_folder(captures, traits=_traits_table(captures), n_jobs=1, **how)
+    found = fit_folder(captures, traits=_traits_table(captures), n_jobs=1)
     out = found.files[found.files["status"] != "used"]
     told = [f"{row.file}: {row.status}. {row.reason}" for row in out.itertuples()]
     told += [f"{name}: not in the table of traits." for name in found.unlisted[:20]]
     if found.population is None:
         raise ValueError(f"None of {len(found.files)} captures could be used. {' '.join(told[:5])}")
-    return _model(found.population, folder, "Your captures") | {"told": told}
+    return {"model": _model(found.population, folder, "Your captures"), "told": told}
 
 
 def _traits_table(captures: Path) -> Path | None:
@@ -132,8 +130,8 @@ def _traits_table(captures: Path) -> Path | None:
 def _model(people: Any, folder: Path, title: str) -> Asked:
     from eigenwalker.page.model import page_model
 
-    people.save(folder / PEOPLE)
-    return page_model(people, title=title, source=PEOPLE)
+    people.save(folder / "people.nc")
+    return page_model(people, title=title, source="people.nc")
 
 
 def film(folder: Path, asked: Asked) -> Asked:
@@ -158,6 +156,7 @@ def film(folder: Path, asked: Asked) -> Asked:
 TASKS: dict[str, Callable[[Path, Asked], Asked]] = {
     "capture": capture,
     "population": population,
+    "study": study,
     "film": film,
 }
 

@@ -30,7 +30,7 @@ class Task(NamedTuple):
 
 CAPTURE = Task("capture", 90)
 POPULATION = Task("population", 90)
-STUDY = Task("capture", 900)
+STUDY = Task("study", 900)
 FILM = Task("film", 180)
 
 
