@@ -278,11 +278,11 @@ describe("the stage", () => {
     expect(stage.cycle).toBeCloseTo(0.75, 9);
   });
 
-  /** A pointer that moves every 10 ms. */
+  /** A pointer that moves every 30 ms. */
   let time = 0;
   const pointer = (type: string, x: number, y: number): void => {
     const event = new MouseEvent(type, { clientX: x, clientY: y, button: 0 });
-    Object.defineProperties(event, { pointerId: { value: 1 }, timeStamp: { value: (time += 10) } });
+    Object.defineProperties(event, { pointerId: { value: 1 }, timeStamp: { value: (time += 30) } });
     canvas.dispatchEvent(event);
   };
 
