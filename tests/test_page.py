@@ -135,7 +135,7 @@ def test_dots_are_drawn_where_python_says(make: Callable[[], Stimulus], tmp_path
         place for number, place in enumerate(wanted)
         if np.delete(np.hypot(*(wanted - place).T), number).min() > stimulus.display.dot_px + 2
     ]  # fmt: skip
-    labels, n_found = ndimage.label(bright > 0.02, structure=np.ones((3, 3)))
+    labels, n_found = ndimage.label(bright > 0.02, structure=np.ones((3, 3)))  # pyright: ignore[reportGeneralTypeIssues] - two, where no output is given
     centres = ndimage.center_of_mass(bright, labels, range(1, n_found + 1))
     found = np.array(centres)[:, ::-1] + 0.5  # from the left and upper edge
     inside = [

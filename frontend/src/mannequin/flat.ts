@@ -5,10 +5,10 @@ import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
 
 /** How bright a hull is across its width, from where the light comes to where it does not reach. */
 const SHADES = [
-  [0, 0.72],
-  [0.3, 0.95],
-  [0.65, 0.66],
-  [1, 0.34],
+  [0, 0.62],
+  [0.3, 0.85],
+  [0.65, 0.7],
+  [1, 0.32],
 ] as const;
 
 interface Ball {

@@ -11,6 +11,6 @@ void main() {
   vec3 sight = eye > 0.0 ? normalize(vec3(0.0, 0.0, eye) - place) : vec3(0.0, 0.0, 1.0);
   float soft = 0.5 + 0.5 * dot(facing, light);
   float edge = clamp(dot(facing, sight), 0.0, 1.0);
-  float shade = bright * (0.24 + 0.76 * soft * soft) * (0.72 + 0.28 * edge);
+  float shade = bright * (0.34 + 0.66 * soft * soft) * (0.8 + 0.2 * edge);
   gl_FragColor = vec4(shade * colour, 1.0);
 }

@@ -50,7 +50,7 @@ def make_stimulus(
     rate_hz : float
         Frames a second of films and tables.
     style : {"dots", "sticks", "mannequin"}
-        What is drawn; the mannequin is for the browser.
+        What is drawn; a mannequin is as thick as its height has it.
     size_px : (width, height)
         Of the picture.
     colour, background : str
@@ -99,6 +99,10 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
         bare.view, centre_mm=tuple(middle.round(3).tolist()), eye_distance_mm=eye_distance_mm
     )
     extent = np.maximum(high - low, 100.0)
+    if eye_distance_mm is not None:  # what is nearer to the eye reaches farther from the middle
+        low, high = replace(bare, view=view).extent()
+        seen = 2 * np.maximum(np.abs(low), np.abs(high))
+        extent = np.where(np.isfinite(seen), np.maximum(extent, seen), extent)
     room = FILLED * np.array([bare.display.width_px, bare.display.height_px])
     scale = float((room / extent).min())
     display = replace(bare.display, px_per_mm=scale, dot_px=max(DOT_MM * scale, 2.0))

@@ -15,7 +15,7 @@ from eigenwalker.stimulus.playing import NEAREST_MM
 
 LIGHT = np.array([-0.44, 0.67, 0.6]) / np.sqrt(0.44**2 + 0.67**2 + 0.6**2)
 """Where the light comes from, seen by the observer: right, up, towards him."""
-SHADOW, EDGE = 0.24, 0.72
+SHADOW, EDGE = 0.34, 0.8
 """Light in the deepest shadow, and share of light where the surface turns away."""
 Pixels = np.ndarray | np.float32
 TIE_MM = 1e-3
