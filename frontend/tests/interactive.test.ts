@@ -186,6 +186,11 @@ describe("plausibility", () => {
     expect(said({ sex: -6 })).toMatch(/ SD towards woman; /);
   });
 
+  it("of one's own capture is never called a caricature", () => {
+    const vector = vectorOf(model, { ...initialState(model), traits: { sex: 6 } });
+    expect(howPlausible(reach, placeOf(model, vector), true)).toMatch(/^Unlike anyone here: 6\.0 SD/);
+  });
+
   it("is had by everyone of the population", () => {
     for (const { vector } of model.walkers) {
       expect(howPlausible(reach, placeOf(model, vector))).toMatch(/^Plausible/);

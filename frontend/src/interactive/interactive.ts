@@ -91,12 +91,8 @@ function stagePart(session: Session): Pick<Part, "show"> {
     ticked: (cycle) => tools.tick(cycle),
     picked: (known) => session.change({ from: known, scene: "one" }),
     laid: (boxes) => label(labels, last?.cast ?? [], boxes),
-    lacking: (message) => {
-      notices.trouble(message);
-      session.change({ style: "sticks" });
-    },
   });
-  session.clock = () => stage.cycle;
+  session.stage = stage;
   let last: Now | undefined;
   const keys = stageKeys(session);
   host.addEventListener("keydown", keys);

@@ -62,8 +62,8 @@ function extreme({ distance, ways }: Reach, place: Place): { times: number; way:
   }, whole);
 }
 
-/** A sentence on how plausible it is that somebody walks like this. */
-export function howPlausible(reach: Reach, place: Place): string {
+/** A sentence on how plausible it is that somebody walks like this; one's own walk is what it is. */
+export function howPlausible(reach: Reach, place: Place, own = false): string {
   const { times, way } = extreme(reach, place);
   if (times <= ALL) {
     if (place.distance < 0.05) return "Nobody and everybody: the average walker.";
@@ -73,6 +73,7 @@ export function howPlausible(reach: Reach, place: Place): string {
   const far = way
     ? `${way.at(place).toFixed(1)} SD ${way.name}; the farthest walker is at ${way.farthest.toFixed(1)}`
     : `${times.toFixed(1)} times as far from the average as the farthest walker`;
+  if (own) return `Unlike anyone here: ${far}.`;
   if (times < RARE) return `Rare: ${far}.`;
   return times < CARICATURE ? `A caricature: ${far}.` : `Nobody walks so: ${far}.`;
 }
@@ -84,8 +85,8 @@ export function plausible(session: Session): Part {
   const words = make("p", { class: "verdict" });
   return {
     element: make("div", { class: "plausible" }, words, bar),
-    show({ place }) {
-      words.textContent = howPlausible(reach, place);
+    show({ place, state }) {
+      words.textContent = howPlausible(reach, place, state.from === "own");
       const { times } = extreme(reach, place);
       bar.style.setProperty("--now", `${Math.min(times / FARTHEST, 1) * 100}%`);
     },

@@ -8,6 +8,7 @@ import { placeOf, type Place } from "../model/place";
 import { initialState, type State } from "../model/state";
 import { Store } from "../model/store";
 import { walkerOf } from "../model/walker";
+import type { Stage } from "../stage/stage";
 
 /** What is shown at this moment: the state, and what is computed from it once for all parts. */
 export interface Now {
@@ -40,8 +41,8 @@ const WALKS: readonly (keyof State)[] = [
 ];
 
 export class Session {
-  /** Where in its stride the walker is while it walks. */
-  clock: () => number = () => 0;
+  /** What draws it, and knows where in its stride the walker is while it walks. */
+  stage: Pick<Stage, "cycle" | "mannequin"> | null = null;
   readonly store: Store;
   #own: Own | null = null;
   #past: State[] = [];
@@ -83,7 +84,7 @@ export class Session {
 
   /** Let it walk, or stand where it is. */
   play(playing: boolean): void {
-    this.change(playing ? { playing } : { playing, cycle: this.clock() });
+    this.change(playing ? { playing } : { playing, cycle: this.stage?.cycle ?? 0 });
   }
 
   /** All as it was when the page was new; how it is looked at stays. */

@@ -1,6 +1,5 @@
 /** Keep and share: the address, files of what is shown, and the Python that makes this walker. */
 
-import { heldMannequin } from "../canvas/mannequin";
 import { addressOf } from "../model/address";
 import { pythonLine } from "../model/python";
 import { download, filmFile, pageFile, pictureFile, stimulusFile, type Kept, type SavedFile } from "../stage/saving";
@@ -21,7 +20,7 @@ export function share(session: Session, notices: Notices): Part {
   const film = filming(session, notices);
   const saves = (label: string, file: (kept: Kept) => SavedFile | Promise<SavedFile>): HTMLButtonElement =>
     button(label, () => {
-      kept(session).then(file).then((made) => saved(made, notices)).catch((error: unknown) => notices.caught(error));
+      void Promise.resolve(kept(session)).then(file).then((made) => saved(made, notices)).catch((error: unknown) => notices.caught(error));
     });
   return {
     element: make("div", {},
@@ -44,10 +43,9 @@ export function share(session: Session, notices: Notices): Part {
 }
 
 /** What is on the stage, with all that is needed to draw it. */
-async function kept(session: Session): Promise<Kept> {
+function kept(session: Session): Kept {
   const { model, cast, state } = session.now();
-  const mannequin = state.style === "mannequin" ? await heldMannequin() : null;
-  return { model, cast, state, cycle: session.clock(), mannequin };
+  return { model, cast, state, cycle: session.stage?.cycle ?? 0, mannequin: session.stage?.mannequin ?? null };
 }
 
 function saved(file: SavedFile, notices: Notices): void {
@@ -74,7 +72,7 @@ function filming(session: Session, notices: Notices): { button: HTMLButtonElemen
     show(stop);
     try {
       const told = (share: number): void => void (progress.value = share);
-      saved(await filmed(await kept(session), { progress: told, signal: stop.signal }), notices);
+      saved(await filmed(kept(session), { progress: told, signal: stop.signal }), notices);
     } catch (error) {
       if (!stop.signal.aborted) notices.caught(error);
     } finally {
