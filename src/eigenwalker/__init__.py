@@ -12,14 +12,36 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _HOME = {
+    "DiscriminantClassifier": "discriminant",
+    "DiscriminantRegressor": "discriminant",
+    "FrameMetric": "metric.frame_metrics",
+    "GroupMetric": "metric.published",
+    "JOINTS": "skeleton",
+    "Loop": "metric.loops",
+    "Pattern": "simulation",
+    "PerceptualMetric": "metric.perceptual",
+    "Population": "population",
+    "Quality": "quality",
+    "RateAssumed": "mocap",
+    "Registration": "metric.registration",
+    "Route": "simulation",
+    "Skeleton": "skeleton",
+    "Stimulus": "stimulus",
+    "UnitGuessed": "mocap",
+    "UnreadableFile": "mocap",
+    "Walker": "walker",
+    "WalkerSpace": "space",
     "assess": "quality",
+    "bootstrap_weights": "metric.observers",
     "classify": "classification",
+    "clip_distance": "metric.clip_distances",
+    "comparable_walk": "metric.comparable",
+    "compare_metrics": "metric.fit_quality",
+    "compare_walks": "metric.comparison",
     "contrast": "contrasts",
     "decompose_fourier": "decomposition",
     "decompose_pca": "decomposition",
     "direction": "caricature",
-    "DiscriminantClassifier": "discriminant",
-    "DiscriminantRegressor": "discriminant",
     "draw_people": "simulation",
     "fetch_captures": "downloads",
     "figure_curves": "display.curves",
@@ -30,6 +52,7 @@ _HOME = {
     "figure_space": "display.populations",
     "figure_variance": "display.components",
     "figure_walkers": "display.bodies",
+    "find_transitions": "metric.transitions",
     "fit_folder": "study",
     "from_movement": "interchange",
     "from_pyomeca": "interchange",
@@ -39,53 +62,56 @@ _HOME = {
     "in_place": "gait",
     "is_capture": "mocap",
     "jackknife_curves": "jackknife",
-    "JOINTS": "skeleton",
+    "joint_quaternions": "metric.angles",
     "label_trajectories": "trajectories",
+    "leave_walkers_out": "metric.fit_quality",
     "load_population": "datasets",
+    "loop": "metric.loops",
     "make_stimulus": "stimulus",
     "mend": "mending",
+    "metric_named": "metric.published",
+    "motion_map": "metric.motion_maps",
+    "motion_maps": "metric.motion_maps",
     "nested_leave_one_out": "validation",
     "nested_regression": "validation",
-    "Pattern": "simulation",
+    "pair_components": "metric.clip_distances",
+    "pair_table": "metric.clip_distances",
     "permutation_test": "validation",
     "plausibility": "extrapolation",
-    "Population": "population",
     "project": "display.projection",
-    "Quality": "quality",
     "random_pattern": "simulation",
-    "RateAssumed": "mocap",
     "read_bml_axes": "bml",
     "read_mat": "mocap.mat",
     "read_mm": "walker_files",
     "read_mocap": "mocap",
     "read_walkers_mat": "walker_files",
+    "register": "metric.registration",
+    "register_by_spline": "metric.spline_warps",
     "regress": "classification",
     "regression_curves": "jackknife",
     "regression_permutation_test": "validation",
-    "Route": "simulation",
+    "retarget": "metric.retargeting",
+    "search_shape": "metric.outer_search",
+    "show": "widget",
     "simulate_captures": "simulation",
     "simulate_population": "simulation",
     "simulate_walk": "simulation",
-    "Skeleton": "skeleton",
+    "split_half": "metric.observers",
     "stance_speed": "gait",
     "stand_alone_page": "page",
-    "Stimulus": "stimulus",
     "to_movement": "interchange",
     "to_pyomeca": "interchange",
     "trait_axis": "trait_axes",
     "true_direction": "simulation",
     "true_events": "simulation",
     "truth_of": "simulation",
-    "UnitGuessed": "mocap",
-    "UnreadableFile": "mocap",
     "virtual_markers": "mocap",
-    "Walker": "walker",
     "walker_from_file": "attempts",
     "walker_from_mm": "walker_tables",
     "walker_from_table": "walker_tables",
+    "walker_measures": "measures",
     "walker_to_mm": "walker_tables",
     "walker_to_table": "walker_tables",
-    "WalkerSpace": "space",
     "with_information": "stimulus.information",
     "write_captures": "simulation",
     "write_film": "display.films",
@@ -132,7 +158,32 @@ if TYPE_CHECKING:
     from eigenwalker.interchange import to_pyomeca as to_pyomeca
     from eigenwalker.jackknife import jackknife_curves as jackknife_curves
     from eigenwalker.jackknife import regression_curves as regression_curves
+    from eigenwalker.measures import walker_measures as walker_measures
     from eigenwalker.mending import mend as mend
+    from eigenwalker.metric.angles import joint_quaternions as joint_quaternions
+    from eigenwalker.metric.clip_distances import clip_distance as clip_distance
+    from eigenwalker.metric.clip_distances import pair_components as pair_components
+    from eigenwalker.metric.clip_distances import pair_table as pair_table
+    from eigenwalker.metric.comparable import comparable_walk as comparable_walk
+    from eigenwalker.metric.comparison import compare_walks as compare_walks
+    from eigenwalker.metric.fit_quality import compare_metrics as compare_metrics
+    from eigenwalker.metric.fit_quality import leave_walkers_out as leave_walkers_out
+    from eigenwalker.metric.frame_metrics import FrameMetric as FrameMetric
+    from eigenwalker.metric.loops import Loop as Loop
+    from eigenwalker.metric.loops import loop as loop
+    from eigenwalker.metric.motion_maps import motion_map as motion_map
+    from eigenwalker.metric.motion_maps import motion_maps as motion_maps
+    from eigenwalker.metric.observers import bootstrap_weights as bootstrap_weights
+    from eigenwalker.metric.observers import split_half as split_half
+    from eigenwalker.metric.outer_search import search_shape as search_shape
+    from eigenwalker.metric.perceptual import PerceptualMetric as PerceptualMetric
+    from eigenwalker.metric.published import GroupMetric as GroupMetric
+    from eigenwalker.metric.published import metric_named as metric_named
+    from eigenwalker.metric.registration import Registration as Registration
+    from eigenwalker.metric.registration import register as register
+    from eigenwalker.metric.retargeting import retarget as retarget
+    from eigenwalker.metric.spline_warps import register_by_spline as register_by_spline
+    from eigenwalker.metric.transitions import find_transitions as find_transitions
     from eigenwalker.mocap import RateAssumed as RateAssumed
     from eigenwalker.mocap import UnitGuessed as UnitGuessed
     from eigenwalker.mocap import UnreadableFile as UnreadableFile
@@ -177,6 +228,7 @@ if TYPE_CHECKING:
     from eigenwalker.walker_tables import walker_from_table as walker_from_table
     from eigenwalker.walker_tables import walker_to_mm as walker_to_mm
     from eigenwalker.walker_tables import walker_to_table as walker_to_table
+    from eigenwalker.widget import show as show
     from eigenwalker.writing import write_mocap as write_mocap
 
 

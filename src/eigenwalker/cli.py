@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from eigenwalker import cli_data, cli_serve, cli_stimulus
+from eigenwalker import cli_compare, cli_data, cli_serve, cli_stimulus
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,6 +36,7 @@ app = typer.Typer(
 )
 app.add_typer(cli_data.app, name="data")
 app.command()(cli_serve.serve)
+app.command()(cli_compare.compare)
 app.command()(cli_stimulus.stimulus)
 
 T = TypeVar("T")
