@@ -17,7 +17,7 @@ from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.cycles import common_clock, mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames, shaped
 from eigenwalker.metric.loops import loop
-from eigenwalker.metric.motion_maps import common_names, frame_points
+from eigenwalker.metric.motion_maps import common_names, picked, points_of
 from eigenwalker.metric.published import metric_named
 from eigenwalker.metric.registration import Registration, register, register_strides
 from eigenwalker.trajectories import check_trajectories, sampling_rate
@@ -315,11 +315,8 @@ def _of_strides(
 ) -> tuple[np.ndarray, list[str]]:
     """Components of all pairs of strides, each pair in an order that its contents decide."""
     cycles = [clip.cycle for clip in clips if clip.cycle is not None]
-    markers = _common_to_all([cycle.marker.values for cycle in cycles])
-    positions = np.stack([cycle.sel(marker=markers).values for cycle in cycles])
-    points = [frame_points(cycle, metric.by, periodic=True) for cycle in cycles]
-    names = _common_to_all([each.point.values for each in points])
-    compared = np.stack([each.sel(point=names).values for each in points])
+    names, compared = _stacked(cycles, metric.by)
+    positions = compared if metric.by == "positions" else _stacked(cycles, "positions")[1]
     known = np.flatnonzero(np.isfinite(compared).all(axis=(0, 1, 3)))
     if not known.size:
         raise ValueError(f"Of the {metric.by} of {names} none is known throughout all clips.")
@@ -357,5 +354,8 @@ def _in_order_of_contents(contents: list[bytes], pairs: np.ndarray) -> np.ndarra
     return np.where(turned[:, None], pairs[:, ::-1], pairs)
 
 
-def _common_to_all(names: list[np.ndarray]) -> list[str]:
-    return reduce(common_names, [list(each) for each in names])
+def _stacked(cycles: list[xr.DataArray], by: By) -> tuple[list[str], np.ndarray]:
+    """Points that all cycles have, and their values of shape (cycle, frame, point, part)."""
+    points = [points_of(cycle, by, periodic=True) for cycle in cycles]
+    names = reduce(common_names, [each for each, _ in points])
+    return names, np.stack([picked(*each, names) for each in points])

@@ -13,7 +13,6 @@ from eigenwalker.metric.kernels import (
     compiled,
     in_threads,
     mean_along_path,
-    rows_of_map,
 )
 from eigenwalker.metric.loops import Loop
 from eigenwalker.metric.paths import SLOPE_LIMIT, closed_path
@@ -159,24 +158,47 @@ def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
     positions: (cycle, frame, point, axis); spectra: (cycle, harmonic, point, axis), complex.
     """
     n_frames, n_points = positions.shape[1], positions.shape[2]
-    weights = np.full(n_points, np.float32(1.0 / n_points), np.float32)
-    columns = np.empty((n_points, 3, n_frames), np.float32)
-    cost = np.empty((n_frames, n_frames), np.float32)
+    columns = np.empty((n_points, 3, n_frames + 4 * band + 1), positions.dtype)
+    cost = np.empty((n_frames, 4 * band + 1), positions.dtype)
     for p in range(len(pairs)):
         first, second = pairs[p, 0], pairs[p, 1]
         shift, angle = _on_the_whole(spectra[first], spectra[second], n_frames)
-        cos, sin = np.cos(angle), np.sin(angle)
-        for k in range(n_points):
-            for i in range(n_frames):
-                x, y, z = positions[second, i, k]
-                columns[k, 0, i] = cos * x - sin * y
-                columns[k, 1, i] = sin * x + cos * y
-                columns[k, 2, i] = z
-        rows_of_map(positions[first], columns, weights, 0, 1.0, 0, cost)
+        _lay_out(positions[second], angle, columns)
+        _map_near_line(positions[first], columns, (shift - 2 * band) % n_frames, cost)
         path = closed_path(cost, shift, limit, band)
         angles[p] = angle
         lengths[p] = len(path)
         steps[p, : len(path)] = path
+
+
+@compiled
+def _lay_out(positions, angle, columns):
+    """Fill in turned positions of a cycle as (point, axis, frame), beyond its end begun again."""
+    n_frames = positions.shape[0]
+    cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
+    for k in range(positions.shape[1]):
+        for i in range(n_frames):
+            x, y = positions[i, k, 0], positions[i, k, 1]
+            columns[k, 0, i] = cos * x - sin * y
+            columns[k, 1, i] = sin * x + cos * y
+            columns[k, 2, i] = positions[i, k, 2]
+        columns[k, :, n_frames:] = columns[k, :, : columns.shape[2] - n_frames]
+
+
+@compiled
+def _map_near_line(rows, columns, start, cost):
+    """Fill in mean distances of each frame from those about the frame that corresponds to it."""
+    n_frames, n_points, n_leads = rows.shape[0], rows.shape[1], cost.shape[1]
+    for i in range(n_frames):
+        first = (start + i) % n_frames
+        row = cost[i, :n_leads]
+        row[:] = 0.0
+        for k in range(n_points):
+            x, y, z = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2]
+            xs, ys, zs = columns[k, 0, first:], columns[k, 1, first:], columns[k, 2, first:]
+            for j in range(n_leads):
+                dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+                row[j] += np.sqrt(dx * dx + dy * dy + dz * dz)
 
 
 @compiled

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.metric.alignment import align_windows, aligned_map
+from eigenwalker.metric.angles import joint_quaternions
 from eigenwalker.metric.frame_metrics import (
     POSITIONS,
     By,
@@ -179,20 +180,31 @@ def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.Da
     [1000.0, 1000.0]
 
     """
-    if by == "angles":
-        from eigenwalker.metric.angles import joint_quaternions
-
-        points = joint_quaternions(clip)
-        return points.rename(dict(zip(points.dims, ("time", "point", "part"), strict=True)))
-    values = clip.values
-    if by == "velocities":
-        values = _velocities(values, sampling_rate(clip), periodic)
+    names, values = points_of(clip, by, periodic=periodic)
     return xr.DataArray(
         values,
         dims=("time", "point", "part"),
-        coords={"time": clip.time.values, "point": clip.marker.values},
+        coords={"time": clip.time.values, "point": names},
         attrs={"units": _UNITS[by]},
     )
+
+
+def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str], np.ndarray]:
+    """Return names and values of `frame_points`, unlabelled: in loops over clips labels cost."""
+    if by == "angles":
+        points = joint_quaternions(clip)
+        return points["joint"].values.tolist(), points.values
+    names, values = clip["marker"].values.tolist(), clip.values
+    if by == "velocities":
+        values = _velocities(values, sampling_rate(clip), periodic)
+    return names, values
+
+
+def picked(names: list[str], values: np.ndarray, wanted: list[str]) -> np.ndarray:
+    """Return the wanted points of an array of shape (time, point, part)."""
+    if names == wanted:
+        return np.ascontiguousarray(values)
+    return values[:, [names.index(name) for name in wanted]]
 
 
 def _velocities(values: np.ndarray, rate_hz: float, periodic: bool) -> np.ndarray:
@@ -237,11 +249,11 @@ def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames) -> _B
             f"A map of {a.sizes['time']} x {b.sizes['time']} frames would hold {n_cells:.2g} "
             f"cells, more than {MOST_CELLS:.2g}. Take parts of the clips, or every n-th frame."
         )
-    points_a = frame_points(a, metric.by)
-    points_b = points_a if b is a else frame_points(b, metric.by)
-    names = common_names(points_a.point.values, points_b.point.values)
-    values_a = np.ascontiguousarray(points_a.sel(point=names).values)
-    values_b = values_a if b is a else np.ascontiguousarray(points_b.sel(point=names).values)
+    points_a = points_of(a, metric.by, periodic=False)
+    points_b = points_a if b is a else points_of(b, metric.by, periodic=False)
+    names = common_names(points_a[0], points_b[0])
+    values_a = picked(*points_a, names)
+    values_b = values_a if b is a else picked(*points_b, names)
     return _Both(a, b, names, values_a, values_b)
 
 

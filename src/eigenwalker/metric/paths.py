@@ -169,32 +169,35 @@ def _traced(run):
 def closed_path(cost, shift, limit, band):
     """Path once round two cycles of as many frames each, near the line on which both advance alike.
 
-    Nothing marks the beginning of a cycle, so a first path is laid from where we happen to begin;
-    where it is half a cycle later, free of both ends, the second one begins and ends.
+    Nothing marks the beginning of a cycle, so a first path, of every second frame, is laid from
+    where we happen to begin; where it is half a cycle later, free of both ends, the second one
+    begins and ends.
 
-    Parameters: cost (frame, other frame) of both cycles; the shift of the second that suits best
-    on the whole; the limits of slope and of the way from that line, in frames.
+    Parameters: the shift of the second cycle that suits best on the whole; cost[frame, lead],
+    where the second is ahead of that by ``lead - 2 * band`` frames; the limit of slope; the band
+    about the line in which each path keeps. The number of frames divides by 4.
     """
     n = cost.shape[0]
-    first = limited_path(_unrolled(cost, 0, shift, band), limit, band)
+    coarse = limited_path(_unrolled(cost, 0, 2 * band, band // 2, 2), limit, band // 2)
     middle = 0
-    while first[middle, 0] < n // 2:
+    while coarse[middle, 0] < n // 4:
         middle += 1
-    i, j = n // 2, (first[middle, 1] + shift) % n
-    path = limited_path(_unrolled(cost, i, j, band), limit, band)[:-1]
+    begin, lead = n // 2, 2 * (coarse[middle, 1] - coarse[middle, 0])
+    path = limited_path(_unrolled(cost, begin, 2 * band + lead, band, 1), limit, band)[:-1]
     for step in range(len(path)):
-        path[step, 0] = (path[step, 0] + i) % n
-        path[step, 1] = (path[step, 1] + j) % n
+        path[step, 0] = (path[step, 0] + begin) % n
+        path[step, 1] = (path[step, 1] + begin + shift + lead) % n
     return path
 
 
 @compiled
-def _unrolled(cost, first, second, band):
-    """Map of two cycles from given frames on to the same again, within a band on the diagonal."""
+def _unrolled(cost, begin, lead, band, every):
+    """Map of two cycles, of every n-th frame from one on to the same again, within a band."""
     n = cost.shape[0]
-    piece = np.full((n + 1, n + 1), np.inf)
-    for i in range(n + 1):
-        row = cost[(first + i) % n]
-        for j in range(max(0, i - band), min(n + 1, i + band + 1)):
-            piece[i, j] = row[(second + j) % n]
+    size = n // every + 1
+    piece = np.full((size, size), np.inf, cost.dtype)
+    for i in range(size):
+        row = cost[(begin + i * every) % n]
+        for j in range(max(0, i - band), min(size, i + band + 1)):
+            piece[i, j] = row[lead + (j - i) * every]
     return piece

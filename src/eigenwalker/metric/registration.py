@@ -18,8 +18,9 @@ from eigenwalker.metric.motion_maps import (
     SAME_RATE,
     common_names,
     common_positions,
-    frame_points,
     motion_map,
+    picked,
+    points_of,
 )
 from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
 from eigenwalker.metric.turns_between import quaternions_at, vectors_of
@@ -84,13 +85,10 @@ class Registration:
             Points that are missing anywhere are left out.
 
         """
-        points = [
-            frame_points(clip, by, periodic=self.periodic) for clip in (self.first, self.second)
-        ]
-        names = common_names(points[0].point.values, points[1].point.values)
+        points = [points_of(clip, by, periodic=self.periodic) for clip in (self.first, self.second)]
+        names = common_names(points[0][0], points[1][0])
         a, b = (
-            clip.sel(point=names).values[frames]
-            for clip, frames in zip(points, self.path.T, strict=True)
+            picked(*each, names)[frames] for each, frames in zip(points, self.path.T, strict=True)
         )
         if by != "angles":
             moves = self.alignment.shifts if by == "positions" else 0 * self.alignment.shifts

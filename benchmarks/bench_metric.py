@@ -1,0 +1,130 @@
+"""Motion maps, paths through them, and all pairs of 21 clips.
+
+Beside what one would reach for: scipy's cdist joint by joint, and librosa's dynamic time warping.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import librosa
+import numpy as np
+from scipy.spatial.distance import cdist
+from side_by_side import machine, print_table, seconds
+
+import eigenwalker as ew
+from eigenwalker.metric.clip_distances import pair_table, prepare
+from eigenwalker.metric.frame_metrics import FrameMetric, Shape, shaped
+from eigenwalker.metric.kernels import n_threads, point_map
+from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
+
+N_FRAMES, N_JOINTS, N_CLIPS = 1400, 15, 21
+ALIKE = np.full(N_JOINTS, 1 / N_JOINTS)
+METRICS: dict[Shape, FrameMetric] = {
+    "absolute": FrameMetric(),
+    "squared": FrameMetric(shape="squared"),
+    "sigmoid": FrameMetric(shape="sigmoid", scale=100.0),
+    "power": FrameMetric(shape="power", exponent=0.3),
+}
+
+
+def clips() -> list[np.ndarray]:
+    return [
+        ew.simulate_walk(seed=seed, duration_s=N_FRAMES / 120, truth=False).values
+        for seed in (1, 2)
+    ]
+
+
+def by_cdist(a: np.ndarray, b: np.ndarray, metric: FrameMetric) -> np.ndarray:
+    return sum(
+        (w * shaped(metric, cdist(a[:, k], b[:, k])) for k, w in enumerate(ALIKE)),
+        np.zeros((len(a), len(b))),
+    )
+
+
+def ours(a: np.ndarray, b: np.ndarray, metric: FrameMetric) -> np.ndarray:
+    parameter = metric.scale or metric.exponent or 1.0
+    return point_map(a, b, ALIKE, shape=metric.shape, parameter=parameter)
+
+
+def by_librosa(cost: np.ndarray) -> np.ndarray:
+    return librosa.sequence.dtw(C=cost)[1][::-1]
+
+
+def maps() -> None:
+    a, b = clips()
+    for shape, metric in METRICS.items():
+        np.testing.assert_allclose(ours(a, b, metric), by_cdist(a, b, metric), atol=1e-6, rtol=1e-9)
+        ways = {
+            "cdist, joint by joint": lambda metric=metric: by_cdist(a, b, metric),
+            "point_map": lambda metric=metric: ours(a, b, metric),
+            "point_map, a clip with itself": lambda metric=metric: ours(a, a, metric),
+        }
+        title = f"Map of {N_FRAMES} x {N_FRAMES} frames, {N_JOINTS} joints, {shape}"
+        aims = {} if shape == "power" else {"point_map": 8}
+        print_table(title, seconds(ways, rounds=7), aims=aims)
+
+
+def paths() -> None:
+    a, b = clips()
+    for n_frames in (120, 300, 1400):
+        cost = ours(a[:n_frames], b[:n_frames], METRICS["absolute"])
+        sums = [cost[tuple(way(cost).T)].sum() for way in (by_librosa, least_cost_path)]
+        np.testing.assert_allclose(*sums)
+        ways = {
+            "librosa": lambda cost=cost: by_librosa(cost),
+            "least_cost_path": lambda cost=cost: least_cost_path(cost),
+            f"the same, slope_limit={SLOPE_LIMIT}": lambda cost=cost: least_cost_path(
+                cost, slope_limit=SLOPE_LIMIT
+            ),
+        }
+        times = seconds(ways, rounds=15)
+        print_table(
+            f"Path through {n_frames} x {n_frames} cells", times, aims={"least_cost_path": 5}
+        )
+
+
+def mean_along(cost: np.ndarray, path: np.ndarray) -> float:
+    return float(cost[path[:, 0], path[:, 1]].mean())
+
+
+def all_pairs() -> None:
+    walks = {f"walk {seed}": ew.simulate_walk(seed=seed, truth=False) for seed in range(N_CLIPS)}
+    prepared = {name: prepare(walk) for name, walk in walks.items()}
+    cycles = [clip.cycle.values for clip in prepared.values() if clip.cycle is not None]
+    pairs = list(combinations(cycles, 2))
+    metric = METRICS["absolute"]
+
+    def peer() -> list[float]:
+        found = []
+        for a, b in pairs:
+            cost = by_cdist(a, b, metric)
+            found.append(mean_along(cost, by_librosa(cost)))
+        return found
+
+    def same_task() -> list[float]:
+        found = []
+        for a, b in pairs:
+            cost = ours(a, b, metric)
+            found.append(mean_along(cost, least_cost_path(cost)))
+        return found
+
+    np.testing.assert_allclose(peer(), same_task(), rtol=1e-9)
+    ways = {
+        "cdist and librosa": peer,
+        "point_map and least_cost_path, one thread": same_task,
+        "pair_table, also phase and heading": lambda: pair_table(prepared),
+    }
+    title = f"All {len(pairs)} pairs of {N_CLIPS} strides of {len(cycles[0])} frames"
+    print_table(title, seconds(ways, rounds=9), aims={"pair_table, also phase and heading": 8})
+    ways = {"in_place": lambda: [ew.in_place(walk) for walk in walks.values()]}
+    ways["prepare: in_place, loop, common clock"] = lambda: [prepare(w) for w in walks.values()]
+    title = f"Making {N_CLIPS} walks of 12 s ready to be compared, once"
+    print_table(title, seconds(ways, rounds=3), aims={})
+
+
+if __name__ == "__main__":
+    print(f"Metric ({machine()}, {n_threads()} threads)")
+    maps()
+    paths()
+    all_pairs()
