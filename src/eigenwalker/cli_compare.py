@@ -88,6 +88,7 @@ def compare(
 
 def _compare_two(first: Path, second: Path, output: Path | None, metric: str, told: dict) -> None:
     from eigenwalker.metric.comparison import compare_walks
+    from eigenwalker.metric.published import PUBLISHED
     from eigenwalker.report.compared_walks import with_like_rotations
     from eigenwalker.report.two_walks import in_words, reference_pairs, write_two_walks
 
@@ -95,7 +96,11 @@ def _compare_two(first: Path, second: Path, output: Path | None, metric: str, to
     a, b = with_like_rotations({"a": _prepared(first, told), "b": _prepared(second, told)}).values()
     found = compare_walks(a, b, metric=metric)
     with _bar("Simulated people to compare with") as progress:
-        reference = reference_pairs(mannequin=told["mannequin"], progress=progress)
+        reference = reference_pairs(
+            [metric] if output is None else list(PUBLISHED),
+            mannequin=told["mannequin"],
+            progress=progress,
+        )
     print("\n".join(in_words(found, names, reference)))
     if output is not None:
         print(f"Report: {write_two_walks(output, found, names, reference)}")

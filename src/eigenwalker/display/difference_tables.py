@@ -54,7 +54,7 @@ def figure_difference_table(
     """
     values, order = np.asarray(table, dtype=float), np.asarray(order, dtype=int)
     side = float(np.clip(0.13 * len(order), 2.4, 6.2))
-    figure = new_figure(side + 1.4, side + 1.0)
+    figure = new_figure(side + 2.1, side + 1.1)
     axes = panels(figure, 1, 1)[0][0]
     drawn = axes.imshow(values[np.ix_(order, order)], cmap="gray", interpolation="nearest")
     if clusters is not None:

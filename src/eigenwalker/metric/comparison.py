@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from eigenwalker.metric.clip_distances import (
     Clip,
     PreparedClip,
     clip_components,
-    pair_components,
+    pair_distances,
     prepare,
     registration_of,
 )
@@ -128,13 +128,20 @@ def _apart(a: PreparedClip, b: PreparedClip) -> pd.DataFrame:
     return found.loc[[group for group in GROUPS if group in found.index]]
 
 
-def all_metrics(clips: Mapping[str, Clip], *, progress: Progress | None = None) -> pd.DataFrame:
-    """Return the distances of all pairs by each published metric.
+def by_metric(
+    clips: Mapping[str, Clip],
+    metrics: Sequence[str] = tuple(PUBLISHED),
+    *,
+    progress: Progress | None = None,
+) -> pd.DataFrame:
+    """Return the distances of all pairs by several published metrics.
 
     Parameters
     ----------
     clips : mapping of str to DataArray or PreparedClip
         Two or more walks by name.
+    metrics : sequence of str
+        Names of published metrics; left out, all.
     progress : callable, optional
         Called with the number of metrics that are done, and of all.
 
@@ -146,12 +153,10 @@ def all_metrics(clips: Mapping[str, Clip], *, progress: Progress | None = None) 
     """
     prepared = {name: prepare(clip) for name, clip in clips.items()}
     columns: dict[str, pd.Series] = {}
-    for done, (name, metric) in enumerate(PUBLISHED.items(), start=1):
-        points = pair_components(prepared, metric=metric)
-        weights = metric.weights_for([str(point) for point in points.columns])
-        columns[name] = pd.Series(points.to_numpy() @ weights, index=points.index)
+    for done, name in enumerate(metrics, start=1):
+        columns[name] = pair_distances(prepared, metric=name)
         if progress is not None:
-            progress(done, len(PUBLISHED))
+            progress(done, len(metrics))
     return pd.DataFrame(columns)
 
 

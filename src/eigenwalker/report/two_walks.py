@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +19,12 @@ from eigenwalker.display.difference_maps import (
 )
 from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import PreparedClip
-from eigenwalker.metric.comparison import PLAIN, Comparison, all_metrics, share_nearer
+from eigenwalker.metric.comparison import PLAIN, Comparison, by_metric, share_nearer
 from eigenwalker.metric.loops import Loop, loop
 from eigenwalker.metric.motion_maps import motion_map
-from eigenwalker.metric.published import PUBLISHED, GroupMetric
+from eigenwalker.metric.published import GroupMetric
 from eigenwalker.metric.transitions import find_transitions
-from eigenwalker.report.compared_walks import walks_of_population, without_rotations
+from eigenwalker.report.compared_walks import Walks, walks_of_population, without_rotations
 from eigenwalker.report.content import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.page import write_report
 
@@ -44,7 +46,9 @@ SCALE_IS_UNKNOWN = (
 )
 
 
-def reference_pairs(*, mannequin: bool = True, progress: Progress | None = None) -> pd.DataFrame:
+def reference_pairs(
+    metrics: Sequence[str], *, mannequin: bool = True, progress: Progress | None = None
+) -> pd.DataFrame:
     """Return the distances of all pairs of the built-in, simulated people by each metric.
 
     Something to hold a number against: how different people are from each other who all walk at
@@ -52,23 +56,24 @@ def reference_pairs(*, mannequin: bool = True, progress: Progress | None = None)
 
     Parameters
     ----------
+    metrics : sequence of str
+        Names of published metrics.
     mannequin : bool
         Whether they too are shown on the neutral mannequin.
     progress : callable, optional
-        Called with the number of steps that are done, and of all.
+        Called with the number of metrics that are done, and of all.
 
     Returns
     -------
     DataFrame of pairs by metrics
 
     """
-    people = load_population()
-    total = len(people) + len(PUBLISHED)
-    told = progress or (lambda done, of: None)
-    walks = walks_of_population(
-        people, mannequin=mannequin, progress=lambda done, _: told(done, total)
-    )
-    return all_metrics(walks.clips, progress=lambda done, _: told(len(people) + done, total))
+    return by_metric(_simulated_people(mannequin).clips, metrics, progress=progress)
+
+
+@cache
+def _simulated_people(mannequin: bool) -> Walks:
+    return walks_of_population(load_population(), mannequin=mannequin)
 
 
 def write_two_walks(
@@ -156,7 +161,8 @@ def _plain(group: object) -> str:
 def _how_different(
     found: Comparison, names: tuple[str, str], reference: pd.DataFrame
 ) -> list[Block]:
-    ours = all_metrics(without_rotations({"a": found.a, "b": found.b})).iloc[0]
+    pair = without_rotations({"a": found.a, "b": found.b})
+    ours = by_metric(pair, [str(metric) for metric in reference]).iloc[0]
     rows = [
         [metric, float(value), f"{100 * share_nearer(value, reference[metric].to_numpy()):.0f} %"]
         for metric, value in ours.items()
@@ -322,7 +328,8 @@ def _passing(found: Comparison, names: tuple[str, str]) -> list[Block]:
 def _shown(clip: xr.DataArray, length_s: float) -> xr.DataArray:
     """The first seconds of a clip at the rate of maps."""
     time = clip.time.values
-    clock = np.arange(time[0], min(time[-1], time[0] + length_s), 1 / MAP_HZ)
+    n_frames = int(min(time[-1] - time[0], length_s) * MAP_HZ)
+    clock = time[0] + np.arange(n_frames) / MAP_HZ
     return clip.drop_vars("rotation", errors="ignore").interp(time=clock)
 
 

@@ -1,0 +1,189 @@
+"""``eigenwalker compare``, as a person types it."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import typer
+
+from eigenwalker import cli
+from eigenwalker.cli_compare import compare
+from eigenwalker.population import Population
+from eigenwalker.simulation import simulate_population, simulate_walk
+from eigenwalker.writing import write_mocap
+
+Typed = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def run(monkeypatch, capsys) -> Typed:
+    """Type a command; get its exit code, what it printed, and its complaint."""
+    app = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False)
+    app.command()(compare)
+    monkeypatch.setattr(cli, "app", app)
+
+    def typed(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return typed
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """Two walks of each of two people, the second time from elsewhere in the stride."""
+    place = tmp_path_factory.mktemp("walks")
+    for person in (1, 2):
+        walk = simulate_walk(seed=person, duration_s=6.0, rate_hz=60, markers="skin")
+        write_mocap(walk.isel(time=slice(None, 300)), place / f"person{person}_first.c3d")
+        write_mocap(walk.isel(time=slice(37, None)), place / f"person{person}_second.c3d")
+    return place
+
+
+@pytest.fixture(scope="module")
+def people(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("people") / "people.nc"
+    simulate_population(3, 3, seed=2).save(path)
+    return path
+
+
+def difference(said: str) -> float:
+    found = re.search(r"Difference \(\S+\): ([\d.e+-]+)[,.]", said)
+    assert found, said
+    return float(found[1].rstrip("."))
+
+
+def test_two_walks_get_a_number_where_they_differ_and_a_report(run, folder, tmp_path):
+    one, other = folder / "person1_first.c3d", folder / "person2_first.c3d"
+    code, said, complaint = run(one, other, "-o", tmp_path / "report")
+    assert code == 0, complaint
+    assert difference(said) > 0
+    assert re.search(r"more than between \d+ % of pairs of 40 simulated people", said)
+    assert re.search(r"Of the difference are \w+( \w+)? \d+ %", said)
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert page.count("<img") >= 5  # bodies, shares, two of maps, transitions
+    assert "positions-sigmoid" in page
+    assert "mannequin" in page
+
+
+def test_the_same_person_is_nearer_than_another(run, folder):
+    mine = run(folder / "person1_first.c3d", folder / "person1_second.c3d")[1]
+    others = run(folder / "person1_first.c3d", folder / "person2_second.c3d")[1]
+    assert difference(mine) < 0.2 * difference(others)
+
+
+def test_a_walk_and_itself_do_not_differ(run, folder):
+    code, said, _ = run(folder / "person1_first.c3d", folder / "person1_first.c3d")
+    assert code == 0
+    assert difference(said) == 0
+    assert "do not differ" in said
+
+
+def test_bodies_count_only_when_asked_for(run, folder):
+    walks = folder / "person1_first.c3d", folder / "person2_first.c3d"
+    neutral = difference(run(*walks)[1])
+    own = difference(run(*walks, "--own-bodies")[1])
+    assert own != neutral
+
+
+def test_all_pairs_of_a_folder_become_a_table_and_a_report(run, folder, tmp_path):
+    pattern = "(?P<who>person[0-9])"
+    code, said, complaint = run(
+        folder, "-o", tmp_path / "pairs", "--trait-from-name", pattern, "--metric", "kovar"
+    )
+    assert code == 0, complaint
+    table = pd.read_csv(tmp_path / "pairs" / "differences.csv", index_col="walk")
+    assert table.shape == (4, 4)
+    assert (table.to_numpy() == table.to_numpy().T).all()
+    assert "6 pairs of 4 walks by kovar" in said
+    assert re.search(r"person1 .*2 .* 1\n", said)  # all have their own person as the nearest
+    assert (tmp_path / "pairs" / "report.html").read_text().count("<img") == 2
+
+
+def test_nearest_walks_to_a_query_come_in_order(run, folder):
+    code, said, _ = run(folder, "--nearest", folder / "person2_first.c3d")
+    assert code == 0
+    names = re.findall(r"person\d_\w+\.c3d$", said, flags=re.MULTILINE)
+    assert names[:2] == ["person2_first.c3d", "person2_second.c3d"]
+    assert len(names) == 4
+
+
+def test_captures_that_cannot_be_compared_are_said_and_the_others_compared(run, folder, tmp_path):
+    mixed = tmp_path / "mixed"
+    mixed.mkdir()
+    for path in folder.glob("*_first.c3d"):
+        (mixed / path.name).write_bytes(path.read_bytes())
+    (mixed / "broken.c3d").write_bytes(b"no capture")
+    code, said, complaint = run(mixed)
+    assert code == 1
+    assert "1 pairs of 2 walks" in said
+    assert "broken.c3d" in complaint
+
+
+def test_all_pairs_of_a_population_by_trait(run, people, tmp_path):
+    code, said, complaint = run(people, "--trait", "sex", "-o", tmp_path)
+    assert code == 0, complaint
+    assert "15 pairs of 6 walks" in said
+    assert re.search(r"female +3 ", said)
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):
+    population = Population.load(people)
+    traits = population.traits.assign(flag=["", "hops", "", "", "", ""])
+    Population(population.walkers, traits).save(tmp_path / "flagged.nc")
+    code, said, complaint = run(tmp_path / "flagged.nc")
+    assert (code, "of 5 walks" in said, "walker 1: flagged" in complaint) == (1, True, True)
+    code, said, _ = run(tmp_path / "flagged.nc", "--with-flagged")
+    assert (code, "of 6 walks" in said) == (0, True)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["{folder}/person1_first.c3d"], "name a second one"),
+        (["{folder}", "--metric", "cubed"], "positions-sigmoid"),
+        (["{folder}", "--trait", "sex"], "--trait-from-name"),
+        (["{people}", "--trait", "shoe"], "no trait 'shoe'"),
+        (["{folder}/person1_first.c3d", "{folder}"], "is a folder"),
+        (["{folder}/person1_first.c3d", "{folder}/nobody.c3d"], "nobody.c3d"),
+        (["{folder}/a.c3d", "{folder}/b.c3d", "--nearest", "c.c3d"], "among many walks"),
+    ],
+)
+def test_what_makes_no_sense_is_said_in_a_sentence(run, folder, people, words, said):
+    code, _, complaint = run(*(word.format(folder=folder, people=people) for word in words))
+    assert code == 2
+    assert said in complaint
+
+
+@pytest.mark.filterwarnings("ignore::eigenwalker.mocap.UnitGuessed")
+def test_captures_of_different_formats_are_compared(run, captures, tmp_path):
+    walks = captures / "cmu" / "02_01.c3d", captures / "cmu" / "12_01.bvh"
+    code, said, complaint = run(*walks, "--metric", "angles-absolute", "-o", tmp_path)
+    assert code == 0, complaint
+    assert "thigh" in said
+    assert "clavicle too, which the walks do not show" in said
+
+
+def test_styles_are_nearer_to_themselves(run, captures, tmp_path):
+    for style in ("feminine", "active", "normal"):
+        for number in (1, 2, 3):
+            name = f"dataset-2_walk_{style}_00{number}.bvh"
+            (tmp_path / name).symlink_to(captures / "bandai-namco" / name)
+    pattern = "walk_(?P<style>[a-z]+)_"
+    code, said, complaint = run(tmp_path, "--unit", "cm", "--trait-from-name", pattern)
+    assert code == 0, complaint
+    rows = re.findall(r"^(\w+) +3 +([\d.]+) +([\d.]+)", said, flags=re.MULTILINE)
+    assert [style for style, *_ in rows] == ["active", "feminine", "normal"]
+    assert all(float(within) < float(others) for _, within, others in rows)
