@@ -17,7 +17,10 @@ export type { Box } from "./staging";
 export interface Hooks {
   /** It was turned by dragging. */
   turned?(azimuth_deg: number, elevation_deg: number): void;
-  /** A frame was drawn; where in its stride the first walker is, from 0 to below 1. */
+  /**
+   * Where in its stride the first walker is, from 0 to below 1, some times a second: to lay out a
+   * page for each frame would cost more than to draw the walker.
+   */
   ticked?(cycle: number): void;
   /** One of several was tapped: its number among the model's walkers. */
   picked?(known: number): void;
@@ -32,6 +35,7 @@ export interface Hooks {
 const DEGREES_PER_PX = 0.5;
 /** Finer than this no dot looks better, and a phone gets warm. */
 const MOST_FINE = 2;
+const TICK_S = 0.06;
 /** A screen that stood still meanwhile does not make up for it. */
 const LONGEST_FRAME_S = 0.1;
 /** How soon a stage that was thrown comes to rest, and when it has. */
@@ -79,6 +83,7 @@ export class Stage {
   #asked = false;
   #stop: (() => void) | null = null;
   #time = 0;
+  #ticked = -Infinity;
   #inSight = true;
   #dirty = true;
   /** Turned by hand: the state follows, and is not heard until it has. */
@@ -221,9 +226,15 @@ export class Stage {
     if (state.playing || this.#dirty) {
       this.#dirty = false;
       this.#act.draw(this.#context, this.#time, this.#fine);
-      this.#hooks.ticked?.(this.cycle);
+      this.#tick(state.playing);
     }
     return state.playing || slides || this.#dirty;
+  }
+
+  #tick(playing: boolean): void {
+    if (playing && Math.abs(this.#time - this.#ticked) < TICK_S) return;
+    this.#ticked = this.#time;
+    this.#hooks.ticked?.(this.cycle);
   }
 
   /** Turn on after a throw, slower and slower; whether it still turns. */
