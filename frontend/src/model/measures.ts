@@ -20,21 +20,22 @@ export type MeasureName = (typeof MEASURES)[number]["name"];
 
 /** The measures of a walker; NaN where it lacks the markers. */
 export function measuresOf(walker: Walker): Record<MeasureName, number> {
-  const path = (name: string, times: readonly number[]): Path => pathOf(walker, name, times);
-  const stride = Array.from({ length: N_SAMPLES }, (_, i) => i / N_SAMPLES);
-  const strides = Array.from({ length: N_SAMPLES }, (_, i) => (2 * i) / (N_SAMPLES - 1));
+  const stride = sinesOf(walker, Array.from({ length: N_SAMPLES }, (_, i) => i / N_SAMPLES));
+  const strides = sinesOf(walker, Array.from({ length: N_SAMPLES }, (_, i) => (2 * i) / (N_SAMPLES - 1)));
   const rateHz = ((N_SAMPLES - 1) * walker.frequency_hz) / 2;
-  const ankles = ["left_ankle", "right_ankle"].map((name) => path(name, strides));
   const trunk = walker.markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
-  const shoulders = ["left_shoulder", "right_shoulder"];
-  const sway = rangeOf(shoulders.map((name) => path(name, stride).y));
-  const bounce = rangeOf(trunk.map((name) => path(name, stride).z));
+  const ankles = ["left_ankle", "right_ankle"].map((name): Path => {
+    const [x, y, z] = [0, 1, 2].map((axis) => along(walker, name, axis, strides));
+    return { x: x!, y: y!, z: z! };
+  });
+  const range = (names: readonly string[], axis: number): number =>
+    rangeOf(names.map((name) => along(walker, name, axis, stride)));
   return {
     shoulder_width_mm: Math.hypot(...apart(walker, "shoulder")),
     hip_width_mm: Math.hypot(...apart(walker, "hip")),
     elbow_distance_mm: apart(walker, "elbow")[1]!,
-    lateral_sway_mm: sway,
-    vertical_movement_mm: bounce,
+    lateral_sway_mm: range(["left_shoulder", "right_shoulder"], 1),
+    vertical_movement_mm: range(trunk, 2),
     frequency_hz: walker.frequency_hz,
     stride_length_mm: stanceSpeed(ankles, rateHz) / walker.frequency_hz,
   };
@@ -46,24 +47,28 @@ function apart({ markers, p0 }: Walker, part: string): number[] {
   return [0, 1, 2].map((axis) => (left?.[axis] ?? NaN) - (right?.[axis] ?? NaN));
 }
 
-/** Where one marker is at some times, in cycles. */
-function pathOf({ markers, p0, p, harmonics, phases }: Walker, name: string, times: readonly number[]): Path {
+/** The sine that each posture rides on, at some times in cycles. */
+function sinesOf({ harmonics, phases }: Walker, times: readonly number[]): Float64Array[] {
+  return harmonics.map((harmonic, i) =>
+    Float64Array.from(times, (time) => Math.sin(harmonic * 2 * Math.PI * time + phases[i]!)),
+  );
+}
+
+/** Where one marker is on one axis, moment by moment. */
+function along({ markers, p0, p }: Walker, name: string, axis: number, sines: readonly Float64Array[]): Float64Array {
   const marker = markers.indexOf(name);
-  const along = (axis: number): Float64Array =>
-    Float64Array.from(times, (time) =>
-      p.reduce(
-        (sum, posture, i) =>
-          sum + Math.sin(harmonics[i]! * 2 * Math.PI * time + phases[i]!) * (posture[marker]?.[axis] ?? NaN),
-        p0[marker]?.[axis] ?? NaN,
-      ),
-    );
-  return { x: along(0), y: along(1), z: along(2) };
+  const path = new Float64Array(N_SAMPLES).fill(p0[marker]?.[axis] ?? NaN);
+  sines.forEach((sine, i) => {
+    const far = p[i]![marker]?.[axis] ?? NaN;
+    for (let moment = 0; moment < N_SAMPLES; moment++) path[moment]! += sine[moment]! * far;
+  });
+  return path;
 }
 
 /** How far the middle of some paths moves. */
 function rangeOf(paths: readonly Float64Array[]): number {
-  const middles = [...paths[0]!.keys()].map(
-    (moment) => paths.reduce((sum, path) => sum + path[moment]!, 0) / paths.length,
+  const middles = paths[0]!.map(
+    (_, moment) => paths.reduce((sum, path) => sum + path[moment]!, 0) / paths.length,
   );
   return Math.max(...middles) - Math.min(...middles);
 }
