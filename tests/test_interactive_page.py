@@ -5,24 +5,39 @@ from __future__ import annotations
 import gzip
 import json
 import shutil
+import threading
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import av
 import numpy as np
 import pytest
+import uvicorn
 from matplotlib.image import imread
 
 import eigenwalker as ew
 from eigenwalker.page.interactive import interactive_page
 from eigenwalker.page.model import page_model
+from eigenwalker.server import make_app
+from eigenwalker.server.running import address_of, listening_socket
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, ConsoleMessage, Locator
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 AXE = Path(__file__).parents[1] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "phone": (390, 844), "small": (360, 640)}
+DROP = """([name, text]) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], name));
+    for (const type of ["dragover", "drop"]) {
+        document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true }));
+    }
+}"""
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None, reason="chromium is not installed, so nobody visits the page"
 )
@@ -41,17 +56,23 @@ def address(model: dict, tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[playwright.Browser]:
+def browser() -> Iterator[Browser]:
     with playwright.sync_playwright() as starting:
         started = starting.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         yield started
         started.close()
 
 
+def said_in(address: str) -> dict[str, str]:
+    """What the end of an address says, by its short names."""
+    parts = (part.partition("=") for part in address.split("&") if part)
+    return {name: said for name, _, said in parts}
+
+
 class Visit:
     """A visitor's page, and what was amiss on it."""
 
-    def __init__(self, browser: playwright.Browser, address: str, size: str, **options) -> None:
+    def __init__(self, browser: Browser, address: str, size: str, **options) -> None:
         width, height = SIZES[size]
         self.context = browser.new_context(
             viewport={"width": width, "height": height}, accept_downloads=True, **options
@@ -65,11 +86,11 @@ class Visit:
         self.page.goto(address)
         self.page.locator("#hero input").wait_for()
 
-    def _heard(self, message: playwright.ConsoleMessage) -> None:
+    def _heard(self, message: ConsoleMessage) -> None:
         if message.type in ("error", "warning"):
             self.amiss.append(message.text)
 
-    def open(self, title: str) -> playwright.Locator:
+    def open(self, title: str) -> Locator:
         section = self.page.locator("details", has=self.page.locator(f"h2:text-is('{title}')"))
         if section.get_attribute("open") is None:
             section.locator("summary").click()
@@ -89,7 +110,7 @@ class Visit:
         """What the address says, once it has followed."""
         self.page.wait_for_timeout(320)  # the address follows a moment later
         said = self.page.evaluate("location.hash.slice(1)")
-        return dict(part.partition("=")[::2] for part in said.split("&") if part)
+        return said_in(said)
 
     def picture(self) -> str:
         """What the stage draws, two frames from now."""
@@ -99,7 +120,7 @@ class Visit:
 
 
 @pytest.fixture
-def visit(browser: playwright.Browser, address: str) -> Iterator:
+def visit(browser: Browser, address: str) -> Iterator:
     visits: list[Visit] = []
 
     def begin(state: str = "", size: str = "desktop", **options) -> Visit:
@@ -226,7 +247,7 @@ def test_an_address_tells_all_controls_where_they_stand(visit):
         "t=sex:-2,happy:3&k=m&p=dynamics&b=sex:1.5&s=1,0,1,-1&az=90&eye=1&trails=1&dark=0&x=invert"
     )
     there = visit(state)
-    assert there.state() == dict(part.partition("=")[::2] for part in state.split("&"))
+    assert there.state() == said_in(state)
     assert there.page.locator("html").get_attribute("data-theme") == "light"
     assert there.page.get_by_role("slider", name="Happy").input_value() == "3"
     assert there.page.get_by_role("radio", name="Side", exact=True).is_checked()
@@ -291,7 +312,7 @@ def test_a_file_that_cannot_be_read_is_told_and_nothing_is_lost(visit):
 def test_a_dropped_model_is_walked(visit):
     there = visit("t=sex:2")
     other = page_model(ew.simulate_population(n_women=4, n_men=3, seed=5), traits=["sex"])
-    there.bring("model.json", json.dumps(other).encode())
+    there.page.evaluate(DROP, ["model.json", json.dumps(other)])
     there.page.get_by_text("7 simulated walkers").first.wait_for()
     assert there.page.get_by_role("slider", name="Weight").count() == 0
     assert there.page.get_by_role("slider", name="Sex").input_value() == "0"
@@ -353,6 +374,34 @@ def test_the_python_that_is_copied_makes_the_walker_that_is_seen(visit):
     np.testing.assert_allclose(made["walker"].p, seen.p, atol=1e-4)
 
 
+@pytest.fixture(scope="module")
+def served() -> Iterator[str]:
+    """Address of a page with Python behind it."""
+    app = make_app(ew.simulate_population(n_women=4, n_men=4, seed=3))
+    with listening_socket("127.0.0.1", None) as bound:
+        server = uvicorn.Server(uvicorn.Config(app, log_level="error", ws="none"))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [bound]})
+        thread.start()
+        yield address_of(bound, "127.0.0.1")
+        server.should_exit = True
+        thread.join()
+
+
+def test_a_capture_walks_on_the_page_that_is_served(browser, served, tmp_path):
+    there = Visit(browser, served, "desktop")
+    walk = ew.simulate_walk(seed=5, sex="male", duration_s=6)
+    there.page.locator("#file").set_input_files(ew.write_mocap(walk, tmp_path / "mine.c3d"))
+    told = there.page.get_by_role("status").get_by_text("the sines of this walker hold")
+    told.wait_for(timeout=90_000)
+    assert there.state()["w"] == "own"
+    assert "mine.c3d" in there.page.locator("#people").inner_text()
+    there.bring("broken.c3d", b"no capture at all")
+    there.page.get_by_role("alert").get_by_text("broken.c3d").wait_for(timeout=90_000)
+    assert there.state()["w"] == "own"
+    assert {url for url in there.asked if not url.startswith(served)} == set()
+    there.context.close()
+
+
 def test_nothing_hangs_over_the_edge_and_the_large_slider_is_in_reach(visit):
     there = visit("still&show=side&x=mask,scramble,limb_dots")
     there.unfold()
@@ -375,14 +424,13 @@ def test_an_audit_of_accessibility_finds_nothing_serious(visit):
     there.bring("a.c3d", b"no capture")
     there.page.get_by_role("alert").get_by_text("serve").wait_for()
     there.page.evaluate(AXE.read_text("utf-8"))
-    for size in ("desktop", "phone"):
+    for size, theme in (("desktop", "Light page"), ("phone", "Dark page")):
         there.page.set_viewport_size(dict(zip(("width", "height"), SIZES[size], strict=True)))
-        for theme in ("Light page", "Dark page"):
-            there.page.get_by_role("button", name=theme).click()
-            there.page.wait_for_timeout(200)
-            found = there.page.evaluate("axe.run()")
-            assert _serious(found) == [], (size, theme)
-            assert len(found["passes"]) > 20
+        there.page.get_by_role("button", name=theme).click()
+        there.page.wait_for_timeout(200)
+        found = there.page.evaluate("axe.run()")
+        assert _serious(found) == [], (size, theme)
+        assert len(found["passes"]) > 20
 
 
 def _serious(found: dict) -> list[tuple]:
