@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -12,6 +13,7 @@ from scipy.optimize import lsq_linear
 from scipy.spatial.distance import pdist
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
+from eigenwalker.metric.answers import count_pairs
 from eigenwalker.metric.fit_quality import compare_metrics, goodness, leave_walkers_out
 from eigenwalker.metric.observers import bootstrap_weights, difference, split_half
 from eigenwalker.metric.outer_search import fit_from_random_starts, search_shape
@@ -207,3 +209,63 @@ def test_goodness_of_a_constant_has_no_correlation():
     found = goodness([0.1, 0.5], [0.3, 0.3])
     assert np.isnan(found["pearson"])
     assert found["rms"] == pytest.approx(0.2)
+
+
+def trials(n: int, seed: int = 0) -> pd.DataFrame:
+    """Random answers of three observers about six walkers."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    for trial in range(n):
+        four = rng.choice([f"w{i}" for i in range(6)], 4, replace=False)
+        rows.append([f"o{trial % 3}", *four, *rng.choice(four, 2, replace=False)])
+    return pd.DataFrame(rows, columns=["observer", *"abcd", "chosen_1", "chosen_2"])
+
+
+def test_counts_of_pairs_are_those_of_the_definition():
+    answers = trials(60)
+    counts = count_pairs(answers)
+    assert counts.shown.sum() == 6 * 60
+    assert counts.chosen.sum() == 60
+    for (first, second), told in counts.differences.items():
+        together = [row for row in answers.itertuples() if {first, second} <= set(row[2:6])]
+        picked = [row for row in together if {row.chosen_1, row.chosen_2} == {first, second}]
+        assert told == pytest.approx(1 - len(picked) / len(together))
+
+
+def test_each_observer_s_counts_are_their_own():
+    answers = trials(60)
+    alone = count_pairs(answers[answers.observer == "o1"])
+    together = count_pairs(answers)
+    row = together.observers.index("o1")
+    np.testing.assert_array_equal(alone.chosen[0], together.chosen[row])
+
+
+def test_trials_that_ran_out_of_time_do_not_count():
+    answers = trials(60)
+    silent = answers.assign(chosen_1=answers.chosen_1.where(answers.index > 9))
+    left = count_pairs(silent)
+    np.testing.assert_array_equal(left.shown, count_pairs(answers[10:]).shown)
+
+
+def test_order_of_trials_and_of_walkers_in_them_does_not_matter():
+    answers = trials(60)
+    turned = answers.sample(frac=1, random_state=1).rename(
+        columns={"a": "d", "b": "c", "c": "b", "d": "a"}
+    )
+    swapped = turned.rename(columns={"chosen_1": "chosen_2", "chosen_2": "chosen_1"})
+    np.testing.assert_array_equal(count_pairs(swapped).chosen, count_pairs(answers).chosen)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda t: t.drop(columns="d"), r"\['d'\] are missing"),
+        (lambda t: t.assign(chosen_1="w9"), "Trial 0 shows"),
+        (lambda t: t.assign(chosen_1=t.chosen_2), "cannot be the pair"),
+        (lambda t: t.assign(b=t.a), "four different"),
+        (lambda t: t[:0], "no answered trial"),
+    ],
+)
+def test_answers_that_cannot_be_are_refused(change, said):
+    with pytest.raises(ValueError, match=said):
+        count_pairs(change(trials(5)))

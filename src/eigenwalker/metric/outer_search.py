@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize, minimize_scalar
+from threadpoolctl import threadpool_limits
 
 from eigenwalker.metric.perceptual import Weights, non_negative_fit
 
@@ -137,12 +138,9 @@ def fit_from_random_starts(
     limits = [(None, None), *[(0, None)] * X.shape[1]]
     how = {"ftol": 1e-15, "gtol": 1e-10, "maxiter": 10_000, "maxfun": 100_000}
     scale = np.linalg.norm(y)
-    ends = [
-        minimize(
-            error, scale * rng.uniform(size=design.shape[1]), jac=True, bounds=limits, options=how
-        )
-        for _ in range(n_starts)
-    ]
+    starts = scale * rng.uniform(size=(n_starts, design.shape[1]))
+    with threadpool_limits(1, user_api="blas"):  # more threads slow so small a problem down
+        ends = [minimize(error, at, jac=True, bounds=limits, options=how) for at in starts]
     best = min(ends, key=lambda end: end.fun).x
     weights = best[1:] / np.where(size > 0, size, 1.0)
     return RandomStarts(weights, float(best[0]), np.array([end.fun for end in ends]))
