@@ -118,6 +118,15 @@ def test_without_anywidget_it_says_what_to_install(monkeypatch):
         import eigenwalker.widget  # noqa: F401
 
 
+def test_the_mannequin_is_sent_when_it_is_asked_for(people, monkeypatch):
+    sent = []
+    monkeypatch.setattr(WalkerWidget, "send", lambda _, message: sent.append(message))
+    widget = show(people)
+    widget._handle_custom_msg({"wants": "everything"}, [])
+    widget._handle_custom_msg({"wants": "mannequin"}, [])
+    assert sent == [{"mannequin": built("mannequin.js")}]
+
+
 HARNESS = """<!doctype html><body style="width:640px"><div id="here"></div>
 <script type="application/json" id="values">VALUES</script>
 <script type="module">
@@ -137,6 +146,7 @@ window.model = {
   },
   save_changes: () => { Object.assign(window.saved, window.unsaved); window.unsaved = {}; },
   on: (event, hears) => (heard[event] ??= []).push(hears),
+  hear: (message) => tell("msg:custom", message),
   off: (event, hears) => (heard[event] = (heard[event] ?? []).filter((each) => each !== hears)),
   send: (message) => (window.sent = message),
 };
@@ -216,6 +226,17 @@ def test_dragging_turns_the_walker_and_python_hears_of_it(people, browser, tmp_p
     page.mouse.move(300, 150, steps=4)
     page.mouse.up()
     page.wait_for_function("Math.abs(window.saved.azimuth_deg - 30) >= 45")
+    page.close()
+
+
+def test_the_mannequin_is_drawn_once_its_module_is_there(people, browser, tmp_path):
+    page = opened(browser, show(people, playing=False), tmp_path)
+    page.wait_for_function(f"({LIGHT})() > 100")
+    dots = page.evaluate(LIGHT)
+    page.evaluate("window.model.set('style', 'mannequin')")
+    page.wait_for_function("window.sent?.wants === 'mannequin'")
+    page.evaluate("(text) => window.model.hear({ mannequin: text })", built("mannequin.js"))
+    page.wait_for_function(f"({LIGHT})() > {2 * dots}")
     page.close()
 
 

@@ -115,6 +115,9 @@ def study(folder: Path, asked: Asked) -> Asked:
     told += [f"{name}: not in the table of traits." for name in found.unlisted[:20]]
     if found.population is None:
         raise ValueError(f"None of {len(found.files)} captures could be used. {' '.join(told[:5])}")
+    told.append(
+        "This population is kept until the server ends; eigenwalker fit writes it to a file."
+    )
     return {"model": _model(found.population, folder, "Your captures"), "told": told}
 
 
