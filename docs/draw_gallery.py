@@ -130,8 +130,7 @@ ROWS = (
     Row(
         *("time", "phase_scramble", 'shown.then("phase_scramble", seed=3)'),
         "--phase-scramble seed=3",
-        "Each dot keeps its place, path and tempo, on a clock of its own (Troje and Westhoff, "
-        "2006).",
+        "Each dot keeps its place, path and tempo, on a clock of its own.",
     ),
     Row(
         *("time", "morph", 'make_stimulus(man, **small).then("morph", walker=woman)'),
@@ -172,8 +171,8 @@ ROWS = (
     Row(
         *("space", "rotate_sight", 'shown.then("rotate", axis="sight", angle_deg=90)'),
         "--rotate axis=sight,angle=90",
-        "Turned in the picture by 90 degrees: harder to see than upright, easier than upside down "
-        "(Pavlova and Sokolov, 2000).",
+        "Turned in the picture: from 90 degrees on a walker is hardly recognised (Pavlova and "
+        "Sokolov, 2000).",
     ),
     Row(
         *("space", "invert", 'shown.then("invert")'),
@@ -190,7 +189,7 @@ ROWS = (
         *("dots", "scramble", 'shown.then("scramble", seed=3)'),
         "--scramble seed=3",
         "Each dot moves as before, elsewhere: the walker is gone (Cutting, 1981; Bertenthal and "
-        "Pinto, 1994).",
+        "Pinto, 1994), though not his direction (Troje and Westhoff, 2006).",
     ),
     Row(
         *("dots", "scramble_structure", 'shown.then("scramble", seed=3, keep="structure")'),
@@ -268,7 +267,13 @@ ROWS = (
     Row(
         *("begin", "sticks", 'make_stimulus(average, style="sticks", **small)'),
         "--style sticks",
-        "The dots joined; the mannequin is drawn in the browser (`--style mannequin`).",
+        "The dots joined.",
+    ),
+    Row(
+        *("begin", "mannequin", 'make_stimulus(average, style="mannequin", **small)'),
+        "--style mannequin",
+        "The same walk on a wooden mannequin, the same for all, woman or man, as in Pražák "
+        "and others (2010).",
     ),
     Row(
         "begin",
@@ -307,7 +312,7 @@ PAPERS = """\
 - Cutting (1981). Coding theory adapted to gait perception. *Journal of Experimental Psychology:
   Human Perception and Performance* 7, 71-87.
 - Cutting, Moore and Morrison (1988). Masking the motions of human gait. *Perception &
-  Psychophysics* 44, 339-347.
+  Psychophysics*.
 - Johansson (1973). Visual perception of biological motion and a model for its analysis. *Perception
   & Psychophysics* 14, 201-211.
 - Kozlowski and Cutting (1977). Recognizing the sex of a walker from a dynamic point-light display.
@@ -316,8 +321,9 @@ PAPERS = """\
   cues. *Proceedings of the Royal Society B* 258, 273-279.
 - Pavlova and Sokolov (2000). Orientation specificity in biological motion perception. *Perception &
   Psychophysics* 62, 889-899.
-- Sumi (1984). Upside-down presentation of the Johansson moving light-spot pattern. *Perception* 13,
-  283-286.
+- Pražák, McDonnell, Kavan and O'Sullivan (2010). A perception based metric for comparing human
+  locomotion.
+- Sumi (1984). Upside-down presentation of the Johansson moving light-spot pattern. *Perception*.
 - Troje (2002). Decomposing biological motion: a framework for analysis and synthesis of human gait
   patterns. *Journal of Vision* 2 (5), 371-387.
 - Troje and Westhoff (2006). The inversion effect in biological motion perception: evidence for a

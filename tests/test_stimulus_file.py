@@ -206,3 +206,12 @@ def test_a_stimulus_is_not_changed_by_what_comes_after(plain):
     before = plain.to_json()
     plain.then("invert").then("mask", seed=1, number=3)
     assert plain.to_json() == before
+
+
+def test_a_chain_that_nobody_could_play_in_time_is_refused(plain):
+    chain = plain
+    for seed in range(4):
+        chain = chain.then("phase_scramble", seed=seed)  # 15^5 dots
+    with pytest.raises(ValueError, match="its chain computes 11390625 dots for one moment, and no "
+                                         "more than 1000000 are shown in time"):  # fmt: skip
+        chain.then("phase_scramble", seed=4)

@@ -47,7 +47,7 @@ def phase_scramble(moving: Moving, stage: Stage, *, seed: int, spread: float) ->
     """Let each dot run on a clock of its own: dot d is shown as at ``t + spread u_d period``.
 
     u_d is uniform from 0 to below 1, stream (PHASE_SCRAMBLE, seed, d, figure). Keeps each dot's
-    path and tempo, breaks what the dots do together (Troje and Westhoff, 2006).
+    path and tempo, breaks what the dots do together.
     """
     dots = np.arange(len(moving.dots))
     drawn = uniforms(Purpose.PHASE_SCRAMBLE, seed, dots, stage.figure, count=1).reshape(-1)

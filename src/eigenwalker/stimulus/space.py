@@ -56,8 +56,8 @@ def rotate(
     """Turn the figure about an axis through its middle, right-handed, standing or on and on.
 
     The turn at time t is by ``angle + speed t``, by Rodrigues' formula. The axis is ``"x"``
-    (forward), ``"y"`` (left), ``"z"`` (up), ``"sight"`` (towards the observer: the turn in the
-    picture is anticlockwise, as in Pavlova and Sokolov, 2000), or a vector. Keeps all distances.
+    (forward), ``"y"`` (left), ``"z"`` (up), ``"sight"`` (towards the observer: the picture
+    turns, anticlockwise, as Pavlova and Sokolov, 2000, did), or a vector. Keeps all distances.
     """
     if axis == "sight":
         named: Sequence[float] = stage.observer[2].tolist()
