@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
 from collections.abc import Iterator
@@ -109,6 +110,15 @@ def test_unknown_options_and_things_are_refused(people):
         show(people, colour="red")
     with pytest.raises(ValueError, match="got str"):
         show("people.nc")
+
+
+def test_the_lines_of_the_documentation_run(people, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[1] / "docs" / "interactive.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    names = {"people": people}
+    for lines in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(lines, names)
+    assert (tmp_path / "walkers.html").stat().st_size > 300_000
 
 
 def test_without_anywidget_it_says_what_to_install(monkeypatch):
