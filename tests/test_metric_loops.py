@@ -152,3 +152,11 @@ def test_real_strides_last_as_long_as_the_model_says(captures, name):
     frequency_hz = ew.fundamental_frequency(ew.in_place(walk))
     assert found.period_s == pytest.approx(1 / frequency_hz, rel=0.01)
     assert found.seam_mm < 70
+
+
+@pytest.mark.parametrize(("n_frames", "rate_hz"), [(2, 100.0), (7, 100.0), (50, 0.5)])
+def test_too_few_frames_are_refused_with_words(n_frames, rate_hz):
+    values = np.random.default_rng(0).normal(size=(n_frames, 2, 3))
+    clip = label_trajectories(values, markers=["a", "b"], rate_hz=rate_hz)
+    with pytest.raises(ValueError, match="too few to see a stride"):
+        loop(clip)

@@ -74,13 +74,14 @@ def prepare(clip: Clip) -> PreparedClip:
     """
     if isinstance(clip, PreparedClip):
         return clip
+    rate_hz = sampling_rate(check_trajectories(clip))
     clip = check_trajectories(clip).dropna("marker", how="all")
     if not clip.sizes["marker"]:
         raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
     try:
         return PreparedClip(clip, common_clock(loop(clip)))
     except ValueError as error:
-        filled, gaps = fill_short_gaps(clip.values, sampling_rate(clip))
+        filled, gaps = fill_short_gaps(clip.values, rate_hz)
         if gaps:
             raise
         return PreparedClip(clip.copy(data=filled), None, str(error))

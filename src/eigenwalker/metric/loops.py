@@ -27,6 +27,11 @@ SHALLOW = 0.02
 """Share by which a minimum may be higher whatever the lowest one is."""
 
 
+_FEWEST_FRAMES = 8
+_LEAST_RATE_HZ = 8.0
+"""Below these not even the harmonics of a slow stride show."""
+
+
 @dataclass(frozen=True, eq=False)
 class Loop:
     """A clip that goes over into its own beginning.
@@ -118,8 +123,13 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
 
     """
     clip = check_trajectories(clip, complete=already_in_place)
+    rate_hz = sampling_rate(clip)
+    if clip.sizes["time"] < _FEWEST_FRAMES or rate_hz < _LEAST_RATE_HZ:
+        raise ValueError(
+            f"{clip.sizes['time']} frames at {rate_hz:.3g} a second are too few to see a stride; a "
+            f"loop needs {_FEWEST_FRAMES} or more at {_LEAST_RATE_HZ:.0f} a second or more."
+        )
     walk = clip if already_in_place else in_place(clip)
-    rate_hz = sampling_rate(walk)
     movement = walk.values.reshape(walk.sizes["time"], -1)
     period = period_of(movement, rate_hz)
     if period is not None:

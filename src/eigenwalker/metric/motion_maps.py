@@ -263,9 +263,12 @@ def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
     Raises
     ------
     ValueError
-        If there are none.
+        If there are none, or a clip has a name twice.
 
     """
+    for names in (first, second):
+        if len(set(names)) < len(names):
+            raise ValueError(f"Points need names of their own; some come twice: {_few(names)}.")
     names = sorted({str(name) for name in first} & {str(name) for name in second})
     if not names:
         raise ValueError(

@@ -325,12 +325,14 @@ def _played(clip: xr.DataArray, time: np.ndarray, periodic: bool) -> np.ndarray:
 
 
 def _smooth(values: np.ndarray, periodic: bool) -> np.ndarray:
-    """Running means over as many steps as a path may stand still, which take its stairs off."""
-    half = min(SLOPE_LIMIT, (len(values) - 1) // 2)
+    """Running means, taken twice, which make slopes of the stairs of a path; ends stay."""
+    n = len(values)
+    half = min(max(SLOPE_LIMIT, n // 24), (n - 1) // 2)
     if periodic:
-        values = np.concatenate([values[len(values) - half :], values, values[:half]])
-        return np.convolve(values, np.ones(2 * half + 1) / (2 * half + 1), "valid")
-    sums = np.concatenate([[0], np.cumsum(values)])
+        values = np.pad(values, 2 * half, mode="wrap")
     steps = np.arange(len(values))
     reach = np.minimum(half, np.minimum(steps, len(values) - 1 - steps))
-    return (sums[steps + reach + 1] - sums[steps - reach]) / (2 * reach + 1)
+    for _ in range(2):
+        sums = np.concatenate([[0], np.cumsum(values)])
+        values = (sums[steps + reach + 1] - sums[steps - reach]) / (2 * reach + 1)
+    return values[2 * half : 2 * half + n] if periodic else values

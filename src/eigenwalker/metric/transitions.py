@@ -31,6 +31,7 @@ def find_transitions(
 
     The transitions of Kovar, Gleicher & Pighin (2002): local minima of the motion map, each pair of
     frames aligned in heading and place and averaged over a window, that lie below a threshold.
+    Bodies of different build are apart at every moment: bring both to one mannequin first.
 
     Parameters
     ----------
