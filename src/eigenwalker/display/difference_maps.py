@@ -64,6 +64,57 @@ class MapPicture:
     names: tuple[str, str] = ("first walk", "second walk")
 
 
+def picture_of_strides(
+    values: np.ndarray,
+    times_a: np.ndarray,
+    times_b: np.ndarray,
+    path: np.ndarray,
+    title: str,
+    *,
+    unit: str = "mm",
+    names: tuple[str, str] = ("first walk", "second walk"),
+) -> MapPicture:
+    """Return the map of two strides repeated, so that the path once round both is one line.
+
+    Parameters
+    ----------
+    values : array of shape (time_a, time_b)
+        Map of one stride with one stride.
+    times_a, times_b : array
+        Seconds of the frames, evenly spaced.
+    path : array of shape (step, 2)
+        Corresponding moments of a and b in seconds, which run on over the seams.
+    title, unit, names
+        As in `MapPicture`.
+
+    Returns
+    -------
+    MapPicture
+        Of two strides of either; one period is framed, at the path's beginning.
+
+    Examples
+    --------
+    >>> t = np.arange(0, 1, 0.1)
+    >>> path = np.stack([t + 0.5, t + 0.5], axis=1)
+    >>> picture_of_strides(np.zeros((10, 10)), t, t, path, "a stride").values.shape
+    (20, 20)
+
+    """
+    length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (times_a, times_b))
+    lengths = np.array([length_a, length_b])
+    path = path - np.floor(path.min(axis=0) / lengths) * lengths
+    return MapPicture(
+        np.tile(values, (2, 2)),
+        np.concatenate([times_a, times_a + length_a]),
+        np.concatenate([times_b, times_b + length_b]),
+        title,
+        unit,
+        path=path,
+        period=(float(path[0, 0]), float(path[0, 1]), float(length_a), float(length_b)),
+        names=names,
+    )
+
+
 def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure:
     """Return motion maps side by side, dark where frames are alike (fig. 1 and 6).
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import pandas as pd
 import xarray as xr
 
 from eigenwalker.gait import in_place
 from eigenwalker.gait.gaps import MAX_GAP_S, find_gaps
 from eigenwalker.metric.captured_rotations import with_rotations
-from eigenwalker.metric.frame_metrics import By
-from eigenwalker.metric.groups import group_points
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.mocap import virtual_markers
 from eigenwalker.skeleton import JOINTS
@@ -59,31 +56,3 @@ def _hidden(joints: xr.DataArray) -> list[str]:
     gaps = [gap for gap in find_gaps(joints.values) if gap.stop - gap.start > longest]
     names = {str(joints.marker.values[gap.marker]) for gap in gaps}
     return sorted(names - set(JOINTS.markers))
-
-
-def by_group(points: pd.DataFrame, by: By) -> pd.DataFrame:
-    """Return a table of joint groups from one of points: the columns that `PerceptualMetric` takes.
-
-    Parameters
-    ----------
-    points : DataFrame of pairs by points
-        Mean F(d) of each point, as `pair_components` gives it.
-    by : {"positions", "velocities", "angles"}
-        What was compared.
-
-    Returns
-    -------
-    DataFrame of pairs by groups
-        Means over the points that stand for a group, both sides alike; groups that the points
-        cannot tell are left out.
-
-    Examples
-    --------
-    >>> points = pd.DataFrame({"left_knee": [10.0], "right_knee": [20.0], "head": [5.0]})
-    >>> by_group(points, "positions").to_dict("records")
-    [{'head': 5.0, 'calf': 15.0}]
-
-    """
-    groups = group_points([str(name) for name in points.columns], by)
-    means = {group: points[list(names)].mean(axis=1) for group, names in groups.items()}
-    return pd.DataFrame(means, index=points.index)

@@ -17,8 +17,8 @@ from eigenwalker.metric.clip_distances import (
     prepare,
     registration_of,
 )
-from eigenwalker.metric.comparable import by_group
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric
+from eigenwalker.metric.group_tables import by_group
 from eigenwalker.metric.groups import GROUPS, group_points
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration

@@ -16,6 +16,7 @@ from eigenwalker.display.difference_maps import (
     figure_maps,
     figure_shares,
     figure_two_walks,
+    picture_of_strides,
 )
 from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import PreparedClip
@@ -244,19 +245,8 @@ def _self_picture(clip: xr.DataArray, looped: Loop, name: str) -> MapPicture:
 def _pair_picture(found: Comparison, names: tuple[str, str]) -> MapPicture:
     registered = found.registration
     a, b = (registered.map[clock].values for clock in ("time_a", "time_b"))
-    length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (a, b))
-    lengths = np.array([length_a, length_b])
-    path = registered.times - np.floor(registered.times.min(axis=0) / lengths) * lengths
-    return MapPicture(
-        np.tile(registered.map.values, (2, 2)),
-        np.concatenate([a, a + length_a]),
-        np.concatenate([b, b + length_b]),
-        "the first walk and the second",
-        "mm",
-        path=path,
-        period=(float(path[0, 0]), float(path[0, 1]), float(length_a), float(length_b)),
-        names=names,
-    )
+    title = "the first walk and the second"
+    return picture_of_strides(registered.map.values, a, b, registered.times, title, names=names)
 
 
 def _components(found: Comparison, names: tuple[str, str]) -> Figure:
