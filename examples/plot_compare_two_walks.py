@@ -1,9 +1,10 @@
 """How different two walks are, and where (Pražák et al. 2010, fig. 1).
 
 A happy walker and a sad one of the same average body, both shown on the neutral mannequin. In the
-maps frames are dark that are alike. The first is of the happy walk and itself: stripes half a stride
-apart, as left and right do the same. The second is of both walks; the red line, along which their
-difference is measured, tells which moments correspond. The second picture lays them over each other.
+maps frames are dark that are alike. The first is of the happy walk and itself: stripes half a
+stride apart, as left and right do the same. The second is of both walks; the red line, along which
+their difference is measured, tells which moments correspond. The second picture lays the walks over
+each other at such moments.
 """
 
 import numpy as np

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import pandas as pd
 
@@ -14,10 +14,7 @@ from eigenwalker.metric.published import metric_named
 
 
 def group_table(
-    clips: Mapping[str, Clip],
-    metrics: str | ComparesFrames | Sequence[str | ComparesFrames],
-    *,
-    progress: Progress | None = None,
+    clips: Mapping[str, Clip], *metrics: str | ComparesFrames, progress: Progress | None = None
 ) -> pd.DataFrame:
     """Return how far each joint group of all pairs of walks is apart: the X of `PerceptualMetric`.
 
@@ -25,9 +22,9 @@ def group_table(
     ----------
     clips : mapping of str to DataArray or PreparedClip
         Walks by name, best from `comparable_walk`.
-    metrics : FrameMetric or str, or several
-        Of which what is compared and F count; weights do not. With several, such as positions and
-        velocities, the fit weighs these components too (P8).
+    *metrics : FrameMetric or str
+        One or several, of which what is compared and F count; weights do not. With several, such
+        as positions and velocities, the fit weighs these components too (P8).
     progress : callable, optional
         Called with the number of clips and pairs that are done, and of all, for each metric.
 
@@ -41,18 +38,17 @@ def group_table(
     Examples
     --------
     >>> walks = {str(seed): ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
-    >>> X = group_table(walks, ["positions-sigmoid", "velocities-absolute"])
+    >>> X = group_table(walks, "positions-sigmoid", "velocities-absolute")
     >>> X.shape, X.columns[3], X.columns[-1]
     ((3, 16), 'positions forearm', 'velocities toe')
 
     """
-    one = isinstance(metrics, str) or not isinstance(metrics, Sequence)
-    asked = [metric_named(each) for each in ([metrics] if one else metrics)]
+    asked = [metric_named(metric) for metric in metrics]
     prepared = {name: prepare(clip) for name, clip in clips.items()}
     tables = []
     for metric in asked:
         table = by_group(pair_components(prepared, metric=metric, progress=progress), metric.by)
-        tables.append(table if one else table.add_prefix(f"{metric.by} "))
+        tables.append(table if len(asked) == 1 else table.add_prefix(f"{metric.by} "))
     return pd.concat(tables, axis=1)
 
 
