@@ -66,7 +66,7 @@ export function stagedStimulus(
       px_per_mm: staging.pxPerMm,
       dot_px: staging.dotPx,
       style: state.style,
-      colour: palette.colour,
+      colour: state.style === "mannequin" ? palette.body : palette.colour,
       background: palette.background,
       viewing_distance_mm: null,
       px_per_cm: null,
