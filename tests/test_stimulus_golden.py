@@ -12,6 +12,9 @@ import pytest
 from eigenwalker.stimulus import Stimulus
 from eigenwalker.stimulus.chance import normals, permutation, random_words, uniforms
 from eigenwalker.stimulus.content import schema
+from eigenwalker.stimulus.drawing import hulls_of, mannequins
+from eigenwalker.stimulus.mannequin import body_heights
+from eigenwalker.stimulus.playing import scene
 from eigenwalker.stimulus.transforms import TRANSFORMS
 
 FOLDER = Path(__file__).parent / "golden"
@@ -38,6 +41,17 @@ def test_positions_are_those_of_the_golden_file(path):
 def test_every_transform_has_a_golden_file():
     used = {step["name"] for path in FILES for step in read(path)["stimulus"]["transforms"]}
     assert used == set(TRANSFORMS)
+
+
+def test_mannequins_are_those_of_the_golden_file():
+    golden = read(FOLDER / "mannequin.json")
+    stimulus = Stimulus.from_dict(golden["stimulus"])
+    bodies = mannequins(stimulus, scene(stimulus.content))
+    hulls = hulls_of(stimulus, bodies, stimulus.play([golden["time_s"]]), 0)
+    balls = np.concatenate([hulls.middles, hulls.radii[..., None]], axis=2)
+    np.testing.assert_allclose(balls, golden["balls"], rtol=0, atol=1e-5)
+    assert hulls.tones.tolist() == golden["tones"]
+    np.testing.assert_allclose(body_heights(stimulus.content), golden["heights_mm"])
 
 
 def test_random_numbers_are_those_of_the_golden_file():

@@ -9,15 +9,18 @@ positions within 1e-6 mm. They change only when a definition changes.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from eigenwalker.stimulus import Figure, Stimulus, make_stimulus
+from eigenwalker.stimulus import Figure, Stimulus, drawing, make_stimulus
 from eigenwalker.stimulus.chance import normals, permutation, random_words, uniforms
 from eigenwalker.stimulus.content import schema
 from eigenwalker.stimulus.figure import walker_from_dict
+from eigenwalker.stimulus.mannequin import body_heights
+from eigenwalker.stimulus.playing import scene
 from eigenwalker.trajectories import label_trajectories
 from eigenwalker.walker import Walker
 
@@ -161,6 +164,23 @@ def chance() -> dict[str, Any]:
     }
 
 
+def mannequins() -> dict[str, Any]:
+    """Body heights and hulls of a stimulus in perspective, at its first moment."""
+    seen = stimuli()["perspective"]
+    seen = replace(seen, display=replace(seen.display, style="mannequin"))
+    stimulus = seen.then("resize", factor=0.8).then("occlude", markers=["left_knee"])
+    bodies = drawing.mannequins(stimulus, scene(stimulus.content))
+    hulls = drawing.hulls_of(stimulus, bodies, stimulus.play([0.4]), 0)
+    balls = np.concatenate([hulls.middles, hulls.radii[..., None]], axis=2)
+    return {
+        "stimulus": stimulus.to_dict(),
+        "time_s": 0.4,
+        "heights_mm": body_heights(stimulus.content),
+        "balls": balls.round(6).tolist(),
+        "tones": hulls.tones.tolist(),
+    }
+
+
 def _plain(values: np.ndarray) -> list[Any]:
     plain = values.round(9).astype(object)
     plain[np.isnan(values)] = None
@@ -176,5 +196,6 @@ def text(content: dict[str, Any]) -> str:
 if __name__ == "__main__":
     for name, stimulus in stimuli().items():
         (FOLDER / f"stimulus_{name}.json").write_text(text(expected(stimulus)), encoding="utf-8")
+    (FOLDER / "mannequin.json").write_text(text(mannequins()), encoding="utf-8")
     (FOLDER / "random.json").write_text(text(chance()), encoding="utf-8")
     SCHEMA.write_text(json.dumps(schema(), indent=1) + "\n", encoding="utf-8")
