@@ -1,8 +1,8 @@
-"""How the joints of simulated people turn over a stride, and how five of them look.
+"""How the joints of simulated people turn over a stride.
 
-Grey: twelve people; black: their mean; dashed: the norm of Schwartz et al. (2008) from which the
-lower body starts. Name a folder of captures (``python plot_simulated_joints.py FOLDER``) to lay
-real walks over them.
+Grey: forty people; black: their mean; dashed: the norm of Schwartz et al. (2008) from which the
+lower body starts; knees stand 2 degrees above it, at the level of Pinzone et al. (2014). Name a
+folder of captures (``python plot_simulated_joints.py FOLDER``) to lay real walks over them.
 """
 
 import sys
@@ -40,6 +40,9 @@ def strides(walk):
             "upper arm against the vertical": lean["shoulder"],
             "elbow flexion": np.degrees(np.arccos((upper * fore).sum(axis=1) / lengths)),
         }
+        if f"{side}_heel" in place:
+            foot = place[f"{side}_toe"] - place[f"{side}_heel"]
+            angles["ankle"] = np.degrees(np.arctan2(foot[:, 2], foot[:, 0])) - lean["knee"]
         ahead = (place[f"{side}_ankle"] - place["pelvis"])[:, 0]
         reach = round(0.3 / ew.fundamental_frequency(walk) / (time[1] - time[0]))
         peaks = [
@@ -52,6 +55,16 @@ def strides(walk):
                 at = time[first] + SHARE * (time[last] - time[first])
                 found.setdefault(name, []).append(np.interp(at, time, angle))
     return {name: np.mean(curves, axis=0) for name, curves in found.items()}
+
+
+def with_feet(capture):
+    """The joints of a capture in place, and the markers on its heels and toes."""
+    return ew.in_place(ew.virtual_markers(capture, joints="full"))
+
+
+def miss(simulated, real):
+    """Root mean square difference of two curves, as they are and once each mean is taken out."""
+    return f"{np.sqrt(np.mean((simulated - real) ** 2)):.1f}, {np.std(simulated - real):.1f}"
 
 
 def real_walks(folder):
@@ -69,7 +82,7 @@ def real_walks(folder):
 
 
 def main():
-    people = [strides(ew.simulate_walk(seed=seed)) for seed in range(12)]
+    people = [strides(ew.simulate_walk(seed=seed)) for seed in range(40)]
     mean = {name: np.mean([one[name] for one in people], axis=0) for name in people[0]}
     figure, axes = plt.subplots(1, 4, figsize=(14, 3.4), layout="constrained")
     hip, tilt, knee = (
@@ -87,11 +100,15 @@ def main():
     for label, curves in real.items():
         for ax, curve in zip(axes, curves.values(), strict=True):
             ax.plot(100 * SHARE, curve, label=label)
-        axes[0].legend()
-    for name in mean if real else ():
-        miss = mean[name] - np.mean([curves[name] for curves in real.values()], axis=0)
-        whole = np.sqrt(np.mean(miss**2))
-        print(f"{name}: RMS {whole:.1f} degrees, {np.std(miss):.1f} once each mean is taken out")
+        axes[1].legend(loc="upper left", fontsize=8)
+    if real:
+        print("RMS in degrees, and once each mean is taken out:")
+        for name in mean:
+            print(name, miss(mean[name], np.mean([one[name] for one in real.values()], axis=0)))
+        walks = (ew.simulate_walk(seed=seed, duration_s=6, markers="skin") for seed in range(40))
+        ankles = [strides(with_feet(walk))["ankle"] for walk in walks]
+        capture = strides(with_feet(ew.read_mocap(Path(sys.argv[1], "cmu", "02_01.c3d"))))
+        print("ankle", miss(np.mean(ankles, axis=0), capture["ankle"]))
     figure.savefig("simulated_joints.png", dpi=110)
 
 

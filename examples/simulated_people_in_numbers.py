@@ -18,6 +18,14 @@ from eigenwalker.simulation import (
     truth_of,
 )
 from eigenwalker.simulation.foot import TOE_BEND
+from eigenwalker.simulation.parameters import ANSUR, PINZONE, SCHWARTZ, TROJE
+
+SHORT = {
+    ANSUR: "ANSUR II",
+    PINZONE: "Pinzone 2014",
+    SCHWARTZ: "Schwartz 2008",
+    TROJE: "Troje 2002",
+}
 
 
 def table(*columns):
@@ -104,6 +112,7 @@ def beside_the_norms(n_each):
             ("range of the elbow", "29.7 (10.2)"): np.ptp(stride["left_elbow_flexion_deg"].values),
             ("pelvis up and down, mm", "27 to 48, SD 7"): np.ptp(pelvis[:, 2]),
             ("pelvis to the side, mm", "39 to 70"): np.ptp(pelvis[:, 1]),
+            ("pelvis fore and aft, mm", ""): np.ptp(pelvis[:, 0]),
             ("head to the side, mm", "59 (17)"): np.ptp(head[:, 1]),
         }
         for name, value in measures.items():
@@ -242,7 +251,10 @@ def where_numbers_come_from():
     table("parameter", "women", "men", "SD", "source")
     for name, parameter in PARAMETERS.items():
         women, men, sd = (f"{value:g}" for value in parameter[:3])
-        row(name, women, men, sd, parameter.source)
+        source = parameter.source
+        for long, short in SHORT.items():
+            source = source.replace(long, short)
+        row(name, women, men, sd, source)
     print()
     table("trait", "what one unit of it adds, in SDs of the parameter")
     for trait, sizes in EFFECTS.items():

@@ -298,7 +298,7 @@ def test_joints_turn_as_in_real_level_walks(captures):
     level = sorted((captures / "cmu").glob("*_01.*"))
     with np.errstate(all="ignore"), pytest.warns():
         sets = [walked(paths) for paths in (normal, level)]
-    simulated = [curves(simulate_walk(seed=seed)) for seed in range(12)]
+    simulated = [curves(simulate_walk(seed=seed, duration_s=6)) for seed in range(40)]
     for joint in ("thigh", "knee", "arm", "elbow"):
         real = np.mean([one[joint] for one in sets], axis=0)
         miss = np.mean([one[joint] for one in simulated], axis=0) - real

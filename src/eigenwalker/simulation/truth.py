@@ -88,8 +88,9 @@ def truth_of(population: Population) -> Truth:
 def true_direction(population: Population, trait: str, *, n_people: int = 100) -> np.ndarray:
     """Return what a trait truly does to the features of a simulated population.
 
-    Some of the people walk twice, without noise: as half a unit less of the trait would have
-    them walk, and as half a unit more.
+    Some of the people walk twice, without noise: as one unit less of the trait would have them
+    walk, and as one unit more; for sex, half a unit. Of small steps the direction would be less
+    sure, as the stride that is solved for does not change evenly with every parameter.
 
     Parameters
     ----------
@@ -134,8 +135,10 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
         walk = plant(simulate_walk((person + amount * steps).to_dict()), pattern, amount)
         return population.vector(decompose_pca(in_place(walk)))
 
+    step = 0.5 if trait == "sex" else 1.0
     with one_blas_thread():
-        return np.mean([walked(p, 0.5) - walked(p, -0.5) for _, p in own.iterrows()], axis=0)
+        apart = [walked(p, step) - walked(p, -step) for _, p in own.iterrows()]
+    return np.mean(apart, axis=0) / (2 * step)
 
 
 def recipe_of(
