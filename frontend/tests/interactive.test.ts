@@ -7,6 +7,7 @@ import { make } from "../src/interactive/element";
 import { Notices } from "../src/interactive/notices";
 import { bundles, openFiles } from "../src/interactive/opening";
 import { ownOf } from "../src/interactive/own";
+import { axesOf } from "../src/interactive/axis";
 import { howPlausible, reachOf } from "../src/interactive/plausible";
 import { signed, slider } from "../src/interactive/slider";
 import { goldenModel, posture, stimulusWith } from "./interactive_model";
@@ -171,7 +172,7 @@ describe("a walker of a stimulus", () => {
 
 describe("plausibility", () => {
   const model = goldenModel();
-  const reach = reachOf(model);
+  const reach = reachOf(model, axesOf(model));
   const said = (traits: Record<string, number>): string => {
     const vector = vectorOf(model, { ...initialState(model), traits });
     return howPlausible(reach, placeOf(model, vector));

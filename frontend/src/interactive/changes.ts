@@ -2,13 +2,14 @@
 
 import { MEASURES, measuresOf, type MeasureName } from "../model/measures";
 import { vectorOf } from "../model/mix";
-import type { Model, Trait } from "../model/model";
+import type { Model } from "../model/model";
 import { placeOf, type Place } from "../model/place";
 import { initialState, RANGES, type State } from "../model/state";
 import { walkerOf } from "../model/walker";
+import type { Axis } from "./axis";
 import { draw, make, put } from "./element";
 import type { Now, Part, Session } from "./session";
-import { capital, classOf, mainTrait, many } from "./words";
+import { capital, classOf, colours } from "./words";
 
 const WIDTH = 160;
 const HEIGHT = 56;
@@ -17,8 +18,8 @@ const MARGIN = 5;
 /** Points of the curve from one end of the slider to the other. */
 const N_ALONG = 9;
 
-/** What the line depends on, beside the traits. */
-const LINED = ["kind", "part", "from", "bias", "strengths", "eigenwalkers"] as const;
+/** What the line depends on, beside traits and eigenwalkers. */
+const LINED = ["kind", "part", "from", "bias", "strengths"] as const;
 
 type Measures = Readonly<Record<MeasureName, number>>;
 
@@ -31,27 +32,25 @@ const at = (vector: ArrayLike<number>, model: Model): Measures =>
  */
 export function changes(session: Session): Part {
   const { model } = session;
-  const trait = mainTrait(model);
+  const [axis] = session.axes;
   const people = model.walkers.map(({ vector }) => ({
     measures: at(vector, model),
     place: placeOf(model, Float64Array.from(vector)),
   }));
-  const usual = along(model, initialState(model), null, trait);
+  const usual = along(model, initialState(model), null, axis);
   const plots = MEASURES.map((measure) => {
     const values = [...people.map(({ measures }) => measures[measure.name]), ...usual.map((of) => of[measure.name])];
-    return plot(model, trait, measure, people, [Math.min(...values), Math.max(...values)]);
+    return plot(model, axis, measure, people, [Math.min(...values), Math.max(...values)]);
   });
-  const legend = trait?.two_classes
-    ? `Small points: ${many(trait.negative)} (warm) and ${many(trait.positive)} (cool). Line: where the large slider leads.`
-    : "Small points: people. Line: where the large slider leads.";
+  const legend = ["Small points: people", colours(axis?.trait), axis ? "line: where the large slider leads" : ""];
   let line = usual;
   let last: Now | undefined;
   return {
     element: make("div", {},
       make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
-      make("p", { class: "note" }, legend)),
+      make("p", { class: "note" }, `${legend.filter(Boolean).join("; ")}.`)),
     show(now) {
-      if (!last || !sameLine(last, now, trait)) line = along(model, now.state, now.own, trait);
+      if (!last || !sameLine(last, now, axis)) line = along(model, now.state, now.own, axis);
       last = now;
       for (const one of plots) one.show(now, line);
     },
@@ -59,22 +58,21 @@ export function changes(session: Session): Part {
 }
 
 /** Whether the main slider leads through the same walkers as before: it may have moved itself. */
-function sameLine(before: Now, { state, own }: Now, trait: Trait | undefined): boolean {
-  const others = (traits: State["traits"]): string => JSON.stringify({ ...traits, [trait?.name ?? ""]: 0 });
-  return (
-    before.own === own &&
-    LINED.every((key) => before.state[key] === state[key]) &&
-    others(before.state.traits) === others(state.traits)
-  );
+function sameLine(before: Now, { state, own }: Now, axis: Axis | undefined): boolean {
+  const others = (of: State): string => {
+    const { traits, eigenwalkers } = { ...of, ...axis?.moved(of, 0) };
+    return JSON.stringify([traits, eigenwalkers]);
+  };
+  const same = LINED.every((key) => before.state[key] === state[key]);
+  return same && before.own === own && others(before.state) === others(state);
 }
 
 /** The measures from one end of the main slider to the other, all else as it is. */
-function along(model: Model, state: State, own: Now["own"], trait: Trait | undefined): Measures[] {
+function along(model: Model, state: State, own: Now["own"], axis: Axis | undefined): Measures[] {
   const [low, high] = RANGES.trait;
-  return Array.from({ length: trait ? N_ALONG : 0 }, (_, i) => {
+  return Array.from({ length: axis ? N_ALONG : 0 }, (_, i) => {
     const steps = low + ((high - low) * i) / (N_ALONG - 1);
-    const traits = { ...state.traits, [trait!.name]: steps };
-    return at(vectorOf(model, { ...state, traits }, own), model);
+    return at(vectorOf(model, { ...state, ...axis!.moved(state, steps) }, own), model);
   });
 }
 
@@ -85,7 +83,7 @@ interface Person {
 
 function plot(
   model: Model,
-  trait: Trait | undefined,
+  axis: Axis | undefined,
   { name, label, unit, digits }: (typeof MEASURES)[number],
   people: readonly Person[],
   [least, greatest]: readonly [number, number],
@@ -96,7 +94,7 @@ function plot(
   const x = (sd: number): number => inside((WIDTH * (sd - low)) / (high - low), WIDTH);
   const y = (value: number): number =>
     inside(HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - least)) / over, HEIGHT);
-  const where = (place: Place): number => x(trait ? (place.positions[trait.name] ?? 0) : 0);
+  const where = (place: Place): number => x(axis?.at(place) ?? 0);
   const dots = people.map(({ measures, place }, i) => {
     return draw("circle", { class: `person ${classOf(model, i)}`, r: 1.4, cx: where(place).toFixed(1), cy: y(measures[name]).toFixed(1) });
   });

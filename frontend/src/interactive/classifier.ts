@@ -25,6 +25,7 @@ const KINDS: readonly Option<Kind>[] = [
   { value: "mean_difference", label: "Differs most", hint: "The difference between mean walkers (Moler)" },
 ];
 
+/** Left out where there are no traits to change. */
 export function classifier(session: Session): Part {
   const known = partsOf(session.model);
   const option = (value: string): Option<string> => ({ value, ...(PARTS[value] ?? { label: capital(value) }) });

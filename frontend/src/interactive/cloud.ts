@@ -1,13 +1,14 @@
 /** The population as a cloud of points along two axes; the walker now made moves through it. */
 
 import { vectorOf } from "../model/mix";
-import type { Model, Numbers } from "../model/model";
-import { placeOf, positionsInCloud, type Place } from "../model/place";
+import type { Model } from "../model/model";
+import { placeOf } from "../model/place";
 import { RANGES } from "../model/state";
+import type { Axis } from "./axis";
 import { pick } from "./choice";
 import { draw, freshId, make, put } from "./element";
 import type { Now, Part, Session } from "./session";
-import { capital, classOf, ends, mainTrait, many } from "./words";
+import { capital, classOf, colours, mainTrait } from "./words";
 
 const WIDTH = 360;
 const HEIGHT = 300;
@@ -17,16 +18,6 @@ const REACH = 6.6;
 const RADIUS = 3.4;
 /** A click within this distance of a point means the point. */
 const NEAR = 24;
-
-interface Axis {
-  readonly label: string;
-  readonly low: string;
-  readonly high: string;
-  readonly trait: string | null;
-  /** Of each point of the cloud. */
-  readonly points: Numbers;
-  at(place: Place): number;
-}
 
 interface Point {
   readonly walker: number;
@@ -40,9 +31,10 @@ const across = (sd: number): number => WIDTH / 2 + (sd / REACH) * (WIDTH / 2);
 const down = (sd: number): number => HEIGHT / 2 - (sd / REACH) * (HEIGHT / 2);
 
 export function cloud(session: Session): Part {
-  const { model } = session;
-  const axes = axesOf(model);
-  let [x, y] = [axes[0]!, axes[Math.min(axes.length - 1, model.traits.length)]!];
+  const { model, axes } = session;
+  const [first, second = first] = [axes[0], axes[Math.max(model.traits.length, 1)]];
+  if (!first || !second) return { element: make("p", { class: "note" }, "Too few walkers to differ."), show: () => {} };
+  let [x, y] = [first, second];
   const points = pointsOf(model);
   const rest = draw("path", { class: "rest" });
   const trail = draw("line", { class: "trail" });
@@ -87,7 +79,7 @@ export function cloud(session: Session): Part {
     last = now;
     const [h, v] = [across(held(x.at(now.place))), down(held(y.at(now.place)))];
     cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
-    put(trail, trailOf(now, x, y));
+    put(trail, trailOf(now, first, x, y));
     points.forEach(({ circle, walker }) => put(circle, { "aria-selected": String(now.state.from === walker) }));
   };
   const choose = (name: string, first: boolean) => {
@@ -122,29 +114,6 @@ export function cloud(session: Session): Part {
 }
 
 const held = (sd: number): number => Math.min(Math.max(sd, -REACH + 0.2), REACH - 0.2);
-
-function axesOf(model: Model): Axis[] {
-  const main = mainTrait(model);
-  const traits = [...model.traits].sort((a, b) => Number(b === main) - Number(a === main));
-  return [
-    ...traits.map((trait) => ({
-      label: capital(trait.label),
-      low: ends(trait)[0],
-      high: ends(trait)[1],
-      trait: trait.name,
-      points: positionsInCloud(model, trait),
-      at: (place: Place) => place.positions[trait.name] ?? 0,
-    })),
-    ...model.eigenwalkers.map((_, number) => ({
-      label: `Eigenwalker ${number + 1}`,
-      low: "",
-      high: `eigenwalker ${number + 1}`,
-      trait: null,
-      points: model.cloud.scores.map((scores) => scores[number] ?? 0),
-      at: (place: Place) => place.scores[number] ?? 0,
-    })),
-  ];
-}
 
 function pointsOf(model: Model): Point[] {
   return model.cloud.walker.flatMap((walker, cloud) => {
@@ -184,18 +153,17 @@ function label([left, right, lower, upper]: readonly SVGTextElement[], x: Axis, 
     text.textContent = words;
     put(text, at);
   };
-  write(left, x.low && `\u2190 ${x.low}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
-  write(right, `${x.high} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
-  write(lower, y.low && `\u2193 ${y.low}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
-  write(upper, `\u2191 ${y.high}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
+  write(left, `\u2190 ${x.ends[0]}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
+  write(right, `${x.ends[1]} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
+  write(lower, `\u2193 ${y.ends[0]}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
+  write(upper, `\u2191 ${y.ends[1]}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
 }
 
-/** Where the slider leads: of the trait across, else of the one upwards, else of the main one. */
-function trailOf({ model, state, own }: Now, x: Axis, y: Axis): Record<string, string> {
-  const name = x.trait ?? y.trait ?? mainTrait(model)?.name;
-  if (name === undefined) return {};
+/** Where a slider leads: that of a trait which is an axis here, else the large one. */
+function trailOf({ model, state, own }: Now, main: Axis, x: Axis, y: Axis): Record<string, string> {
+  const axis = [x, y].find(({ trait }) => trait !== null) ?? main;
   const [start, stop] = RANGES.trait.map((steps) =>
-    placeOf(model, vectorOf(model, { ...state, traits: { ...state.traits, [name]: steps } }, own)),
+    placeOf(model, vectorOf(model, { ...state, ...axis.moved(state, steps) }, own)),
   );
   return {
     x1: across(x.at(start!)).toFixed(1), y1: down(y.at(start!)).toFixed(1),
@@ -203,11 +171,10 @@ function trailOf({ model, state, own }: Now, x: Axis, y: Axis): Record<string, s
   };
 }
 
-const usually = (model: Model): string => {
-  const main = mainTrait(model);
-  if (!main?.two_classes) return "Choose a point, and that walker walks.";
-  return `Choose a point, and that walker walks. Warm: ${many(main.negative)}; cool: ${many(main.positive)}.`;
-};
+function usually(model: Model): string {
+  const legend = colours(mainTrait(model));
+  return `Choose a point, and that walker walks.${legend && ` ${capital(legend)}.`}`;
+}
 
 function nearest(points: readonly Point[], chart: SVGSVGElement, event: MouseEvent): number {
   const box = chart.getBoundingClientRect();

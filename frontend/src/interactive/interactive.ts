@@ -7,7 +7,6 @@ import { classifier } from "./classifier";
 import { changes } from "./changes";
 import { cloud } from "./cloud";
 import { about, peopleIn } from "./about";
-import { eigenwalkerSliders } from "./eigenwalkers";
 import { find, icon, make, put } from "./element";
 import { takeFiles } from "./files";
 import { pageKeys, stageKeys } from "./keyboard";
@@ -22,7 +21,7 @@ import { section, words, type Fold } from "./section";
 import { Session, type Now, type Part } from "./session";
 import { share } from "./share";
 import { theme } from "./theme";
-import { mainSlider, otherTraits } from "./traits";
+import { eigenwalkerSliders, mainSlider, otherTraits } from "./traits";
 import { transport } from "./transport";
 import { who } from "./who";
 
@@ -137,7 +136,7 @@ function furnish(session: Session): Pick<Part, "show">[] {
     ...(others.element.childElementCount > 0 ? [section("More traits", [others], true)] : []),
     section("Who walks", [who(session, choose)], WIDE.matches),
     section("Several at once", [scenes(session)], WIDE.matches),
-    section("Body or motion", [classifier(session)], WIDE.matches),
+    ...(session.model.traits.length > 0 ? [section("Body or motion", [classifier(session)], WIDE.matches)] : []),
     section("Stride, sway, hop, bounce", [strengths(session), bias(session)]),
     section("Eigenwalkers", [words("What varies most from walker to walker, whatever it means."), eigenwalkerSliders(session)]),
     section("Look", [look(session), transforms(session)]),

@@ -25,7 +25,7 @@ export function label(element: HTMLElement, cast: readonly Cast[], boxes: readon
 /** "female tripled" as "women × 3". */
 function inWords(name: string): string {
   const [first = "", ...others] = name.split(" ");
-  const people = many(first);
+  const people = many({ female: "woman", male: "man" }[first] ?? first);
   if (people.endsWith(" walkers") || /^\d+$/.test(others[0] ?? "")) return name;
   return [people, ...others].join(" ").replace("tripled", "\u00d7 3");
 }

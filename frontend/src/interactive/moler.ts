@@ -5,7 +5,7 @@ import { button } from "./choice";
 import { make } from "./element";
 import type { Now, Part, Session } from "./session";
 import { signed, slider } from "./slider";
-import { ends, pole } from "./words";
+import { ends } from "./words";
 
 const NAMES = ["Stride", "Sway", "Hop", "Bounce"];
 
@@ -58,8 +58,8 @@ export function bias(session: Session): Part {
       onInput: (steps) => session.change({ bias: steps === 0 ? null : { trait: trait.name, steps } }),
     }),
   );
-  const about = traits.map(({ negative, positive }) =>
-    make("p", { class: "note" }, `Bias: 0 is as it is, \u00b11 half the way between the mean ${pole(negative)} and the mean ${pole(positive)}.`),
+  const about = traits.map((trait) =>
+    make("p", { class: "note" }, `Bias: 0 is as it is, \u00b11 half the way between the mean ${ends(trait).join(" and the mean ")}.`),
   );
   return {
     element: make("div", { class: "sliders" }, ...sliders.flatMap(({ element }, i) => [about[i]!, element])),

@@ -1,10 +1,10 @@
 /** How far from anyone the walker is: in a sentence and on a bar. */
 
-import type { Model, Numbers } from "../model/model";
-import { positionsInCloud, type Place } from "../model/place";
+import type { Model } from "../model/model";
+import type { Place } from "../model/place";
+import type { Axis } from "./axis";
 import { make } from "./element";
 import type { Part, Session } from "./session";
-import { ends } from "./words";
 
 /** Right end of the bar: so many times as far as the farthest of all. */
 const FARTHEST = 4;
@@ -31,22 +31,14 @@ interface Way {
 }
 
 /** Where the farthest of a population are. */
-export function reachOf(model: Model): Reach {
-  const both = (names: readonly [string, string], known: Numbers, at: (place: Place) => number): Way[] => [
-    { name: names[0], farthest: Math.max(...known.map((sd) => -sd)), at: (place) => -at(place) },
-    { name: names[1], farthest: Math.max(...known), at },
-  ];
-  const ways = [
-    ...model.traits.flatMap((trait) => {
-      const [low, high] = ends(trait);
-      const known = positionsInCloud(model, trait);
-      return both([`towards ${low}`, `towards ${high}`], known, ({ positions }) => positions[trait.name]!);
-    }),
-    ...model.eigenwalkers.flatMap((_, i) => {
-      const name = `along eigenwalker ${i + 1}`;
-      return both([name, name], model.cloud.scores.map((scores) => scores[i]!), ({ scores }) => scores[i]!);
-    }),
-  ];
+export function reachOf(model: Model, axes: readonly Axis[]): Reach {
+  const ways = axes.flatMap(({ label, ends, trait, points, at }): Way[] => {
+    const names = trait ? ends.map((end) => `towards ${end}`) : [0, 1].map(() => `along ${label.toLowerCase()}`);
+    return [
+      { name: names[0]!, farthest: Math.max(...points.map((sd) => -sd)), at: (place) => -at(place) },
+      { name: names[1]!, farthest: Math.max(...points), at },
+    ];
+  });
   return {
     distance: Math.max(...model.spread.distances),
     ways: ways.filter(({ farthest }) => farthest > LEAST),
@@ -79,7 +71,7 @@ export function howPlausible(reach: Reach, place: Place, own = false): string {
 }
 
 export function plausible(session: Session): Part {
-  const reach = reachOf(session.model);
+  const reach = reachOf(session.model, session.axes);
   const bar = make("div", { class: "far", "aria-hidden": "true" }, make("i"));
   bar.style.setProperty("--real", `${100 / FARTHEST}%`);
   const words = make("p", { class: "verdict" });

@@ -1,8 +1,8 @@
 /** How many real people lie where along a trait: a hill for each class, drawn behind a track. */
 
-import type { Model, Trait } from "../model/model";
-import { positionsInCloud } from "../model/place";
+import type { Model } from "../model/model";
 import { RANGES } from "../model/state";
+import type { Axis } from "./axis";
 import { draw } from "./element";
 import { classOf } from "./words";
 
@@ -12,8 +12,8 @@ const N_PLACES = 121;
 const HEIGHT = 100;
 
 /** Hills over -6 to 6: one for each class of a trait of two, else one. */
-export function ridge(model: Model, trait: Trait): SVGSVGElement {
-  const groups = grouped(model, trait);
+export function ridge(model: Model, axis: Axis): SVGSVGElement {
+  const groups = grouped(model, axis);
   const heights = groups.map(({ positions }) => density(positions));
   const highest = Math.max(...heights.flat(), Number.MIN_VALUE);
   return draw(
@@ -28,12 +28,11 @@ interface Group {
   readonly positions: readonly number[];
 }
 
-function grouped(model: Model, trait: Trait): Group[] {
-  const positions = positionsInCloud(model, trait);
-  if (!trait.two_classes) return [{ kind: "all", positions }];
+function grouped(model: Model, { points, trait }: Axis): Group[] {
+  if (!trait?.two_classes) return [{ kind: "all", positions: points }];
   return (["negative", "positive"] as const).map((kind) => ({
     kind,
-    positions: positions.filter((_, i) => classOf(model, model.cloud.walker[i]!) === kind),
+    positions: points.filter((_, i) => classOf(model, model.cloud.walker[i]!) === kind),
   }));
 }
 

@@ -4,16 +4,16 @@ import { MOST_IN_CROWD, type SceneName } from "../model/state";
 import { choice, pick, type Option } from "./choice";
 import { make } from "./element";
 import type { Part, Session } from "./session";
-import { capital, mainTrait, many } from "./words";
+import { capital, ends } from "./words";
 
 export function scenes(session: Session): Part {
   const { model } = session;
-  const trait = mainTrait(model);
+  const trait = model.traits.find(({ means }) => means !== null);
   const several = model.walkers.length > 1;
   const crowd = Math.min(model.walkers.length, MOST_IN_CROWD);
   const options: Option<SceneName>[] = [
     { value: "one", label: "One" },
-    ...(trait?.means ? [{ value: "four" as const, label: "Means" }] : []),
+    ...(trait ? [{ value: "four" as const, label: "Means" }] : []),
     ...(several ? [{ value: "side" as const, label: "Side by side" }] : []),
     ...(several ? [{ value: "crowd" as const, label: "All" }] : []),
   ];
@@ -21,7 +21,7 @@ export function scenes(session: Session): Part {
   const about = make("p", { class: "note" });
   const said: Record<SceneName, string> = {
     one: "One walker, changed by all the sliders.",
-    four: trait ? `Mean ${many(trait.negative)} and mean ${many(trait.positive)}; then both with what sets them apart tripled.` : "",
+    four: trait ? `Mean ${ends(trait).join(" and mean ")}; then both with what sets them apart tripled.` : "",
     side: "Walkers of the population, brought to one tempo.",
     crowd: `${crowd} walkers of the population. Choose one to see it alone.`,
   };

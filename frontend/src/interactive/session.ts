@@ -9,6 +9,7 @@ import { initialState, type State } from "../model/state";
 import { Store } from "../model/store";
 import { walkerOf } from "../model/walker";
 import type { Stage } from "../stage/stage";
+import { axesOf, type Axis } from "./axis";
 
 /** What is shown at this moment: the state, and what is computed from it once for all parts. */
 export interface Now {
@@ -44,6 +45,7 @@ export class Session {
   /** What draws it, and knows where in its stride the walker is while it walks. */
   stage: Pick<Stage, "cycle" | "mannequin"> | null = null;
   readonly store: Store;
+  readonly axes: readonly Axis[];
   #own: Own | null = null;
   #past: State[] = [];
   #lastKept = -Infinity;
@@ -57,6 +59,7 @@ export class Session {
     state: State = initialState(model),
   ) {
     this.store = new Store(state);
+    this.axes = axesOf(model);
     this.store.listen((after, before) => {
       this.#keep(after, before);
       this.#soon();

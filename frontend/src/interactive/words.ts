@@ -2,19 +2,24 @@
 
 import type { KnownWalker, Model, Trait } from "../model/model";
 
-const POLES: Readonly<Record<string, string>> = { female: "woman", male: "man" };
+const SEXES: Readonly<Record<string, string>> = { female: "woman", male: "man", f: "woman", m: "man" };
 const MANY: Readonly<Record<string, string>> = { woman: "women", man: "men" };
 
-/** The end of a trait, as it stands beside a slider. */
-export const pole = (name: string): string => POLES[name] ?? name;
+/** The two ends of a trait, as they stand beside a slider. */
+export function ends({ label, negative, positive }: Trait): readonly [string, string] {
+  const name = (pole: string): string => (/^(sex|gender)$/i.test(label) ? SEXES[pole.toLowerCase()] : undefined) ?? pole;
+  return [name(negative), name(positive)];
+}
 
 /** Those who are at one end of a trait: "women", "heavy walkers". */
-export const many = (name: string): string => MANY[pole(name)] ?? `${pole(name)} walkers`;
+export const many = (end: string): string => MANY[end] ?? `${end} walkers`;
 
-export const ends = (trait: Trait): readonly [string, string] => [
-  pole(trait.negative),
-  pole(trait.positive),
-];
+/** Which colours stand for whom, where there are two classes. */
+export function colours(trait: Trait | null | undefined): string {
+  if (!trait?.two_classes) return "";
+  const [low, high] = ends(trait);
+  return `warm: ${many(low)}; cool: ${many(high)}`;
+}
 
 export const capital = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
