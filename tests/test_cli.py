@@ -220,6 +220,10 @@ def test_demo_writes_a_report_and_films_and_ends(run, people, tmp_path) -> None:
     page = tmp_path / "new" / "out" / "report.html"
     assert str(page) in said
     assert "Sex from gait" in page.read_text()
+    assert '<a href="index.html">' in page.read_text()
+    index = (tmp_path / "new" / "out" / "index.html").read_text(encoding="utf-8")
+    assert '<meta name="eigenwalker-report" content="report.html"' in index
+    assert '"positive":"male"' in index
     films = sorted((tmp_path / "new" / "out").glob("*.mp4"))
     assert "sex-discriminant-dots.mp4" in [film.name for film in films]
 

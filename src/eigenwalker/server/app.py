@@ -17,7 +17,7 @@ from starlette.middleware.gzip import GZipMiddleware
 from eigenwalker.page.interactive import interactive_page
 from eigenwalker.page.model import page_model
 from eigenwalker.population import Population
-from eigenwalker.server import tasks, upload
+from eigenwalker.server import child_side, tasks, upload
 from eigenwalker.server.guard import Guard
 from eigenwalker.server.tasks import Refused, Workshop
 from eigenwalker.server.upload import TooLarge, kept, listed, parted
@@ -105,9 +105,8 @@ async def read_capture(
     if not _KEPT.fullmatch(population) or not people.is_file():
         raise Refused("That population is no longer here; load it again.")
     with workshop.bench() as bench:
-        paths = await _received(request, Path(bench), name, files)
         asked = {
-            "files": [path.name for path in paths],
+            "files": await _received(request, Path(bench), name, files),
             "population": str(people),
             "unit": unit,
             "rate_hz": rate,
@@ -120,11 +119,10 @@ async def read_population(request: Request, name: str = "", files: str = "") -> 
     workshop = _workshop(request)
     with workshop.bench() as bench:
         folder = Path(bench)
-        task, into = (tasks.STUDY, folder / "captures") if files else (tasks.POPULATION, folder)
-        into.mkdir(exist_ok=True)
-        paths = await _received(request, into, name, files)
-        answer = await workshop.done(task, folder, {"files": [path.name for path in paths]})
-        answer["model"]["population"] = _keep(workshop, folder / "people.nc")
+        task = tasks.STUDY if files else tasks.POPULATION
+        asked = {"files": await _received(request, folder, name, files)}
+        answer = await workshop.done(task, folder, asked)
+        answer["model"]["population"] = _keep(workshop, folder / child_side.PEOPLE)
         return answer
 
 
@@ -146,21 +144,22 @@ async def make_film(request: Request, format: str = Query(...)) -> Response:
     workshop = _workshop(request)
     with workshop.bench() as bench:
         folder = Path(bench)
-        await kept(request.stream(), folder / "stimulus.json", MOST_STIMULUS)
+        sent = child_side.sent_to(folder)
+        await kept(request.stream(), sent / "stimulus.json", MOST_STIMULUS)
         asked = {"files": ["stimulus.json"], "format": format, "most_pixels": MOST_PIXELS}
         answer = await workshop.done(tasks.FILM, folder, asked)
         film = (folder / answer["file"]).read_bytes()
     return Response(film, media_type=FILMS[format])
 
 
-async def _received(request: Request, folder: Path, name: str, files: str) -> list[Path]:
-    """The files of a request, written into a folder."""
-    whole = folder / ".sent"
+async def _received(request: Request, bench: Path, name: str, files: str) -> list[str]:
+    """Write the files of a request into a folder of their own, and return their names."""
+    folder, whole = child_side.sent_to(bench), bench / "whole"
     await kept(request.stream(), whole, upload.MOST_BYTES)
     sizes = listed(files) if files else [(name or "file", whole.stat().st_size)]
     paths = parted(whole, sizes, folder)
     whole.unlink()
-    return paths
+    return [path.name for path in paths]
 
 
 def _workshop(request: Request) -> Workshop:

@@ -20,6 +20,8 @@ REFUSED = 3
 TOO_LARGE = 4
 ANSWER = "answer.json"
 ASKED = "task.json"
+PEOPLE = "people.nc"
+"""Where a task leaves the population that its model is of."""
 
 Asked = dict[str, Any]
 
@@ -44,6 +46,13 @@ def main(task: str, folder: str, seconds: int, most_bytes: int) -> int:
     return 0
 
 
+def sent_to(folder: Path) -> Path:
+    """Return the folder in a task's folder that holds what was sent, made where it is not there."""
+    sent = folder / "sent"
+    sent.mkdir(exist_ok=True)
+    return sent
+
+
 def capture(folder: Path, asked: Asked) -> Asked:
     """A capture as a point of a population's space."""
     from eigenwalker.attempts import walker_from_file
@@ -51,7 +60,7 @@ def capture(folder: Path, asked: Asked) -> Asked:
     from eigenwalker.mocap import is_capture
     from eigenwalker.population import FLAG, Population
 
-    files = [folder / name for name in asked["files"]]
+    files = [sent_to(folder) / name for name in asked["files"]]
     captures = [path for path in files if is_capture(path)] or files[:1]
     if len(captures) > 1:
         named = ", ".join(path.name for path in captures[:3])
@@ -100,7 +109,7 @@ def population(folder: Path, asked: Asked) -> Asked:
     """The model of a population's file."""
     from eigenwalker.population import Population
 
-    path = folder / asked["files"][0]
+    path = sent_to(folder) / asked["files"][0]
     return {"model": _model(Population.load(path), folder, path.stem), "told": []}
 
 
@@ -108,7 +117,7 @@ def study(folder: Path, asked: Asked) -> Asked:
     """A population made of captures, and what became of each that is not in it."""
     from eigenwalker.study import fit_folder
 
-    captures = folder / "captures"
+    captures = sent_to(folder)
     found = fit_folder(captures, traits=_traits_table(captures), n_jobs=1)
     out = found.files[found.files["status"] != "used"]
     told = [f"{row.file}: {row.status}. {row.reason}" for row in out.itertuples()]
@@ -133,8 +142,8 @@ def _traits_table(captures: Path) -> Path | None:
 def _model(people: Any, folder: Path, title: str) -> Asked:
     from eigenwalker.page.model import page_model
 
-    people.save(folder / "people.nc")
-    return page_model(people, title=title, source="people.nc")
+    people.save(folder / PEOPLE)
+    return page_model(people, title=title, source=PEOPLE)
 
 
 def film(folder: Path, asked: Asked) -> Asked:
@@ -142,7 +151,7 @@ def film(folder: Path, asked: Asked) -> Asked:
     from eigenwalker.stimulus import Stimulus
     from eigenwalker.stimulus.write import write_stimulus
 
-    shown = Stimulus.load(folder / asked["files"][0])
+    shown = Stimulus.load(sent_to(folder) / asked["files"][0])
     display, timing = shown.display, shown.timing
     pixels = display.width_px * display.height_px * timing.duration_s * timing.rate_hz
     if pixels > asked["most_pixels"]:

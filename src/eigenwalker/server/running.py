@@ -14,6 +14,9 @@ from eigenwalker.server.guard import WILDCARDS
 USUAL_PORT = 8640
 """Taken where it is free, so that an address that was kept still leads to the page."""
 
+MOST_AT_ONCE = 50
+"""Requests; more are told to come back later."""
+
 
 def listening_socket(host: str, port: int | None) -> socket.socket:
     """Return a socket that listens: at the port, or where none is asked for at a free one.
@@ -50,7 +53,12 @@ def address_of(bound: socket.socket, host: str) -> str:
 def run(app: FastAPI, bound: socket.socket, *, when_ready: Callable[[], None]) -> None:
     """Serve until interrupted."""
     config = uvicorn.Config(
-        app, log_level="warning", server_header=False, timeout_graceful_shutdown=1, ws="none"
+        app,
+        log_level="warning",
+        server_header=False,
+        timeout_graceful_shutdown=1,
+        limit_concurrency=MOST_AT_ONCE,
+        ws="none",
     )
     when_ready()
     with contextlib.suppress(KeyboardInterrupt), bound:
