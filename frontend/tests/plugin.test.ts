@@ -13,13 +13,18 @@ const drawn = vi.fn<(what: string) => void>();
 
 beforeEach(() => {
   drawn.mockClear();
-  const context = new Proxy({}, { get: (_, name) => () => drawn(String(name)), set: () => true });
+  const called = (name: string) => () => {
+    drawn(name);
+    return { addColorStop: () => {} }; // of a gradient; nobody looks at what the rest gives
+  };
+  const context = new Proxy({}, { get: (_, name) => called(String(name)), set: () => true });
   // The frames of jsdom are on another clock than performance.now(); those of browsers are not.
   vi.stubGlobal("requestAnimationFrame", (draw: FrameRequestCallback) =>
     setTimeout(() => draw(performance.now()), 1000 / 60),
   );
   vi.stubGlobal("cancelAnimationFrame", clearTimeout);
-  HTMLCanvasElement.prototype.getContext = (() => context) as never;
+  const contextOf = (kind: string): unknown => (kind === "2d" ? context : null);
+  HTMLCanvasElement.prototype.getContext = contextOf as never;
 });
 
 /** Run one trial; `act` is called once it is on the screen. */
@@ -96,4 +101,16 @@ it("can be simulated on the screen", async () => {
   const [data] = jsPsych.data.get().values();
   expect(data).toMatchObject({ response: 1, response_by: "button" });
   expect(data.rt).toBeGreaterThan(50);
+});
+
+it("loads the mannequin's module for a mannequin, and then begins", async () => {
+  for (const said of ["warn", "error"] as const) {
+    vi.spyOn(console, said).mockImplementation(() => {}); // jsdom has no WebGL: it is drawn flat
+  }
+  let loaded = 0;
+  const wooden = { ...stimulus, display: { ...stimulus.display, style: "mannequin" } };
+  const data = await run({ stimulus: wooden, trial_duration: 200, on_load: () => loaded++ });
+  expect(loaded).toBe(1);
+  expect(data["frame_times"].length).toBeGreaterThan(2);
+  expect(drawn).toHaveBeenCalledWith("createLinearGradient");
 });
