@@ -6,6 +6,9 @@ import type { DrawHulls } from "./look";
 import { makePainter } from "./painting";
 import { solidDrawing } from "./solid";
 
+/** Under which three.js, which this module holds, may be passed on: the text goes with it. */
+export { default as licence } from "../../node_modules/three/LICENSE?raw";
+
 let shared: MannequinPainter | undefined;
 
 /** What draws mannequins; one for the whole page, as browsers give few contexts of WebGL. */
