@@ -171,9 +171,17 @@ describe("strides go on", () => {
 });
 
 /** A canvas that counts what is drawn on it. */
+let dots: [number, number][] = [];
 const counted = vi.fn<(what: string) => void>();
 const silentContext: object = new Proxy({}, {
-  get: (_, name) => (name === "canvas" ? { width: 1, height: 1 } : () => (counted(String(name)), silentContext)),
+  get: (_, name) => {
+    if (name === "canvas") return { width: 1, height: 1 };
+    return (...given: number[]) => {
+      counted(String(name));
+      if (name === "arc") dots.push([given[0]!, given[1]!]);
+      return silentContext;
+    };
+  },
   set: () => true,
 });
 
@@ -323,13 +331,20 @@ describe("the stage", () => {
     expect(picked).toHaveBeenCalledTimes(1);
   });
 
-  it("keeps where it came to by turning itself", () => {
-    const turned = vi.fn();
-    const { show } = staged({ turning_deg_s: 60, azimuth_deg: 0 }, { turned });
+  it.each<[string, (change: (part: Partial<State>) => void) => void]>([
+    ["it is told to stand", (change) => change({ turning_deg_s: 0 })],
+    ["it is held", () => pointer("pointerdown", 10, 10)],
+  ])("stays where it came to by turning itself when %s", (_, act) => {
+    let state: Partial<State> = { turning_deg_s: 60, azimuth_deg: 0 };
+    const change = (part: Partial<State>): void => show((state = { ...state, ...part }));
+    const { show } = staged(state, { turned: (azimuth_deg) => change({ azimuth_deg }) });
+    const seen = (): [number, number][] => (dots = [], run(2), dots.slice(-15));
     run(31);
-    show({ turning_deg_s: 0, azimuth_deg: 0 });
-    const [azimuth] = turned.mock.lastCall as [number];
-    expect(azimuth).toBeCloseTo(30, 6);
+    change({ playing: false });
+    const before = seen();
+    act(change);
+    expect(state.azimuth_deg).toBeCloseTo(30, 6);
+    expect(apart(seen().flat(), before.flat())).toBeLessThan(1e-6);
   });
 
   it("draws the mannequin flat where its module is not to be had", async () => {

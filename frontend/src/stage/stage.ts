@@ -67,6 +67,11 @@ type Seen = Pick<State, "azimuth_deg" | "elevation_deg">;
 const seenAlike = (one: Seen, other: Seen): boolean =>
   one.azimuth_deg === other.azimuth_deg && one.elevation_deg === other.elevation_deg;
 
+const handAt = (azimuth: number, elevation: number): Seen => ({
+  azimuth_deg: wrappedDegrees(azimuth),
+  elevation_deg: within(RANGES.elevation_deg, elevation),
+});
+
 export class Stage {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D;
@@ -155,7 +160,8 @@ export class Stage {
     const view = { ...state, ...this.#hand };
     const staging = stagingOf(cast.length, this.#room.room, this.#size, view.elevation_deg);
     if (!this.#act?.turn(view.azimuth_deg, view.elevation_deg, staging)) return this.#rebuild();
-    this.#built = { ...this.#built, state: view };
+    const { azimuth_deg, elevation_deg } = view;
+    this.#built = { ...this.#built, state: { ...this.#built.state, azimuth_deg, elevation_deg } };
     this.#lay(staging);
     this.#wake();
   }
@@ -172,16 +178,13 @@ export class Stage {
     const turned = this.#turnedBy(this.#time);
     if (!state || !this.#built || turned === 0) return;
     this.#built = { ...this.#built, turned_deg: 0, time: this.#time };
-    this.#see(state.azimuth_deg + turned, state.elevation_deg);
+    this.#hand = handAt(state.azimuth_deg + turned, state.elevation_deg);
+    this.#rebuild();
+    this.#tellHand();
   }
 
-  /** Be seen from there by hand, and say so. */
-  #see(azimuth: number, elevation: number): void {
-    const azimuth_deg = wrappedDegrees(azimuth);
-    const elevation_deg = within(RANGES.elevation_deg, elevation);
-    this.#hand = { azimuth_deg, elevation_deg };
-    this.#look();
-    this.#hooks.turned?.(azimuth_deg, elevation_deg);
+  #tellHand(): void {
+    if (this.#hand) this.#hooks.turned?.(this.#hand.azimuth_deg, this.#hand.elevation_deg);
   }
 
   /** Where in its stride a walker goes on. */
@@ -250,7 +253,9 @@ export class Stage {
   #turn(right: number, down: number): void {
     const from = this.#hand ?? this.#shown?.state;
     if (!from) return;
-    this.#see(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
+    this.#hand = handAt(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
+    this.#look();
+    this.#tellHand();
   }
 
   #watchHand(): () => void {
