@@ -62,6 +62,15 @@ describe("a slider", () => {
     expect(heard).toEqual([0.05, 0]);
   });
 
+  it("stays where it was, where the finger on it scrolls the page", () => {
+    const { heard, one } = made();
+    move(one.input, 2);
+    one.input.dispatchEvent(new Event("pointerdown"));
+    move(one.input, -1);
+    one.input.dispatchEvent(new Event("pointercancel"));
+    expect(heard).toEqual([2, -1, 2]);
+  });
+
   it("tells nobody when it is told where to stand", () => {
     const { heard, one } = made();
     one.show(3);

@@ -153,11 +153,16 @@ function label([left, right, lower, upper]: readonly SVGTextElement[], x: Axis, 
     text.textContent = words;
     put(text, at);
   };
-  write(left, `\u2190 ${x.ends[0]}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
-  write(right, `${x.ends[1]} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
-  write(lower, `\u2193 ${y.ends[0]}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
-  write(upper, `\u2191 ${y.ends[1]}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
+  const [toLeft, toRight] = namesOf(x);
+  const [below, above] = namesOf(y);
+  write(left, toLeft && `\u2190 ${toLeft}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
+  write(right, `${toRight} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
+  write(lower, below && `\u2193 ${below}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
+  write(upper, `\u2191 ${above}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
 }
+
+const namesOf = ({ trait, ends, label }: Axis): readonly [string, string] =>
+  trait ? ends : ["", label.toLowerCase()];
 
 /** Where a slider leads: that of a trait which is an axis here, else the large one. */
 function trailOf({ model, state, own }: Now, main: Axis, x: Axis, y: Axis): Record<string, string> {

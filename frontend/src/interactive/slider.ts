@@ -72,9 +72,16 @@ export function slider(options: SliderOptions): Slider {
     onInput(wanted);
   };
   let held = false;
-  input.addEventListener("pointerdown", () => (held = true));
+  let before = usual;
+  input.addEventListener("pointerdown", () => {
+    [held, before] = [true, value];
+  });
   input.addEventListener("pointerup", () => (held = false));
-  input.addEventListener("pointercancel", () => (held = false));
+  // A finger that scrolls the page, and only came down on the slider, moves nothing.
+  input.addEventListener("pointercancel", () => {
+    held = false;
+    set(before);
+  });
   input.addEventListener("input", () => {
     const wanted = Number(input.value);
     set(held && Math.abs(wanted - usual) < (max - min) * CATCH ? usual : wanted);

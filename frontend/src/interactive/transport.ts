@@ -50,6 +50,9 @@ export function transport(session: Session): Transport {
   scrub.addEventListener("input", () =>
     session.change({ playing: false, cycle: Number(scrub.value) % 1 }),
   );
+  let before: Pick<State, "playing" | "cycle"> = session.state;
+  scrub.addEventListener("pointerdown", () => (before = session.state));
+  scrub.addEventListener("pointercancel", () => session.change({ playing: before.playing, cycle: before.cycle }));
   const tick = (cycle: number): void => {
     scrub.value = String(cycle);
     scrub.style.setProperty("--now", String(cycle));
