@@ -1,5 +1,9 @@
 """Motion maps: against scipy's cdist, what must not change them, and clips that do not fit."""
 
+import os
+import select
+import signal
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -221,3 +225,24 @@ def test_a_map_that_would_not_fit_into_memory_is_refused():
 def test_a_metric_that_cannot_be_is_refused(options, told):
     with pytest.raises(ValueError, match=told):
         FrameMetric(**options)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork on this system")
+@pytest.mark.filterwarnings("ignore:This process:DeprecationWarning")
+def test_maps_are_filled_in_a_forked_process_too():
+    """Threads of the parent do not live on in a child, which must not wait for them."""
+    a, weights = np.random.default_rng(0).normal(size=(200, 15, 3)), np.full(15, 1 / 15)
+    expected = point_map(a, a + 1, weights, shape="absolute").sum()
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        found = point_map(a, a + 1, weights, shape="absolute").sum()
+        os.write(writing, repr(float(found)).encode())
+        os._exit(0)
+    ready, _, _ = select.select([reading], [], [], 30)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    assert ready
+    assert float(os.read(reading, 100)) == expected
+    os.close(reading)
+    os.close(writing)

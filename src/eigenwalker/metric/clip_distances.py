@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from eigenwalker.folds import Progress
 from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.cycles import common_clock, mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames, shaped
@@ -21,6 +21,9 @@ from eigenwalker.metric.motion_maps import common_names, picked, points_of
 from eigenwalker.metric.published import metric_named
 from eigenwalker.metric.registration import Registration, register, register_strides
 from eigenwalker.trajectories import check_trajectories, sampling_rate
+
+if TYPE_CHECKING:
+    from eigenwalker.folds import Progress  # which loads scikit-learn
 
 _AT_ONCE = 4096
 """Pairs whose paths are kept in memory at a time."""

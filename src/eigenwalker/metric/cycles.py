@@ -168,7 +168,8 @@ def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
         path = closed_path(cost, shift, limit, band)
         angles[p] = angle
         lengths[p] = len(path)
-        steps[p, : len(path)] = path
+        for step in range(len(path)):
+            steps[p, step, 0], steps[p, step, 1] = path[step, 0], path[step, 1]
 
 
 @compiled
@@ -177,12 +178,12 @@ def _lay_out(positions, angle, columns):
     n_frames = positions.shape[0]
     cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
     for k in range(positions.shape[1]):
-        for i in range(n_frames):
-            x, y = positions[i, k, 0], positions[i, k, 1]
+        for i in range(columns.shape[2]):
+            frame = i % n_frames
+            x, y = positions[frame, k, 0], positions[frame, k, 1]
             columns[k, 0, i] = cos * x - sin * y
             columns[k, 1, i] = sin * x + cos * y
-            columns[k, 2, i] = positions[i, k, 2]
-        columns[k, :, n_frames:] = columns[k, :, : columns.shape[2] - n_frames]
+            columns[k, 2, i] = positions[frame, k, 2]
 
 
 @compiled

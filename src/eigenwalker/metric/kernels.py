@@ -181,6 +181,10 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(n_threads(), thread_name_prefix="eigenwalker-maps")
 
 
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)  # threads do not live on in a child
+
+
 SHAPE_CODES: dict[Shape, int] = {"absolute": 0, "squared": 1, "sigmoid": 2, "power": 3}
 
 

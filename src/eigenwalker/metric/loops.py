@@ -198,7 +198,7 @@ def _along_diagonals(movement: np.ndarray) -> np.ndarray:
     centred = movement - movement.mean(axis=0)
     size = 1 << max(2 * n - 1, 1).bit_length()
     spectrum = np.fft.rfft(centred, size, axis=0)
-    power = np.einsum("fc,fc->f", spectrum, spectrum.conj()).real
+    power = sum(np.einsum("fc,fc->f", part, part) for part in (spectrum.real, spectrum.imag))
     products = np.fft.irfft(power, size)[:n]
     sums = np.concatenate([[0], np.cumsum(np.einsum("tc,tc->t", centred, centred))])
     if not sums[-1] > 1e-9 * n:

@@ -195,7 +195,7 @@ def _unrolled(cost, begin, lead, band, every):
     """Map of two cycles, of every n-th frame from one on to the same again, within a band."""
     n = cost.shape[0]
     size = n // every + 1
-    piece = np.full((size, size), np.inf, cost.dtype)
+    piece = np.full((size, size), np.inf)
     for i in range(size):
         row = cost[(begin + i * every) % n]
         for j in range(max(0, i - band), min(size, i + band + 1)):
