@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -295,8 +296,13 @@ def test_a_free_port_is_taken_where_the_usual_one_is_not():
             listening_socket("127.0.0.1", ports[0])
 
 
+def film_asked_of(address: str, shown: str, answers: list[int]) -> None:
+    answer = httpx.post(f"{address}api/film?format=mp4", content=shown, timeout=60)
+    answers.append(answer.status_code)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows sends interrupts to whole consoles")
-def test_an_interrupt_ends_it_without_a_word(people, tmp_path):
+def test_an_interrupt_ends_it_and_its_work_without_a_word(people, tmp_path):
     people.save(tmp_path / "people.nc")
     command = [sys.executable, "-c", "from eigenwalker.cli import main; main()", "serve"]
     server = subprocess.Popen(
@@ -311,11 +317,16 @@ def test_an_interrupt_ends_it_without_a_word(people, tmp_path):
         address = re.search(r"http://127\.0\.0\.1:\d+/", server.stdout.readline())
         assert address is not None
         assert "eigenwalker-server" in httpx.get(address[0], timeout=20).text
+        shown = ew.make_stimulus(people.walkers[0], duration_s=100).to_json()
+        asked = threading.Thread(target=film_asked_of, args=(address[0], shown, answers := []))
+        asked.start()
+        while asked.is_alive() and not list(tmp_path.glob("eigenwalker-*/*/task.json")):
+            time.sleep(0.02)
         server.send_signal(signal.SIGINT)
         rest, errors = server.communicate(timeout=20)
     finally:
         server.kill()
-    assert server.returncode == 0
-    assert rest == ""
+    asked.join()
+    assert (answers, server.returncode, rest) == ([503], 0, "")
     assert errors == ""
     assert list(tmp_path.glob("eigenwalker-*")) == []

@@ -187,6 +187,7 @@ def _add_refusals(app: FastAPI) -> None:
         return JSONResponse({"detail": "This went wrong here; the terminal says how."}, 500)
 
     app.add_exception_handler(Exception, broken)
+    app.add_exception_handler(tasks.Ending, says(503))
     app.add_exception_handler(TooLarge, says(413))
     app.add_exception_handler(ValueError, says(422))
     app.add_exception_handler(RequestValidationError, odd)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import contextlib
 import socket
 from collections.abc import Callable
+from types import FrameType
 
 import uvicorn
 from fastapi import FastAPI
 
 from eigenwalker.server.guard import WILDCARDS
+from eigenwalker.server.tasks import Workshop
 
 USUAL_PORT = 8640
 """Taken where it is free, so that an address that was kept still leads to the page."""
@@ -62,4 +64,16 @@ def run(app: FastAPI, bound: socket.socket, *, when_ready: Callable[[], None]) -
     )
     when_ready()
     with contextlib.suppress(KeyboardInterrupt), bound:
-        uvicorn.Server(config).run(sockets=[bound])
+        _Server(config, app.state.workshop).run(sockets=[bound])
+
+
+class _Server(uvicorn.Server):
+    """A server that ends its work as soon as it is told to end itself."""
+
+    def __init__(self, config: uvicorn.Config, workshop: Workshop) -> None:
+        super().__init__(config)
+        self._workshop = workshop
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        self._workshop.close()
+        super().handle_exit(sig, frame)

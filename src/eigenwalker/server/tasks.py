@@ -21,6 +21,10 @@ class Refused(ValueError):  # noqa: N818 - the name says what happened
     """What was sent cannot be used; the message says why."""
 
 
+class Ending(Exception):  # noqa: N818 - the name says what happens
+    """The server is about to end."""
+
+
 class Task(NamedTuple):
     """Something that a child does: its name there, and how long it may take."""
 
@@ -42,6 +46,8 @@ class Workshop:
 
     def __init__(self) -> None:
         self._turn = asyncio.Semaphore(1)
+        self._child: asyncio.subprocess.Process | None = None
+        self._closed = False
 
     def __enter__(self) -> Workshop:
         self.folder = Path(tempfile.mkdtemp(prefix="eigenwalker-"))
@@ -49,6 +55,12 @@ class Workshop:
 
     def __exit__(self, *_: object) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def close(self) -> None:
+        """End the work in progress and begin none."""
+        self._closed = True
+        if self._child is not None and self._child.returncode is None:
+            self._child.kill()
 
     def bench(self) -> tempfile.TemporaryDirectory[str]:
         """Return a folder for one piece of work, which removes itself."""
@@ -61,11 +73,15 @@ class Workshop:
         ------
         Refused
             If what was sent cannot be used, or takes too much time or memory.
+        Ending
+            If the server ends meanwhile.
 
         """
         (bench / child_side.ASKED).write_text(json.dumps(asked), encoding="utf-8")
         async with self._turn:
-            status = await _run(task, bench)
+            status = 0 if self._closed else await self._run(task, bench)
+        if self._closed:
+            raise Ending("The server was ended.")
         if status == child_side.REFUSED:
             raise Refused(_answer(bench))
         if status == child_side.TOO_LARGE:
@@ -74,26 +90,25 @@ class Workshop:
             raise Refused(f"This cannot be used: its reader breaks down over it (status {status}).")
         return _answer(bench)
 
+    async def _run(self, task: Task, bench: Path) -> int:
+        """Return the exit status of a child, which ends with whoever waits for it."""
+        self._child = child = await asyncio.create_subprocess_exec(
+            sys.executable, "-P", child_side.__file__,
+            task.name, str(bench), str(task.seconds), str(MOST_MEMORY),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.DEVNULL,
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+        )  # fmt: skip
+        try:
+            return await asyncio.wait_for(child.wait(), task.seconds)
+        except TimeoutError:
+            raise Refused(f"This takes more than {task.seconds} s, which is too long.") from None
+        finally:
+            if child.returncode is None:
+                child.kill()
+                await child.wait()
+
 
 def _answer(bench: Path) -> Any:
     return json.loads((bench / child_side.ANSWER).read_text(encoding="utf-8"))
-
-
-async def _run(task: Task, bench: Path) -> int:
-    """Return the exit status of a child, which ends with whoever waits for it."""
-    child = await asyncio.create_subprocess_exec(
-        sys.executable, "-P", child_side.__file__,
-        task.name, str(bench), str(task.seconds), str(MOST_MEMORY),
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.DEVNULL,
-        stderr=asyncio.subprocess.DEVNULL,
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
-    try:
-        return await asyncio.wait_for(child.wait(), task.seconds)
-    except TimeoutError:
-        raise Refused(f"This takes more than {task.seconds} s, which is too long.") from None
-    finally:
-        if child.returncode is None:
-            child.kill()
-            await child.wait()
