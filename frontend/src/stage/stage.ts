@@ -5,11 +5,13 @@ import { heldMannequin, type MannequinPainter } from "../canvas/mannequin";
 import { flatPainter } from "../mannequin/painting";
 import type { Cast } from "../model/cast";
 import type { Model } from "../model/model";
-import { RANGES, within, wrappedDegrees, type State } from "../model/state";
+import type { State } from "../model/state";
 import { actOf, lead, type Act } from "./act";
 import { watchGestures } from "./dragging";
+import { sameAct, seenAlike, seenFrom, type Built, type Seen, type Shown } from "./shown";
 import { boxesOf, stagingOf, type Box, type Room, type Size, type Staging } from "./staging";
 import { roomFor } from "./stimulus";
+import { watchSight, watchSize } from "./watching";
 
 export type { Box } from "./staging";
 
@@ -33,44 +35,12 @@ export interface Hooks {
 }
 
 const DEGREES_PER_PX = 0.5;
-/** Finer than this no dot looks better, and a phone gets warm. */
-const MOST_FINE = 2;
 const TICK_S = 0.06;
 /** A screen that stood still meanwhile does not make up for it. */
 const LONGEST_FRAME_S = 0.1;
 /** How soon a stage that was thrown comes to rest, and when it has. */
 const SLOWING_S = 0.28;
 const RESTS_DEG_S = 4;
-
-interface Shown {
-  readonly model: Model;
-  readonly cast: readonly Cast[];
-  readonly state: State;
-}
-
-/** What the act was made of, and when. */
-interface Built extends Shown {
-  readonly time: number;
-  readonly turned_deg: number;
-}
-
-/** Parts of the state that an act is made of, but for the view and who is seen. */
-const ACTED = ["perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms"] as const;
-
-const sameAct = (one: Shown, other: Shown): boolean =>
-  one.model === other.model &&
-  one.cast === other.cast &&
-  ACTED.every((part) => one.state[part] === other.state[part]);
-
-type Seen = Pick<State, "azimuth_deg" | "elevation_deg">;
-
-const seenAlike = (one: Seen, other: Seen): boolean =>
-  one.azimuth_deg === other.azimuth_deg && one.elevation_deg === other.elevation_deg;
-
-const handAt = (azimuth: number, elevation: number): Seen => ({
-  azimuth_deg: wrappedDegrees(azimuth),
-  elevation_deg: within(RANGES.elevation_deg, elevation),
-});
 
 export class Stage {
   readonly #canvas: HTMLCanvasElement;
@@ -89,7 +59,7 @@ export class Stage {
   #stop: (() => void) | null = null;
   #time = 0;
   #ticked = -Infinity;
-  #inSight = true;
+  #inSight = !document.hidden;
   #dirty = true;
   /** Turned by hand: the state follows, and is not heard until it has. */
   #hand: Seen | null = null;
@@ -101,7 +71,11 @@ export class Stage {
     this.#canvas = canvas;
     this.#context = context;
     this.#hooks = hooks;
-    this.#endings = [this.#watchSize(), this.#watchSight(), this.#watchHand()];
+    this.#endings = [
+      watchSize(canvas, (size, fine) => this.#resize(size, fine)),
+      watchSight(canvas, (inSight) => this.#beSeen(inSight)),
+      this.#watchHand(),
+    ];
   }
 
   /** Where in its stride the first walker is, from 0 to below 1. */
@@ -178,7 +152,7 @@ export class Stage {
     const turned = this.#turnedBy(this.#time);
     if (!state || !this.#built || turned === 0) return;
     this.#built = { ...this.#built, turned_deg: 0, time: this.#time };
-    this.#hand = handAt(state.azimuth_deg + turned, state.elevation_deg);
+    this.#hand = seenFrom(state.azimuth_deg + turned, state.elevation_deg);
     this.#rebuild();
     this.#tellHand();
   }
@@ -204,7 +178,7 @@ export class Stage {
   /** Draw a frame, and go on drawing while anything moves. */
   #wake(): void {
     this.#dirty = true;
-    if (this.#stop || !this.#inSight || document.hidden) return;
+    if (this.#stop || !this.#inSight) return;
     let before = 0;
     this.#stop = everyFrame((elapsedMs) => {
       const lasted = Math.min((elapsedMs - before) / 1000, LONGEST_FRAME_S);
@@ -253,7 +227,7 @@ export class Stage {
   #turn(right: number, down: number): void {
     const from = this.#hand ?? this.#shown?.state;
     if (!from) return;
-    this.#hand = handAt(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
+    this.#hand = seenFrom(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
     this.#look();
     this.#tellHand();
   }
@@ -285,46 +259,21 @@ export class Stage {
     if (cast.length > 1 && known !== null) this.#hooks.picked?.(known);
   }
 
-  #watchSize(): () => void {
-    const measure = (): void => {
-      const { clientWidth, clientHeight } = this.#canvas;
-      const fine = Math.min(window.devicePixelRatio || 1, MOST_FINE);
-      const { width_px, height_px } = this.#size;
-      if (clientWidth === width_px && clientHeight === height_px && fine === this.#fine) return;
-      this.#size = { width_px: clientWidth, height_px: clientHeight };
-      this.#fine = fine;
-      this.#canvas.width = Math.round(clientWidth * fine);
-      this.#canvas.height = Math.round(clientHeight * fine);
-      this.#rebuild();
-      // A canvas that has a new size is empty: it is drawn before the screen shows it.
-      this.#act?.draw(this.#context, this.#time, this.#fine);
-    };
-    const observer = new ResizeObserver(measure);
-    observer.observe(this.#canvas);
-    window.addEventListener("resize", measure);
-    measure();
-    return () => {
-      observer.disconnect();
-      window.removeEventListener("resize", measure);
-    };
+  #resize(size: Size, fine: number): void {
+    this.#size = size;
+    this.#fine = fine;
+    this.#canvas.width = Math.round(size.width_px * fine);
+    this.#canvas.height = Math.round(size.height_px * fine);
+    this.#rebuild();
+    // A canvas that has a new size is empty: it is drawn before the screen shows it.
+    this.#act?.draw(this.#context, this.#time, this.#fine);
   }
 
   /** No work while nobody sees it. */
-  #watchSight(): () => void {
-    const look = (): void => {
-      if (this.#inSight && !document.hidden) this.#wake();
-      else this.#sleep();
-    };
-    const observer = new IntersectionObserver((entries) => {
-      this.#inSight = entries.at(-1)!.isIntersecting;
-      look();
-    });
-    observer.observe(this.#canvas);
-    document.addEventListener("visibilitychange", look);
-    return () => {
-      observer.disconnect();
-      document.removeEventListener("visibilitychange", look);
-    };
+  #beSeen(inSight: boolean): void {
+    this.#inSight = inSight;
+    if (inSight) this.#wake();
+    else this.#sleep();
   }
 
   /** In three dimensions where the page holds what draws it, else flat. */
