@@ -62,7 +62,6 @@ function walker(shared: Shared, box: HTMLElement): () => void {
   box.replaceChildren(canvas, ...(controls ? [controls.element] : []));
   const stage = new Stage(canvas, {
     turned: (azimuth_deg, elevation_deg) => change({ azimuth_deg, elevation_deg }),
-    lacking: () => change({ style: "sticks" }),
     mannequin: () => mannequinOf(shared),
   });
   if (matchMedia("(prefers-reduced-motion: reduce)").matches) change({ playing: false });
