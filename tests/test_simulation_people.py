@@ -5,8 +5,10 @@ import pandas as pd
 import pytest
 
 from eigenwalker.datasets import load_population
+from eigenwalker.decomposition import decompose_pca
+from eigenwalker.gait import in_place
 from eigenwalker.jackknife import jackknife_curves
-from eigenwalker.mocap import read_mocap
+from eigenwalker.mocap import read_mocap, virtual_markers
 from eigenwalker.simulation import (
     EFFECTS,
     PARAMETERS,
@@ -103,6 +105,21 @@ def test_the_truth_travels_with_the_population(population, tmp_path):
     drawn = draw_people(6, 6, seed=3)
     pd.testing.assert_frame_equal(truth.people, drawn.iloc[[7, 2]].reset_index(drop=True))
     assert truth.effects.loc["obliquity_factor", "sex"] == EFFECTS["sex"]["obliquity_factor"]
+
+
+def test_the_capture_of_each_walker_can_be_made_again_with_its_truth(population, tmp_path):
+    population.save(tmp_path / "people.nc")
+    some = load_population(tmp_path / "people.nc").select([9, 4])
+    truth = truth_of(some)
+    walks = [
+        simulate_walk(dict(person), seed=seed, **truth.capture)
+        for (_, person), seed in zip(truth.people.iterrows(), truth.seeds, strict=True)
+    ]
+    again = [decompose_pca(in_place(virtual_markers(walk))) for walk in walks]
+    for walker, walk, same in zip(some.walkers, walks, again, strict=True):
+        assert some.vector(same) == pytest.approx(some.vector(walker), abs=1e-6)
+        assert walk.attrs["noise_mm"] == truth.capture["noise_mm"] == 1.0
+        assert walk["left_knee_flexion_deg"].max() > 40
 
 
 def test_nobody_knows_the_truth_of_real_people(population):

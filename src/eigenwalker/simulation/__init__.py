@@ -2,8 +2,9 @@
 
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.parameters import PARAMETERS, average_person
-from eigenwalker.simulation.people import CAPTURE, simulate_captures, simulate_population
+from eigenwalker.simulation.people import simulate_captures, simulate_population
 from eigenwalker.simulation.planting import Pattern, plant, random_pattern
+from eigenwalker.simulation.recipe import CAPTURE
 from eigenwalker.simulation.traits import EFFECTS, TRAITS, draw_people
 from eigenwalker.simulation.truth import Truth, true_direction, truth_of
 from eigenwalker.simulation.walking import FULL, simulate_walk, true_events

@@ -16,16 +16,12 @@ from eigenwalker.gait import in_place
 from eigenwalker.mocap import virtual_markers
 from eigenwalker.population import Population
 from eigenwalker.simulation.planting import Pattern, plant
+from eigenwalker.simulation.recipe import CAPTURE, Recipe
 from eigenwalker.simulation.traits import EFFECTS, TRAITS, Effects, draw_people
-from eigenwalker.simulation.truth import recipe_of
 from eigenwalker.simulation.walking import simulate_walk
 from eigenwalker.walker import Walker
 
 _SHARE = 100
-
-CAPTURE = {"variability": 1.0, "wander_mm": 10.0, "noise_mm": 1.0}
-"""What a capture is like if nothing else is asked for: strides of healthy adults on a treadmill,
-and the millimetre of noise of Troje (2002)."""
 
 
 def simulate_captures(
@@ -136,6 +132,8 @@ def simulate_population(
     """
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
     planted = dict(planted or {})
+    capture = {"markers": "skin", **CAPTURE, **capture}
+    recipe = Recipe(n_women, n_men, seed, sex_effect, effects, planted, capture)
     parts = np.array_split(np.arange(len(people)), max(len(people) // _SHARE, 1))
     work = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
     found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
@@ -145,7 +143,7 @@ def simulate_population(
         people[list(TRAITS)],
         provenance={
             "simulated": f"{n_women} women and {n_men} men who do not exist, seed {seed}",
-            "recipe": recipe_of(n_women, n_men, seed, sex_effect, effects, planted),
+            "recipe": recipe.as_text(),
         },
     )
 
@@ -155,7 +153,7 @@ def _walkers(
     capture: Mapping[str, Any],
 ) -> list[Walker]:  # fmt: skip
     """Return the walkers of some of the people; only these leave the process that walked them."""
-    making = {"markers": "skin", "truth": bool(planted), **capture}
+    making = {"truth": bool(planted), **capture}
     walkers = []
     with one_blas_thread():
         for row, number in enumerate(numbers):

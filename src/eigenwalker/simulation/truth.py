@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,6 +15,7 @@ from eigenwalker.gait import in_place
 from eigenwalker.population import Population
 from eigenwalker.simulation.parameters import PARAMETERS
 from eigenwalker.simulation.planting import Pattern, plant
+from eigenwalker.simulation.recipe import read_recipe
 from eigenwalker.simulation.traits import EFFECTS, Effects, draw_people
 from eigenwalker.simulation.walking import simulate_walk
 
@@ -30,14 +32,23 @@ class Truth:
     effects : DataFrame of shape (parameter, trait)
         What one unit of a trait's score adds to a parameter, in SDs of the parameter within a
         sex. That of sex holds the differences of the means too.
-    planted : dict of trait to Pattern
+    planted : mapping of trait to Pattern
         Effects planted in mean posture, movement or frequency themselves.
+    capture : mapping of str to value
+        How everyone was captured, as `simulate_walk` takes it: markers, noise, wander, variability.
+    seeds : list of pairs of int
+        The seed of each walker's capture: ``simulate_walk(truth.people.iloc[0],
+        seed=truth.seeds[0], **truth.capture)`` is that of the first, before anything was planted,
+        with the joint angles, phase and stance of each frame; `true_events` of it tells when its
+        feet strike and leave the ground.
 
     """
 
     people: pd.DataFrame
     effects: pd.DataFrame
-    planted: dict[str, Pattern]
+    planted: Mapping[str, Pattern]
+    capture: Mapping[str, Any]
+    seeds: list[tuple[int, int]]
 
 
 def truth_of(population: Population) -> Truth:
@@ -74,14 +85,21 @@ def truth_of(population: Population) -> Truth:
             "This population was not simulated, so nobody knows its truth; "
             "make one with simulate_population()."
         )
-    recipe = json.loads(population.provenance["recipe"])
-    planted = {trait: _pattern(numbers) for trait, numbers in recipe.pop("planted", {}).items()}
-    people = draw_people(**recipe)
-    effects = recipe.get("effects", EFFECTS)
+    recipe = read_recipe(population.provenance["recipe"])
+    people = draw_people(
+        recipe.n_women,
+        recipe.n_men,
+        seed=recipe.seed,
+        sex_effect=recipe.sex_effect,
+        effects=recipe.effects,
+    )
+    rows = _same_rows(people, population.traits)
     return Truth(
-        people=_same_rows(people, population.traits),
-        effects=_effect_table(effects, recipe["sex_effect"]),
-        planted=planted,
+        people=people.iloc[rows].reset_index(drop=True),
+        effects=_effect_table(recipe.effects, recipe.sex_effect),
+        planted=recipe.planted,
+        capture=recipe.capture,
+        seeds=[(recipe.seed, row) for row in rows],
     )
 
 
@@ -141,36 +159,7 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
     return np.mean(apart, axis=0) / (2 * step)
 
 
-def recipe_of(
-    n_women: int, n_men: int, seed: int, sex_effect: float, effects: Effects,
-    planted: dict[str, Pattern],
-) -> str:  # fmt: skip
-    """Return what `truth_of` needs to draw the same people again."""
-    recipe: dict[str, object] = {
-        "n_women": n_women, "n_men": n_men, "seed": seed, "sex_effect": sex_effect,
-    }  # fmt: skip
-    if effects is not EFFECTS:
-        recipe["effects"] = {trait: dict(sizes) for trait, sizes in effects.items()}
-    if planted:
-        recipe["planted"] = {trait: _numbers(pattern) for trait, pattern in planted.items()}
-    return json.dumps(recipe)
-
-
-def _numbers(pattern: Pattern) -> dict[str, object]:
-    return {
-        "structure": np.asarray(pattern.structure).tolist(),
-        "movement": np.asarray(pattern.movement).tolist(),
-        "frequency_hz": pattern.frequency_hz,
-    }
-
-
-def _pattern(numbers: dict) -> Pattern:
-    return Pattern(
-        np.array(numbers["structure"]), np.array(numbers["movement"]), numbers["frequency_hz"]
-    )
-
-
-def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> pd.DataFrame:
+def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> list[int]:
     known = ["height_mm", "weight_kg", "happy", "nervous"]
     number = {key: row for row, key in enumerate(people[known].itertuples(index=False, name=None))}
     rows = [number.get(key, -1) for key in traits[known].itertuples(index=False, name=None)]
@@ -179,7 +168,7 @@ def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> pd.DataFrame:
             "These walkers are not those that this version draws by the recipe of the population; "
             "read its truth with the version that simulated it, or simulate it anew."
         )
-    return people.iloc[rows].reset_index(drop=True)
+    return rows
 
 
 def _effect_table(effects: Effects, sex_effect: float) -> pd.DataFrame:
