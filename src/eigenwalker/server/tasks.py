@@ -100,6 +100,8 @@ class Workshop:
             stderr=asyncio.subprocess.DEVNULL,
             env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
         )  # fmt: skip
+        if self._closed:  # while the child was made
+            child.kill()
         try:
             return await asyncio.wait_for(child.wait(), task.seconds)
         except TimeoutError:
