@@ -3,6 +3,12 @@
 import type { Model } from "../model/model";
 import { make } from "./element";
 
+const IDEA =
+  "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that " +
+  "ride on sines; so walks can be added, averaged and pushed past the end.";
+const SOURCES =
+  "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait.";
+
 /** Where the report lies, if there is one: an address relative to the page. */
 function reportLink(): HTMLElement[] {
   const said = document.querySelector('meta[name="eigenwalker-report"]')?.getAttribute("content") ?? "";
@@ -27,11 +33,12 @@ export function about(model: Model): HTMLElement {
   return make("details", { class: "section" },
     make("summary", {}, make("h2", {}, "About")),
     make("div", { class: "body" },
-      make("p", {}, "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that ride on sines; so walks can be added, averaged and pushed past the end."),
+      make("p", {}, IDEA),
       ...(model.simulated ? [make("p", {}, "The walkers here are simulated: nobody was captured.")] : []),
-      make("p", { class: "note" }, "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait."),
+      make("p", { class: "note" }, SOURCES),
       ...reportLink(),
-      make("dl", { class: "facts" }, ...facts.flatMap(([term, said]) => [make("dt", {}, term!), make("dd", {}, said!)])),
+      make("dl", { class: "facts" },
+        ...facts.flatMap(([term, said]) => [make("dt", {}, term!), make("dd", {}, said!)])),
     ),
   );
 }

@@ -38,7 +38,9 @@ export function changes(session: Session): Part {
     place: placeOf(model, Float64Array.from(vector)),
   }));
   const usual = along(model, initialState(model), null, axis);
-  const plots = MEASURES.map((measure) => {
+  const average = at(model.average, model);
+  const known = MEASURES.filter(({ name }) => Number.isFinite(average[name]));
+  const plots = known.map((measure) => {
     const values = [...people.map(({ measures }) => measures[measure.name]), ...usual.map((of) => of[measure.name])];
     return plot(model, axis, measure, people, [Math.min(...values), Math.max(...values)]);
   });
@@ -96,7 +98,8 @@ function plot(
     inside(HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - least)) / over, HEIGHT);
   const where = (place: Place): number => x(axis?.at(place) ?? 0);
   const dots = people.map(({ measures, place }, i) => {
-    return draw("circle", { class: `person ${classOf(model, i)}`, r: 1.4, cx: where(place).toFixed(1), cy: y(measures[name]).toFixed(1) });
+    const at = { cx: where(place).toFixed(1), cy: y(measures[name]).toFixed(1) };
+    return draw("circle", { class: `person ${classOf(model, i)}`, r: 1.4, ...at });
   });
   const line = draw("polyline", { class: "trail" });
   const here = draw("circle", { class: "now", r: 3.6 });
@@ -110,9 +113,10 @@ function plot(
   );
   const show = (now: Now, measures: readonly Measures[]): void => {
     const value = now.measures[name];
-    said.replaceChildren(make("b", {}, value.toFixed(digits)), ` ${unit}`, make("small", {}, difference(value - average, digits)));
-    const curve = measures.map((of, i) => `${x(low + ((high - low) * i) / (N_ALONG - 1)).toFixed(1)},${y(of[name]).toFixed(1)}`);
-    put(line, { points: curve.join(" ") });
+    const more = make("small", {}, difference(value - average, digits));
+    said.replaceChildren(make("b", {}, value.toFixed(digits)), ` ${unit}`, more);
+    const curve = measures.map((of, i) => [x(low + ((high - low) * i) / (N_ALONG - 1)), y(of[name])]);
+    put(line, { points: curve.map((point) => point.map((at) => at.toFixed(1)).join()).join(" ") });
     put(here, { cx: where(now.place).toFixed(1), cy: y(value).toFixed(1) });
   };
   return { element, show };

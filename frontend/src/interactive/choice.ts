@@ -51,7 +51,7 @@ export function toggle(label: string, onChange: (on: boolean) => void, hint?: st
 }
 
 /** A button with words on it. */
-export function button(label: string, onClick: () => void, kind = ""): HTMLButtonElement {
+export function button(label: string, onClick: () => unknown, kind = ""): HTMLButtonElement {
   const element = make("button", { type: "button", class: kind || undefined }, label);
   element.addEventListener("click", onClick);
   return element;

@@ -30,7 +30,8 @@ export function classifier(session: Session): Part {
   const known = partsOf(session.model);
   const option = (value: string): Option<string> => ({ value, ...(PARTS[value] ?? { label: capital(value) }) });
   const choose = (part: string): void => session.change({ part });
-  const parts = choice("What the sliders may change", known.filter((part) => COMMON.includes(part)).map(option), choose);
+  const common = known.filter((part) => COMMON.includes(part)).map(option);
+  const parts = choice("What the sliders may change", common, choose);
   const rest = known.filter((part) => !COMMON.includes(part)).map(option);
   const single = pick<string>("or one part of the motion", [{ value: "", label: "\u2013" }, ...rest], (part) =>
     choose(part || "all"),

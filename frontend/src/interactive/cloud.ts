@@ -7,6 +7,8 @@ import { RANGES } from "../model/state";
 import type { Axis } from "./axis";
 import { pick } from "./choice";
 import { draw, freshId, make, put } from "./element";
+import { nearest, towards, type Place, type Way } from "./nearby";
+import { words } from "./section";
 import type { Now, Part, Session } from "./session";
 import { capital, classOf, colours, mainTrait } from "./words";
 
@@ -33,7 +35,7 @@ const down = (sd: number): number => HEIGHT / 2 - (sd / REACH) * (HEIGHT / 2);
 export function cloud(session: Session): Part {
   const { model, axes } = session;
   const [first, second = first] = [axes[0], axes[Math.max(model.traits.length, 1)]];
-  if (!first || !second) return { element: make("p", { class: "note" }, "Too few walkers to differ."), show: () => {} };
+  if (!first || !second) return words("Too few walkers to differ.");
   let [x, y] = [first, second];
   const points = pointsOf(model);
   const rest = draw("path", { class: "rest" });
@@ -63,7 +65,8 @@ export function cloud(session: Session): Part {
     const point = points[number];
     if (!point) return;
     activate(number);
-    session.change({ from: point.walker, scene: "one", traits: {}, eigenwalkers: model.eigenwalkers.map(() => 0), bias: null });
+    const unchanged = { traits: {}, bias: null, eigenwalkers: model.eigenwalkers.map(() => 0) };
+    session.change({ from: point.walker, scene: "one", ...unchanged });
   };
   const lay = (): void => {
     points.forEach((point) => {
@@ -92,9 +95,11 @@ export function cloud(session: Session): Part {
     return picked.element;
   };
 
-  chart.addEventListener("pointermove", (event) => activate(nearest(points, chart, event)));
+  const meant = (event: MouseEvent): number =>
+    nearest(points, under(chart, event), (NEAR * WIDTH) / chart.clientWidth);
+  chart.addEventListener("pointermove", (event) => activate(meant(event)));
   chart.addEventListener("pointerleave", () => activate(-1));
-  chart.addEventListener("click", (event) => walk(nearest(points, chart, event)));
+  chart.addEventListener("click", (event) => walk(meant(event)));
   chart.addEventListener("focus", () => active < 0 && chart.matches(":focus-visible") && activate(0));
   chart.addEventListener("blur", () => activate(-1));
   chart.addEventListener("keydown", (event) => {
@@ -107,8 +112,9 @@ export function cloud(session: Session): Part {
   });
   lay();
   activate(-1);
+  const axesToChoose = make("div", { class: "pair" }, choose("Across", true), choose("Up", false));
   return {
-    element: make("div", {}, chart, said, make("div", { class: "pair" }, choose("Across", true), choose("Up", false))),
+    element: make("div", {}, chart, said, axesToChoose),
     show: move,
   };
 }
@@ -120,7 +126,8 @@ function pointsOf(model: Model): Point[] {
     const known = model.walkers[walker];
     if (!known) return [];
     const kind = `person ${classOf(model, walker)}`;
-    const circle = draw("circle", { r: RADIUS, id: freshId(), role: "option", class: kind, "aria-label": known.name });
+    const option = { role: "option", id: freshId(), "aria-label": known.name };
+    const circle = draw("circle", { r: RADIUS, class: kind, ...option });
     return [{ walker, cloud, circle, x: 0, y: 0 }];
   });
 }
@@ -148,10 +155,10 @@ function grid(): SVGElement[] {
 }
 
 function label([left, right, lower, upper]: readonly SVGTextElement[], x: Axis, y: Axis): void {
-  const write = (text: SVGTextElement | undefined, words: string, at: Readonly<Record<string, string | number>>): void => {
-    if (!text) return;
-    text.textContent = words;
-    put(text, at);
+  type At = Readonly<Record<string, string | number>>;
+  const write = (text: SVGTextElement | undefined, words: string, at: At): void => {
+    text?.replaceChildren(words);
+    if (text) put(text, at);
   };
   const [toLeft, toRight] = namesOf(x);
   const [below, above] = namesOf(y);
@@ -181,36 +188,18 @@ function usually(model: Model): string {
   return `Choose a point, and that walker walks.${legend && ` ${capital(legend)}.`}`;
 }
 
-function nearest(points: readonly Point[], chart: SVGSVGElement, event: MouseEvent): number {
+/** Where on the chart a pointer is. */
+function under(chart: SVGSVGElement, event: MouseEvent): Place {
   const box = chart.getBoundingClientRect();
   const scale = WIDTH / chart.clientWidth;
-  const h = (event.clientX - box.left - chart.clientLeft) * scale;
-  const v = (event.clientY - box.top - chart.clientTop) * scale;
-  const far = points.map((point) => Math.hypot(point.x - h, point.y - v));
-  const best = far.indexOf(Math.min(...far));
-  return best >= 0 && far[best]! < NEAR * scale ? best : -1;
+  const across = event.clientX - box.left - chart.clientLeft;
+  const down = event.clientY - box.top - chart.clientTop;
+  return { x: across * scale, y: down * scale };
 }
 
-const WAYS: Readonly<Record<string, readonly [number, number]>> = {
+const WAYS: Readonly<Record<string, Way>> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, -1],
   ArrowDown: [0, 1],
 };
-
-/** The nearest point that lies more that way than aside; the same where there is none. */
-function towards(points: readonly Point[], from: number, [right, below]: readonly [number, number]): number {
-  const here = points[from];
-  if (!here) return 0;
-  let best = from;
-  let least = Infinity;
-  points.forEach((point, number) => {
-    const [h, v] = [point.x - here.x, point.y - here.y];
-    const ahead = h * right + v * below;
-    const aside = Math.abs(h * below) + Math.abs(v * right);
-    if (number === from || ahead <= 0 || aside > 2 * ahead) return;
-    const cost = ahead + 2 * aside;
-    if (cost < least) [best, least] = [number, cost];
-  });
-  return best;
-}

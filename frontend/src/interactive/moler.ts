@@ -58,9 +58,10 @@ export function bias(session: Session): Part {
       onInput: (steps) => session.change({ bias: steps === 0 ? null : { trait: trait.name, steps } }),
     }),
   );
-  const about = traits.map((trait) =>
-    make("p", { class: "note" }, `Bias: 0 is as it is, \u00b11 half the way between the mean ${ends(trait).join(" and the mean ")}.`),
-  );
+  const about = traits.map((trait) => {
+    const means = `the mean ${ends(trait).join(" and the mean ")}`;
+    return make("p", { class: "note" }, `Bias: 0 is as it is, \u00b11 half the way between ${means}.`);
+  });
   return {
     element: make("div", { class: "sliders" }, ...sliders.flatMap(({ element }, i) => [about[i]!, element])),
     show: ({ state }) =>

@@ -67,12 +67,15 @@ async function openCapture(files: readonly File[], held: Held | null): Promise<O
 
 async function openText(file: File, model: Model | null): Promise<Opened> {
   if (file.size > MOST_TEXT_BYTES) {
-    throw new CannotOpen(`${file.name} has ${Math.round(file.size / 1e6)} MB; a model or stimulus has ${MOST_TEXT_BYTES / 1e6} at most.`);
+    const size = Math.round(file.size / 1e6);
+    throw new CannotOpen(`${file.name} has ${size} MB; a model or stimulus has ${MOST_TEXT_BYTES / 1e6} at most.`);
   }
   const content = parsed(await file.text(), file.name);
   const format = content && typeof content === "object" && "format" in content ? content.format : null;
   try {
-    if (format === "eigenwalker model") return { kind: "model", held: { ...heldIn(content), population: "" }, told: [] };
+    if (format === "eigenwalker model") {
+      return { kind: "model", held: { ...heldIn(content), population: "" }, told: [] };
+    }
     if (format === "eigenwalker stimulus" && model) {
       return { kind: "own", own: ownOf(model, readStimulus(content), file.name), told: [] };
     }

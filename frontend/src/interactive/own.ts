@@ -23,7 +23,8 @@ function sameMarkers({ markers, harmonics }: Model, walker: Walker, name: string
   const missing = markers.find((_, i) => order[i]! < 0);
   if (missing !== undefined) throw new CannotOpen(`${name}: its walker lacks ${missing}, which all walkers here have.`);
   if (walker.harmonics.join() !== harmonics.join()) {
-    throw new CannotOpen(`${name}: its postures ride on the harmonics ${walker.harmonics.join(", ")}; here they are ${harmonics.join(", ")}.`);
+    const [its, here] = [walker.harmonics, harmonics].map((each) => each.join(", "));
+    throw new CannotOpen(`${name}: its postures ride on the harmonics ${its}; here they are ${here}.`);
   }
   const sort = <T>(posture: readonly T[]): T[] => order.map((i) => posture[i]!);
   return { ...walker, markers, p0: sort(walker.p0), p: walker.p.map(sort) };
@@ -44,7 +45,8 @@ function sameSigns(model: Model, walker: Walker): Walker {
     return flat.reduce((sum, value, j) => sum + value * model.average[start + j]!, 0) < 0;
   });
   // The first phase is 0 by the choice of the origin: its sign turns by half a stride for all.
-  const half = turned[0] ? walker.harmonics.map((harmonic) => (harmonic / walker.harmonics[0]!) * Math.PI) : walker.harmonics.map(() => 0);
+  const later = turned[0] ? Math.PI / walker.harmonics[0]! : 0;
+  const half = walker.harmonics.map((harmonic) => harmonic * later);
   const phases = walker.phases.map((phase, i) => phase + half[i]! + (turned[i] ? Math.PI : 0));
   const p = walker.p.map((posture, i) =>
     turned[i] ? posture.map(([x, y, z]) => [-x, -y, -z] as const) : posture,

@@ -22,10 +22,16 @@ export interface Now {
   readonly measures: Readonly<Record<MeasureName, number>>;
 }
 
-/** A piece of the page that shows something of the moment. */
-export interface Part {
-  readonly element: HTMLElement;
+/** What shows something of the moment. */
+export interface Shown {
   show(now: Now): void;
+  /** Be gone: another session takes over. */
+  leave?(): void;
+}
+
+/** A piece of the page that does. */
+export interface Part extends Shown {
+  readonly element: HTMLElement;
 }
 
 /** Changes that follow one another within this time are undone together. */

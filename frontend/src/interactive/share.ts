@@ -9,18 +9,25 @@ import type { Notices } from "./notices";
 import { hasServer, makeFilm } from "./server";
 import type { Part, Session } from "./session";
 
+const FORMATS =
+  "A picture is PNG, a film MP4, a page one file of HTML that plays by itself; a stimulus is JSON for experiments.";
+
 export function share(session: Session, notices: Notices): Part {
   const python = make("pre", { class: "line", tabindex: 0, "aria-label": "Python that makes this walker" });
   const copy = (text: string, what: string): void => void copied(text, what, notices);
   const link = (): void => {
     const address = addressOf(session.state, session.model);
-    copy(location.href.split("#")[0] + (address && `#${address}`), "Link");
-    if (session.state.from === "own") notices.news("Link copied. It does not hold your own capture: save that as a stimulus.");
+    const what = session.state.from === "own" ? "Link, which does not hold your own capture," : "Link";
+    copy(location.href.split("#")[0] + (address && `#${address}`), what);
   };
   const film = filming(session, notices);
   const saves = (label: string, file: (kept: Kept) => SavedFile | Promise<SavedFile>): HTMLButtonElement =>
-    button(label, () => {
-      void Promise.resolve(kept(session)).then(file).then((made) => saved(made, notices)).catch((error: unknown) => notices.caught(error));
+    button(label, async () => {
+      try {
+        saved(await file(kept(session)), notices);
+      } catch (error) {
+        notices.caught(error);
+      }
     });
   return {
     element: make("div", {},
@@ -35,7 +42,7 @@ export function share(session: Session, notices: Notices): Part {
         saves("Stimulus", stimulusFile),
       ),
       film.progress,
-      make("p", { class: "note" }, "A picture is PNG, a film MP4 or WebM, a page one file of HTML that plays by itself; a stimulus is JSON for experiments."),
+      make("p", { class: "note" }, FORMATS),
       python,
     ),
     show: ({ model, state, own }) => void (python.textContent = pythonLine(model, state, own)),

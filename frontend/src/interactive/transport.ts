@@ -62,7 +62,8 @@ export function transport(session: Session): Transport {
     said: (value) => `${value.toFixed(2)}\u00d7`,
     onInput: (value) => session.change({ tempo: value }),
   });
-  const views = choice("View", VIEWS, (azimuth_deg) => session.change({ azimuth_deg, elevation_deg: 0 }), { named: false });
+  const look = (azimuth_deg: number): void => session.change({ azimuth_deg, elevation_deg: 0 });
+  const views = choice("View", VIEWS, look, { named: false });
   const styles = choice("Drawn as", STYLES, (style) => session.change({ style }), { named: false });
   return {
     element: make("div", { class: "tools" },

@@ -7,7 +7,8 @@ const MANY: Readonly<Record<string, string>> = { woman: "women", man: "men" };
 
 /** The two ends of a trait, as they stand beside a slider. */
 export function ends({ label, negative, positive }: Trait): readonly [string, string] {
-  const name = (pole: string): string => (/^(sex|gender)$/i.test(label) ? SEXES[pole.toLowerCase()] : undefined) ?? pole;
+  const names = /^(sex|gender)$/i.test(label) ? SEXES : {};
+  const name = (pole: string): string => names[pole.toLowerCase()] ?? pole;
   return [name(negative), name(positive)];
 }
 
