@@ -286,6 +286,21 @@ describe("the stage", () => {
     expect(stage.cycle).toBeCloseTo(0.75, 9);
   });
 
+  it("lets several go on as they were to each other when it is paused and scrubbed", () => {
+    const { stage, show } = staged({ scene: "four" });
+    run(100);
+    const seen = (): number[] => (dots = [], run(2), dots.slice(-60).flat());
+    show({ scene: "four", playing: false });
+    const paused = seen();
+    show({ scene: "four", playing: false, cycle: stage.cycle });
+    expect(apart(seen(), paused)).toBeLessThan(1e-6);
+    const { cycle } = stage;
+    show({ scene: "four", playing: false, cycle: (cycle + 0.4) % 1 });
+    expect(apart(seen(), paused)).toBeGreaterThan(1);
+    show({ scene: "four", playing: false, cycle });
+    expect(apart(seen(), paused)).toBeLessThan(1e-6);
+  });
+
   /** A pointer that moves every 30 ms. */
   let time = 0;
   const pointer = (type: string, x: number, y: number): void => {

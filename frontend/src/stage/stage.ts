@@ -97,8 +97,9 @@ export class Stage {
     this.#hand = null;
     if (state.style === "mannequin") this.#askForMannequin();
     if (state.turning_deg_s === 0) this.#fold();
-    const scrubbed = !before || (!state.playing && before.state.cycle !== state.cycle);
-    if (scrubbed || !this.#built || !sameAct(this.#built, this.#shown)) this.#rebuild(scrubbed);
+    const scrubbed = before && !state.playing && before.state.cycle !== state.cycle;
+    if (scrubbed) this.#rebuild(state.cycle - this.cycle);
+    else if (!this.#built || !sameAct(this.#built, this.#shown)) this.#rebuild();
     else if (!seenAlike(this.#built.state, state)) this.#look();
     else this.#wake();
   }
@@ -110,8 +111,8 @@ export class Stage {
     this.#shown = null;
   }
 
-  /** Make the act anew, each walker in the stride where it was. */
-  #rebuild(scrubbed = false): void {
+  /** Make the act anew, each walker in the stride where it was, or so many cycles on. */
+  #rebuild(on = 0): void {
     const shown = this.#shown;
     if (!shown || this.#size.width_px === 0 || this.#size.height_px === 0) return;
     const { model, cast } = shown;
@@ -119,7 +120,7 @@ export class Stage {
     if (this.#room?.cast !== cast) this.#room = { cast, room: roomFor(model, cast) };
     const staging = stagingOf(cast.length, this.#room.room, this.#size, state.elevation_deg);
     const [size, time, mannequin] = [this.#size, this.#time, this.#mannequin];
-    const cycles = cast.map((_, i) => this.#cycleOf(i, scrubbed));
+    const cycles = cast.map((_, i) => on + this.#cycleOf(i));
     const turned_deg = this.#turnedBy(time);
     this.#act = actOf({ model, cast, state, size, staging, cycles, time, turned_deg, mannequin });
     this.#built = { model, cast, state, time, turned_deg };
@@ -162,10 +163,10 @@ export class Stage {
   }
 
   /** Where in its stride a walker goes on. */
-  #cycleOf(number: number, scrubbed: boolean): number {
+  #cycleOf(number: number): number {
     const { state } = this.#shown!;
     const ahead = lead(state, number);
-    if (scrubbed || !this.#act) return state.cycle + ahead;
+    if (!this.#act) return state.cycle + ahead;
     const known = this.#built?.state.scene === state.scene ? this.#act.cycle(number, this.#time) : NaN;
     return Number.isFinite(known) ? known : this.#act.cycle(0, this.#time) + ahead;
   }
