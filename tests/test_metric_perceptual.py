@@ -240,6 +240,16 @@ def test_each_observer_s_counts_are_their_own():
     np.testing.assert_array_equal(alone.chosen[0], together.chosen[row])
 
 
+def test_pairs_come_in_the_order_of_walkers_asked_for():
+    answers, names = trials(60), ["w5", "w0", "w3", "w1", "w4", "w2", "w9"]
+    counts = count_pairs(answers, walkers=names)
+    assert counts.pairs.tolist() == list(itertools.combinations(names, 2))
+    assert counts.differences[("w5", "w0")] == count_pairs(answers).differences[("w0", "w5")]
+    assert counts.differences[[pair for pair in counts.pairs if "w9" in pair]].isna().all()
+    with pytest.raises(ValueError, match="not among the walkers"):
+        count_pairs(answers, walkers=names[1:])
+
+
 def test_trials_that_ran_out_of_time_do_not_count():
     answers = trials(60)
     silent = answers.assign(chosen_1=answers.chosen_1.where(answers.index > 9))

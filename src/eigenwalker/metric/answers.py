@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -47,7 +48,7 @@ class PairCounts:
         return pd.Series(shares, index=self.pairs, name="difference")
 
 
-def count_pairs(answers: pd.DataFrame) -> PairCounts:
+def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) -> PairCounts:
     """Return how often each observer was shown each pair, and chose it as the most similar.
 
     Parameters
@@ -55,6 +56,9 @@ def count_pairs(answers: pd.DataFrame) -> PairCounts:
     answers : DataFrame
         One row a trial: ``observer``; the four walkers shown, ``a`` to ``d``; and the two chosen,
         ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not count (A34).
+    walkers : sequence of str, optional
+        All walkers in the order of pairs wanted, such as that of a `group_table`; left out, those
+        that were shown, sorted.
 
     Returns
     -------
@@ -63,8 +67,8 @@ def count_pairs(answers: pd.DataFrame) -> PairCounts:
     Raises
     ------
     ValueError
-        If a column is missing, a trial shows a walker twice, or walkers were chosen that it did not
-        show, naming the row.
+        If a column is missing, a trial shows a walker twice or one that is not known, or walkers
+        were chosen that it did not show, naming the row.
 
     Examples
     --------
@@ -86,28 +90,33 @@ def count_pairs(answers: pd.DataFrame) -> PairCounts:
             f"Answers need the columns {columns}; {missing} are missing from {list(answers)}."
         )
     answered = answers.dropna(subset=list(CHOSEN))
-    shown, chosen = (answered[list(names)].to_numpy() for names in (SHOWN, CHOSEN))
-    _check_trials(shown, chosen, answered.index)
-    walkers, at = np.unique(shown, return_inverse=True)
+    shown, chosen = (answered[list(names)].to_numpy(dtype=str) for names in (SHOWN, CHOSEN))
+    names = sorted(set(shown.ravel())) if walkers is None else [str(name) for name in walkers]
+    _check_trials(shown, chosen, answered.index, set(names))
+    number = {name: index for index, name in enumerate(names)}
+    seen, picked = (np.vectorize(number.__getitem__)(table) for table in (shown, chosen))
     observers, who = np.unique(answered["observer"].to_numpy(), return_inverse=True)
-    place = np.zeros((len(walkers), len(walkers)), dtype=int)
-    rows, others = np.triu_indices(len(walkers), 1)
-    place[rows, others] = place[others, rows] = np.arange(len(rows))
+    rows, columns = np.triu_indices(len(names), 1)
+    place = np.zeros((len(names), len(names)), dtype=int)
+    place[rows, columns] = place[columns, rows] = np.arange(len(rows))
     counts = np.zeros((2, len(observers), len(rows)))
-    at = at.reshape(shown.shape)
     for first, second in combinations(range(4), 2):
-        np.add.at(counts[0], (who, place[at[:, first], at[:, second]]), 1)
-    of = np.searchsorted(walkers, chosen)
-    np.add.at(counts[1], (who, place[of[:, 0], of[:, 1]]), 1)
-    pairs = pd.MultiIndex.from_tuples(combinations(walkers.tolist(), 2), names=["first", "second"])
+        np.add.at(counts[0], (who, place[seen[:, first], seen[:, second]]), 1)
+    np.add.at(counts[1], (who, place[picked[:, 0], picked[:, 1]]), 1)
+    pairs = pd.MultiIndex.from_tuples(combinations(names, 2), names=["first", "second"])
     return PairCounts(pairs, tuple(observers.tolist()), chosen=counts[1], shown=counts[0])
 
 
-def _check_trials(shown: np.ndarray, chosen: np.ndarray, index: pd.Index) -> None:
+def _check_trials(shown: np.ndarray, chosen: np.ndarray, index: pd.Index, known: set[str]) -> None:
     if not len(shown):
         raise ValueError("There is no answered trial.")
     for row, four, two in zip(index, shown.tolist(), chosen.tolist(), strict=True):
         if len(set(four)) < 4:
             raise ValueError(f"Trial {row} shows {four}; expected four different walkers.")
+        if not set(four) <= known:
+            raise ValueError(
+                f"Trial {row} shows {sorted(set(four) - known)}, which are not among the walkers "
+                f"{sorted(known)[:20]}."
+            )
         if len(set(two)) < 2 or not set(two) <= set(four):
             raise ValueError(f"Trial {row} shows {four}, of which {two} cannot be the pair chosen.")
