@@ -160,3 +160,12 @@ def test_too_few_frames_are_refused_with_words(n_frames, rate_hz):
     clip = label_trajectories(values, markers=["a", "b"], rate_hz=rate_hz)
     with pytest.raises(ValueError, match="too few to see a stride"):
         loop(clip)
+
+
+def test_a_walk_in_place_gives_the_loop_of_its_capture():
+    capture = simulate_walk(seed=6, rate_hz=60, variability=1.0, duration_s=8, truth=False)
+    walk = ew.in_place(capture)
+    assert loop(walk).start_s == loop(capture).start_s
+    np.testing.assert_allclose(loop(walk).cycle, loop(capture).cycle)
+    less = walk.isel(time=slice(20, None))
+    assert loop(less).period_s == pytest.approx(loop(walk).period_s, rel=0.005)

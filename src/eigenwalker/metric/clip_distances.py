@@ -77,8 +77,10 @@ def prepare(clip: Clip) -> PreparedClip:
     """
     if isinstance(clip, PreparedClip):
         return clip
-    rate_hz = sampling_rate(check_trajectories(clip))
-    clip = check_trajectories(clip).dropna("marker", how="all")
+    clip = check_trajectories(clip)
+    rate_hz = sampling_rate(clip)
+    if np.isnan(clip.values[0]).any():
+        clip = clip.dropna("marker", how="all")
     if not clip.sizes["marker"]:
         raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
     try:

@@ -129,7 +129,7 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
             f"{clip.sizes['time']} frames at {rate_hz:.3g} a second are too few to see a stride; a "
             f"loop needs {_FEWEST_FRAMES} or more at {_LEAST_RATE_HZ:.0f} a second or more."
         )
-    walk = clip if already_in_place else in_place(clip)
+    walk = clip if already_in_place or _comes_from_in_place(clip) else in_place(clip)
     movement = walk.values.reshape(walk.sizes["time"], -1)
     period = period_of(movement, rate_hz)
     if period is not None:
@@ -141,6 +141,12 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
         f"apart, from {1 / BOUNDS_HZ[1]:.2g} s to half the clip, are alike throughout. A loop "
         "needs two periods of one action."
     )
+
+
+def _comes_from_in_place(clip: xr.DataArray) -> bool:
+    """Return whether these are the strides that `in_place` kept, all of them and no others."""
+    told = [clip.attrs.get(name) for name in ("steady_start_s", "steady_end_s")]
+    return told == clip.time.values[[0, -1]].tolist() and not np.isnan(clip.values).any()
 
 
 def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
@@ -221,16 +227,10 @@ def _bottom(heights: np.ndarray, lag: int) -> tuple[float, float]:
 def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
     """The two successive periods that differ least, the second passing into the first."""
     n_frames, n_cycle = walk.sizes["time"], round(period)
-    frames = np.arange(n_frames)
-    path = CubicSpline(frames, walk.values)
+    start = _least_mismatch(walk.values, period)
+    piece = slice(start, min(start + int(np.ceil(2 * period)) + 2, n_frames))
+    path = CubicSpline(np.arange(n_frames)[piece], walk.values[piece])
     within = np.arange(n_cycle) * period / n_cycle
-    fading = (1 - np.cos(2 * np.pi * (np.arange(n_cycle) + 0.5) / n_cycle)) / 2
-    pairs = frames[: max(1, n_frames - int(np.ceil(period)))]
-    apart = path(np.minimum(pairs + period, n_frames - 1)) - walk.values[pairs]
-    squares = np.einsum("tma,tma->t", apart, apart)
-    mismatch = np.convolve(squares, fading, "valid" if len(squares) >= n_cycle else "same")
-    mismatch = mismatch[: max(1, int(n_frames - 2 * period) + 1)]
-    start = int(mismatch.argmin())
     first = start + within
     second = np.minimum(first + period, n_frames - 1)
     weight = (1 - np.cos(np.pi * within / period))[:, None, None] / 2
@@ -251,6 +251,19 @@ def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
         mismatch_mm=float(gaps.mean()),
         n_periods=2,
     )
+
+
+def _least_mismatch(values: np.ndarray, period: float) -> int:
+    """Frame from which two periods differ least, most in their middle, where both are seen."""
+    n_frames, whole = len(values), int(period)
+    frames = np.arange(max(1, n_frames - whole - 1))
+    after = np.minimum(frames + whole + 1, n_frames - 1)
+    later = values[np.minimum(frames + whole, n_frames - 1)]
+    apart = later + (period - whole) * (values[after] - later) - values[frames]
+    squares = np.einsum("tma,tma->t", apart, apart)
+    fading = np.sin(np.pi * (np.arange(round(period)) + 0.5) / round(period)) ** 2
+    mismatch = np.convolve(squares, fading, "valid" if len(squares) >= len(fading) else "same")
+    return int(mismatch[: max(1, int(n_frames - 2 * period) + 1)].argmin())
 
 
 def _closed(walk: xr.DataArray, rate_hz: float) -> Loop:
