@@ -23,7 +23,7 @@ function drawnState(seed: number): State {
   const u = (): number => uniforms(1, seed, drawn++, 0, 1)[0]!;
   const between = ([low, high]: readonly [number, number], step = 0.001): number =>
     Math.round((low + u() * (high - low)) / step) * step;
-  const tidy = (value: number): number => Math.round(value * 1000) / 1000;
+  const tidy = (value: number): number => Math.round(value * 1000) / 1000 + 0;
   const one = <T>(values: readonly T[]): T => values[Math.floor(u() * values.length)]!;
   const setting = (field: Field): number | string =>
     "choices" in field ? one(field.choices) : tidy(between([field.low, field.high], field.step));

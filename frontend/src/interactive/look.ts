@@ -39,7 +39,10 @@ export function look(session: Session): Part {
 
 const NAMES: Readonly<Record<TransformName, readonly [string, string]>> = {
   arm_swing: ["Arm swing", "Larger or smaller swing of the arms"],
+  conflict: ["Widths and sway", "Shoulders and hips set against how they sway"],
+  ellipses: ["Ellipses", "Shoulders and hips go round, as in synthetic walkers"],
   reverse: ["Backwards", "Time runs the other way"],
+  delay: ["Lag", "Some joints follow later in the stride"],
   phase_scramble: ["Phases", "Each point at its own moment of the stride"],
   mirror: ["Mirror", "Left and right exchanged"],
   invert: ["Upside down", "Inverted about the middle"],
@@ -51,6 +54,9 @@ const NAMES: Readonly<Record<TransformName, readonly [string, string]>> = {
 };
 const FIELDS: Readonly<Record<string, string>> = {
   factor: "Times", spread: "Spread", seed: "Seed", part: "Which", keep: "Keep", directions: "Directions",
+  shoulder_width: "Shoulder width", hip_width: "Hip width", shoulder_sway: "Shoulder sway", hip_sway: "Hip sway",
+  shoulder_forward_mm: "Shoulders forward, mm", shoulder_up_mm: "Shoulders up, mm",
+  hip_forward_mm: "Hips forward, mm", hip_up_mm: "Hips up, mm", phase_deg: "By, degrees",
   number: "How many", lifetime_s: "Life, s", places: "On", sd_mm: "Width, mm", kind: "Kind", speed_mm_s: "Speed, mm/s",
 };
 /** A seed may be any whole number; the slider gives the first few. */

@@ -12,7 +12,10 @@ export const componentName = (number: number): string => COMPONENTS[number] ?? `
 
 const TRANSFORMED: Readonly<Record<TransformName, string>> = {
   arm_swing: "with another arm swing",
+  conflict: "with widths against sway",
+  ellipses: "with shoulders and hips on ellipses",
   reverse: "backwards in time",
+  delay: "with joints that lag",
   phase_scramble: "with each dot on its own clock",
   mirror: "as its mirror image",
   invert: "upside down",

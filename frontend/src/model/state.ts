@@ -74,10 +74,21 @@ export type Field =
 const SEED = { usual: 1, low: 0, high: 4294967295, step: 1 } as const;
 const PARTS = ["upper_body", "lower_body", "arms", "legs", "trunk", "head"] as const;
 
+const TIMES = { usual: 1, low: 0, high: 3, step: 0.1 } as const;
+const RADIUS = { low: 0, high: 150, step: 1 } as const;
+
 /** Transforms that the page offers, in the order in which they act, and their parameters. */
 export const TRANSFORMS = {
   arm_swing: { factor: { usual: 2, low: 0, high: 4, step: 0.1 } },
+  conflict: { shoulder_width: TIMES, hip_width: TIMES, shoulder_sway: TIMES, hip_sway: { ...TIMES, usual: 2 } },
+  ellipses: {
+    shoulder_forward_mm: { ...RADIUS, usual: 35 },
+    shoulder_up_mm: { ...RADIUS, usual: 12 },
+    hip_forward_mm: { ...RADIUS, usual: 15 },
+    hip_up_mm: { ...RADIUS, usual: 20 },
+  },
   reverse: {},
+  delay: { part: { usual: "arms", choices: PARTS }, phase_deg: { usual: 90, low: -180, high: 180, step: 5 } },
   phase_scramble: { spread: { usual: 1, low: 0, high: 1, step: 0.05 }, seed: SEED },
   mirror: {},
   invert: {},

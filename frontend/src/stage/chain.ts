@@ -8,6 +8,7 @@ import type { Settings, State, TransformName, Transforms } from "../model/state"
 
 /** How much wider and higher than the figure the box of a mask is. */
 const MASK_ROOM = [2, 1.15] as const;
+const N_SAMPLES = 64;
 const ARM_SWING = ["left_elbow", "left_wrist", "right_elbow", "right_wrist"];
 
 /** What a step may be made from: the figure as the chain so far leaves it, and who it is. */
@@ -28,18 +29,33 @@ const MAKING: { readonly [Name in TransformName]: Making<Name> } = {
     const markers = ARM_SWING.filter((name) => markersOf(stimulus, figure).includes(name));
     return markers.length > 0 ? { name: "gain", markers, factor, axes: "xyz", figures: [figure] } : null;
   },
+  conflict: (settings, before) =>
+    hasTrunk(before) ? { name: "conflict", ...settings, figures: [before.figure] } : null,
+  ellipses: (settings, before) => {
+    if (!hasTrunk(before)) return null;
+    return {
+      name: "ellipses",
+      shoulder_mm: [settings.shoulder_forward_mm, settings.shoulder_up_mm],
+      hip_mm: [settings.hip_forward_mm, settings.hip_up_mm],
+      phase_deg: phaseOfLegs(before.moving()),
+      figures: [before.figure],
+    };
+  },
   reverse: (_, { stimulus, figure }) => ({
     name: "reverse",
     end_s: stimulus.timing.duration_s,
     figures: [figure],
   }),
+  delay: ({ part, phase_deg }, before) => {
+    const markers = markersIn(part, before);
+    return markers.length > 0 ? { name: "delay", markers, phase_deg, figures: [before.figure] } : null;
+  },
   phase_scramble: (settings, { figure }) => ({ name: "phase_scramble", ...settings, figures: [figure] }),
   mirror: (_, { figure }) => ({ name: "mirror", figures: [figure] }),
   invert: (_, { figure }) => ({ name: "invert", figures: [figure] }),
-  occlude: ({ part }, { stimulus, figure, groups }) => {
-    const hidden = Object.hasOwn(groups, part) ? groups[part]! : [];
-    const markers = markersOf(stimulus, figure).filter((name) => hidden.includes(name));
-    return markers.length > 0 ? { name: "occlude", markers, figures: [figure] } : null;
+  occlude: ({ part }, before) => {
+    const markers = markersIn(part, before);
+    return markers.length > 0 ? { name: "occlude", markers, figures: [before.figure] } : null;
   },
   scramble: (settings, { stimulus, moving, figure }) => {
     return { name: "scramble", ...settings, box_mm: extentOf(moving(), stimulus), figures: [figure] };
@@ -90,6 +106,30 @@ export function chained(
     const made = steps.filter((step) => step !== null);
     return { ...so_far, transforms: [...so_far.transforms, ...together(made)] };
   }, stimulus);
+}
+
+const TRUNK = ["left_shoulder", "right_shoulder", "left_hip", "right_hip"];
+
+const hasTrunk = ({ stimulus, figure }: Before): boolean =>
+  TRUNK.every((name) => markersOf(stimulus, figure).includes(name));
+
+/** Markers of a part of the body that the figure has. */
+function markersIn(part: string, { stimulus, figure, groups }: Before): string[] {
+  const members = Object.hasOwn(groups, part) ? groups[part]! : [];
+  return markersOf(stimulus, figure).filter((name) => members.includes(name));
+}
+
+/** Where in its swing forward the left leg is at 0 s: `sin(c + phase)` is how far ahead. */
+function phaseOfLegs(moving: Moving): number {
+  const [left, right] = [3 * moving.index("left_ankle"), 3 * moving.index("right_ankle")];
+  let [sine, cosine] = [0, 0];
+  for (let sample = 0; sample < N_SAMPLES; sample++) {
+    const { positions } = moving.at((sample * moving.periodS) / N_SAMPLES);
+    const ahead = positions[left]! - positions[right]! || 0;
+    sine += ahead * Math.sin((2 * Math.PI * sample) / N_SAMPLES);
+    cosine += ahead * Math.cos((2 * Math.PI * sample) / N_SAMPLES);
+  }
+  return Math.round(Math.atan2(cosine, sine) * (180 / Math.PI) * 1000) / 1000;
 }
 
 const markersOf = ({ figures }: Stimulus, figure: number): readonly string[] =>
