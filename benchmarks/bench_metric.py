@@ -5,10 +5,13 @@ Beside what one would reach for: scipy's cdist joint by joint, and librosa's dyn
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from itertools import combinations
+from time import process_time
 
 import librosa
 import numpy as np
+import xarray as xr
 from scipy.spatial.distance import cdist
 from side_by_side import machine, print_table, seconds
 
@@ -28,11 +31,10 @@ METRICS: dict[Shape, FrameMetric] = {
 }
 
 
-def clips() -> list[np.ndarray]:
-    return [
-        ew.simulate_walk(seed=seed, duration_s=N_FRAMES / 120, truth=False).values
-        for seed in (1, 2)
-    ]
+def clips() -> list[xr.DataArray]:
+    """Two walks whose markers stand in the order in which maps take them."""
+    walks = [ew.simulate_walk(seed=seed, duration_s=N_FRAMES / 120, truth=False) for seed in (1, 2)]
+    return [walk.sortby("marker") for walk in walks]
 
 
 def by_cdist(a: np.ndarray, b: np.ndarray, metric: FrameMetric) -> np.ndarray:
@@ -52,21 +54,23 @@ def by_librosa(cost: np.ndarray) -> np.ndarray:
 
 
 def maps() -> None:
-    a, b = clips()
+    labelled = clips()
+    a, b = (clip.values for clip in labelled)
     for shape, metric in METRICS.items():
         np.testing.assert_allclose(ours(a, b, metric), by_cdist(a, b, metric), atol=1e-6, rtol=1e-9)
         ways = {
             "cdist, joint by joint": lambda metric=metric: by_cdist(a, b, metric),
             "point_map": lambda metric=metric: ours(a, b, metric),
+            "motion_map": lambda metric=metric: ew.motion_map(*labelled, metric=metric),
             "point_map, a clip with itself": lambda metric=metric: ours(a, a, metric),
         }
         title = f"Map of {N_FRAMES} x {N_FRAMES} frames, {N_JOINTS} joints, {shape}"
-        aims = {} if shape == "power" else {"point_map": 8}
+        aims = {} if shape == "power" else {"point_map": 8, "motion_map": 8}
         print_table(title, seconds(ways, rounds=7), aims=aims)
 
 
 def paths() -> None:
-    a, b = clips()
+    a, b = (clip.values for clip in clips())
     for n_frames in (120, 300, 1400):
         cost = ours(a[:n_frames], b[:n_frames], METRICS["absolute"])
         sums = [cost[tuple(way(cost).T)].sum() for way in (by_librosa, least_cost_path)]
@@ -86,6 +90,17 @@ def paths() -> None:
 
 def mean_along(cost: np.ndarray, path: np.ndarray) -> float:
     return float(cost[path[:, 0], path[:, 1]].mean())
+
+
+def processor_seconds(ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
+    """Return the least processor time of each way, which a busy machine hardly changes."""
+    times: dict[str, list[float]] = {name: [] for name in ways}
+    for _ in range(9):
+        for name, way in ways.items():
+            start = process_time()
+            way()
+            times[name].append(process_time() - start)
+    return {name: min(taken) for name, taken in times.items()}
 
 
 def all_pairs() -> None:
@@ -117,6 +132,7 @@ def all_pairs() -> None:
     }
     title = f"All {len(pairs)} pairs of {N_CLIPS} strides of {len(cycles[0])} frames"
     print_table(title, seconds(ways, rounds=9), aims={"pair_table, also phase and heading": 8})
+    print_table(f"{title}, processor time", processor_seconds(ways), aims={})
     ways = {"in_place": lambda: [ew.in_place(walk) for walk in walks.values()]}
     ways["prepare: in_place, loop, common clock"] = lambda: [prepare(w) for w in walks.values()]
     title = f"Making {N_CLIPS} walks of 12 s ready to be compared, once"
