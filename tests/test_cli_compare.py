@@ -5,15 +5,20 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable
+from itertools import combinations
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 import typer
 
 from eigenwalker import cli
 from eigenwalker.cli_compare import compare
+from eigenwalker.metric.clip_distances import pair_distances
+from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.population import Population
+from eigenwalker.report.compared_walks import walks_of_population
 from eigenwalker.simulation import simulate_population, simulate_walk
 from eigenwalker.writing import write_mocap
 
@@ -139,6 +144,44 @@ def test_all_pairs_of_a_population_by_trait(run, people, tmp_path):
     assert (tmp_path / "report.html").is_file()
 
 
+def answers_about(people: Path, path: Path, n_trials: int = 400) -> Path:
+    """Answers of eight observers, who look at how far apart elbows and feet are."""
+    walks = walks_of_population(Population.load(people)).clips
+    apart = pair_distances(walks, metric="positions-sigmoid").to_dict()
+    spread = np.std(list(apart.values()))
+    rng = np.random.default_rng(3)
+    rows = []
+    for trial in range(n_trials):
+        four = [f"walker {i}" for i in sorted(rng.permutation(len(walks))[:4])]
+        pairs = list(combinations(four, 2))
+        felt = [apart[pair] - 0.5 * spread * rng.gumbel() for pair in pairs]
+        shown = [name.split()[1] for name in rng.permutation(four)]
+        chosen = [name.split()[1] for name in pairs[int(np.argmin(felt))]]
+        rows.append([f"observer {trial % 8}", *shown, *chosen])
+    columns = ["observer", *"abcd", "chosen_1", "chosen_2"]
+    pd.DataFrame(rows, columns=columns).to_csv(path, index=False)
+    return path
+
+
+def test_weights_are_fitted_to_answers_and_reported(run, tmp_path):
+    people = tmp_path / "twelve.nc"
+    simulate_population(6, 6, seed=4).save(people)
+    answers = answers_about(people, tmp_path / "answers.csv")
+    code, said, complaint = run(people, "--answers", answers, "-o", tmp_path / "fit")
+    assert code == 0, complaint
+    assert "8 observers, 400 answers, 66 pairs" in said
+    weights = pd.read_csv(tmp_path / "fit" / "weights.csv", index_col="group")
+    assert weights.relative.sum() == pytest.approx(1)
+    planted = pd.Series(PUBLISHED["positions-sigmoid"].group_weights)
+    assert weights.loc[["upper_arm", "forearm", "toe"], "relative"].sum() > 0.5
+    assert (weights.relative_high + 1e-9 >= 0.8 * planted[weights.index]).mean() > 0.8
+    pairs = pd.read_csv(tmp_path / "fit" / "pairs.csv")
+    assert np.corrcoef(pairs.difference, pairs.predicted)[0, 1] > 0.6
+    page = (tmp_path / "fit" / "report.html").read_text()
+    assert "distance in walker space" in page
+    assert page.count("<img") == 2
+
+
 def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):
     population = Population.load(people)
     traits = population.traits.assign(flag=["", "hops", "", "", "", ""])
@@ -158,7 +201,9 @@ def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):
         (["{people}", "--trait", "shoe"], "no trait 'shoe'"),
         (["{folder}/person1_first.c3d", "{folder}"], "is a folder"),
         (["{folder}/person1_first.c3d", "{folder}/nobody.c3d"], "nobody.c3d"),
-        (["{folder}/a.c3d", "{folder}/b.c3d", "--nearest", "c.c3d"], "among many walks"),
+        (["{people}", "--answers", "{folder}/nothing.csv"], "could not be read as CSV"),
+        (["{people}", "--answers", "{folder}/person1_first.c3d"], "nswers"),
+        (["{folder}/a.c3d", "{folder}/b.c3d", "--nearest", "c.c3d"], "about many walks"),
     ],
 )
 def test_what_makes_no_sense_is_said_in_a_sentence(run, folder, people, words, said):

@@ -43,6 +43,13 @@ def compare(
         Path | None,
         typer.Option(help="A capture: which walks of the folder or population are nearest to it?"),
     ] = None,
+    answers: Annotated[
+        Path | None,
+        typer.Option(
+            help="CSV of observers' answers (observer, a, b, c, d, chosen_1, chosen_2): fit the "
+            "metric's weights to them."
+        ),
+    ] = None,
     clusters: Annotated[int, typer.Option(help="Clusters among all pairs.")] = 2,
     trait: Annotated[
         str | None, typer.Option(help="Trait of a population: are its classes apart?")
@@ -63,6 +70,8 @@ def compare(
 ) -> None:
     """Say how different walks look: two of them, all pairs of many, or those nearest to one.
 
+    With --answers, fit the weights of a metric to what observers chose.
+
     Ends with 1 when some captures of a folder could not be compared.
     """
     from eigenwalker.metric.published import metric_named
@@ -70,14 +79,18 @@ def compare(
     metric_named(metric)
     told = {"mannequin": not own_bodies, "unit": unit, "rate_hz": rate}
     if second is not None:
-        if nearest is not None:
-            raise ValueError("--nearest looks among many walks: name a folder or a population.")
+        if nearest is not None or answers is not None:
+            raise ValueError(
+                "--nearest and --answers are about many walks: name one folder or population."
+            )
         _compare_two(first, second, output, metric, told)
         return
     labels = {"trait": trait, "trait_from_name": trait_from_name, "with_flagged": with_flagged}
     walks = _walks(first, told, labels)
     if nearest is not None:
         _print_nearest(nearest, walks, metric, told)
+    elif answers is not None:
+        _fit(walks, answers, output, metric)
     else:
         _compare_all(walks, output, metric, clusters)
     if walks.refused:
@@ -123,6 +136,23 @@ def _compare_all(walks: Walks, output: Path | None, metric: str, clusters: int) 
     if output is not None:
         page = write_all_pairs(output, table, walks, metric, n_clusters=clusters)
         print(f"Table: {output / TABLE_NAME}\nReport: {page}")
+
+
+def _fit(walks: Walks, answers: Path, output: Path | None, metric: str) -> None:
+    import pandas as pd
+
+    from eigenwalker.report.fitted_metric import fit_answers, in_words, write_fitted_metric
+
+    try:
+        table = pd.read_csv(answers, dtype=str)
+    except (ValueError, OSError) as error:
+        raise ValueError(f"The answers {answers} could not be read as CSV: {error}") from error
+    with _bar("Comparing all pairs") as progress:
+        found = fit_answers(walks, table, metric, progress=progress)
+    print("\n".join(in_words(found)))
+    print(found.weights.to_string(float_format=lambda x: f"{x:.3g}"))
+    if output is not None:
+        print(f"Report: {write_fitted_metric(output, found)}")
 
 
 def _print_nearest(query: Path, walks: Walks, metric: str, told: dict) -> None:

@@ -35,12 +35,15 @@ class Walks:
         A class of each walk, such as its style, where one is known.
     refused : dict of str to str
         Why captures could not be used, by name.
+    vectors : dict of str to array
+        Walkers of a population as points of its feature space; empty for captures.
 
     """
 
     clips: dict[str, PreparedClip]
     labels: dict[str, str] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
+    vectors: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def walk_of_capture(
@@ -95,7 +98,8 @@ def walks_of_population(
     if trait is not None:
         told = population.traits[trait].astype(str)
         labels = {name: label for name, label in zip(names, told, strict=True) if name in clips}
-    return Walks(clips, labels, refused)
+    vectors = {name: row for name, row in zip(names, population.X, strict=True) if name in clips}
+    return Walks(clips, labels, refused, vectors)
 
 
 def walks_of_folder(
