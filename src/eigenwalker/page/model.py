@@ -161,6 +161,7 @@ def _variation(known: np.ndarray, layout: FeatureLayout, points: np.ndarray) -> 
         return {"scale": [1.0] * len(layout), "eigenwalkers": [], "spread": spread}
     usual = float(np.sqrt(space.explained_variance_[0] / space.explained_variance_ratio_[0]))
     far = np.sort(np.linalg.norm((known - space.average_walker_) / space.scale_, axis=1)) / usual
+    upwards = np.ceil(far[points] * 1e5) / 1e5  # so that no walker is nearer than itself
     sds = np.sqrt(space.explained_variance_)
     return {
         "scale": [significant(each) for each in space.scale_],
@@ -174,7 +175,7 @@ def _variation(known: np.ndarray, layout: FeatureLayout, points: np.ndarray) -> 
                 space.eigenwalkers_, sds, space.explained_variance_ratio_, strict=True
             )
         ][:N_EIGENWALKERS],
-        "spread": {"rms": significant(usual), "distances": rounded(far[points], 9)},
+        "spread": {"rms": significant(usual), "distances": rounded(upwards, 5)},
     }
 
 
@@ -195,7 +196,7 @@ def _cloud(known: np.ndarray, points: np.ndarray, shown: np.ndarray) -> dict[str
     place = {int(row): number for number, row in enumerate(shown)}
     return {
         "n": len(points),
-        "scores": rounded(scores[:, :N_EIGENWALKERS], 4),
+        "scores": rounded(scores[:, :N_EIGENWALKERS], 2),
         "walker": [place.get(int(point), -1) for point in points],
     }
 
