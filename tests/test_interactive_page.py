@@ -374,6 +374,28 @@ def test_the_python_that_is_copied_makes_the_walker_that_is_seen(visit):
     np.testing.assert_allclose(made["walker"].p, seen.p, atol=1e-4)
 
 
+def test_models_that_lack_things_walk_all_the_same(visit, model):
+    nobody = {"walkers": [], "cloud": {"n": 0, "scores": [], "walker": []}, "eigenwalkers": []}
+    tags = [each | {"name": "<b onclick=alert(1)>"} for each in model["walkers"]]
+    other = {name: f"marker {name}" for name in model["markers"]}
+    text = json.dumps(model)
+    for name, new in other.items():
+        text = text.replace(json.dumps(name), json.dumps(new))
+    there = visit("still")
+    there.unfold()
+    for name, odd in (
+        ("no traits", model | {"traits": []}),
+        ("nobody", model | nobody | {"traits": []}),
+        ("tags", model | {"walkers": tags, "source": "<img src=x onerror=alert(1)>"}),
+        ("other markers", json.loads(text)),
+    ):
+        there.page.evaluate(DROP, [f"{name}.json", json.dumps(odd)])
+        there.page.get_by_role("status").get_by_text(f"{name}.json: 40 simulated").wait_for()
+        there.unfold()
+        assert "NaN" not in there.page.locator("body").inner_text()
+        assert there.page.locator("b[onclick], img").count() == 0
+
+
 @pytest.fixture(scope="module")
 def served() -> Iterator[str]:
     """Address of a page with Python behind it."""

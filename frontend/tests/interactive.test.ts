@@ -4,6 +4,7 @@
 import { describe, expect, it, vi } from "vitest";
 import { choice } from "../src/interactive/choice";
 import { make } from "../src/interactive/element";
+import { nearest, towards } from "../src/interactive/nearby";
 import { Notices } from "../src/interactive/notices";
 import { bundles, openFiles } from "../src/interactive/opening";
 import { ownOf } from "../src/interactive/own";
@@ -76,6 +77,23 @@ describe("a slider", () => {
     one.show(3);
     expect(one.input.value).toBe("3");
     expect(heard).toEqual([]);
+  });
+});
+
+describe("points that are chosen", () => {
+  const points = [{ x: 0, y: 0 }, { x: 10, y: 1 }, { x: 3, y: 9 }, { x: -5, y: 0 }];
+
+  it("are the nearest to the pointer, where one is near", () => {
+    expect(nearest(points, { x: 9, y: 3 }, 5)).toBe(1);
+    expect(nearest(points, { x: 50, y: 50 }, 5)).toBe(-1);
+    expect(nearest([], { x: 0, y: 0 }, 5)).toBe(-1);
+  });
+
+  it("follow one another the way of an arrow, and the last stays", () => {
+    expect(towards(points, 0, [1, 0])).toBe(1);
+    expect(towards(points, 0, [-1, 0])).toBe(3);
+    expect(towards(points, 0, [0, 1])).toBe(2);
+    expect(towards(points, 1, [1, 0])).toBe(1);
   });
 });
 

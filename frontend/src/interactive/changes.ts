@@ -41,7 +41,8 @@ export function changes(session: Session): Part {
   const average = at(model.average, model);
   const known = MEASURES.filter(({ name }) => Number.isFinite(average[name]));
   const plots = known.map((measure) => {
-    const values = [...people.map(({ measures }) => measures[measure.name]), ...usual.map((of) => of[measure.name])];
+    const all = [average, ...usual, ...people.map(({ measures }) => measures)];
+    const values = all.map((of) => of[measure.name]);
     return plot(model, axis, measure, people, [Math.min(...values), Math.max(...values)]);
   });
   const legend = ["Small points: people", colours(axis?.trait), axis ? "line: where the large slider leads" : ""];

@@ -47,7 +47,7 @@ export function reachOf(model: Model, axes: readonly Axis[]): Reach {
 
 /** How many times as far as the farthest of all a walker is, and on which way most. */
 function extreme({ distance, ways }: Reach, place: Place): { times: number; way: Way | null } {
-  const whole = { times: place.distance / distance, way: null as Way | null };
+  const whole = { times: distance > 0 ? place.distance / distance : 0, way: null as Way | null };
   return ways.reduce((most, way) => {
     const times = way.at(place) / way.farthest;
     return times > Math.max(most.times, ALL) ? { times, way } : most;

@@ -10,7 +10,7 @@ import { hasServer, makeFilm } from "./server";
 import type { Part, Session } from "./session";
 
 const FORMATS =
-  "A picture is PNG, a film MP4, a page one file of HTML that plays by itself; a stimulus is JSON for experiments.";
+  "A picture is PNG, a film MP4 or WebM, a page one file of HTML that plays by itself; a stimulus is JSON.";
 
 export function share(session: Session, notices: Notices): Part {
   const python = make("pre", { class: "line", tabindex: 0, "aria-label": "Python that makes this walker" });
