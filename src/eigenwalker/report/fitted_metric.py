@@ -255,8 +255,8 @@ def _method(found: FittedMetric) -> list[str]:
         f"Component and function are those of {found.name}; weights, none below 0, and a free "
         "constant are the least squares, which is one solution for certain.",
         "Intervals are of 1000 samples of observers and walkers, drawn with replacement. Joints "
-        "that go together, such as sternum and shoulders, can take each other's weight: their sum is "
-        "surer than either.",
+        "that go together, such as sternum and shoulders, can take each other's weight: their sum "
+        "is surer than either.",
         "The ceiling is the square root of the answers' reliability (split-half, Spearman and "
         "Brown).",
     ]
