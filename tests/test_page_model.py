@@ -129,6 +129,13 @@ def test_every_trait_of_the_population_that_has_an_axis_is_there(model):
     assert traits["nervous"]["negative"] == "relaxed"
 
 
+def test_poles_that_are_numbers_are_as_short_as_those_of_the_walkers(people):
+    two = page_model(people.select([0, 30]), traits=["weight_kg"])
+    poles = [two["traits"][0][end] for end in ("negative", "positive")]
+    assert poles == [str(walker["traits"]["weight_kg"]) for walker in two["walkers"]]
+    assert max(map(len, poles)) <= 7
+
+
 def test_flagged_walkers_are_left_out(people):
     flags = ["limps" if row in (2, 30) else "" for row in range(len(people))]
     kept = page_model(replace(people, traits=people.traits.assign(**{FLAG: flags})))

@@ -96,8 +96,8 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
         "column": asked.trait,
         "label": label,
         "unit": unit,
-        "negative": asked.negative,
-        "positive": asked.positive,
+        "negative": _short(asked.negative),
+        "positive": _short(asked.positive),
         "two_classes": asked.two_classes,
         "n": len(asked.rows),
         "steps": _steps(spaces, asked),
@@ -109,6 +109,14 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
             "positive": _mean(population, asked.rows[asked.y > 0]),
         }
     return told
+
+
+def _short(pole: str) -> str:
+    """A pole that is a number with as many figures as the traits of the page's walkers have."""
+    try:
+        return f"{float(pole):.6g}"
+    except ValueError:
+        return pole
 
 
 def _mean(population: Population, rows: np.ndarray) -> list[float]:
