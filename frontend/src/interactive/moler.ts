@@ -5,6 +5,7 @@ import { button } from "./choice";
 import { make } from "./element";
 import type { Now, Part, Session } from "./session";
 import { signed, slider } from "./slider";
+import { leftMeans } from "./traits";
 import { ends } from "./words";
 
 const NAMES = ["Stride", "Sway", "Hop", "Bounce"];
@@ -55,7 +56,8 @@ export function bias(session: Session): Part {
       min, max, step: 0.05, usual: 0,
       real: [-1, 1],
       said: (value) => signed(value),
-      onInput: (steps) => session.change({ bias: steps === 0 ? null : { trait: trait.name, steps } }),
+      onInput: (steps) =>
+        session.change({ bias: steps === 0 ? null : { trait: trait.name, steps }, ...leftMeans(session) }),
     }),
   );
   const about = traits.map((trait) => {

@@ -1,6 +1,6 @@
 /** Sliders of the traits: the first one large below the stage, the others beside it. */
 
-import { RANGES } from "../model/state";
+import { RANGES, type State } from "../model/state";
 import { realRange, type Axis } from "./axis";
 import { make } from "./element";
 import { ridge } from "./ridge";
@@ -49,6 +49,9 @@ function sliders(session: Session, axes: readonly Axis[], label?: (axis: Axis, i
   };
 }
 
+/** Mean walkers are what they are: who moves a slider wants to see one that it changes. */
+export const leftMeans = ({ state }: Session): Partial<State> => (state.scene === "four" ? { scene: "one" } : {});
+
 function axisSlider(session: Session, axis: Axis, label?: string): Slider {
   const [min, max] = RANGES.trait;
   return slider({
@@ -60,6 +63,6 @@ function axisSlider(session: Session, axis: Axis, label?: string): Slider {
     usual: 0,
     real: realRange(axis),
     said: (value) => (value === 0 ? "0" : `${signed(value)} SD`),
-    onInput: (value) => session.change(axis.moved(session.state, value)),
+    onInput: (value) => session.change({ ...axis.moved(session.state, value), ...leftMeans(session) }),
   });
 }
