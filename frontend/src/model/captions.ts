@@ -1,6 +1,6 @@
 /** What is seen, in one sentence: for who does not see it, and for the names of files. */
 
-import { comparedIn, nameOf } from "./cast";
+import { AVERAGE, comparedIn, nameOf } from "./cast";
 import { traitOf } from "./mix";
 import type { Model, Own } from "./model";
 import { MOST_IN_CROWD, MOST_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
@@ -41,7 +41,7 @@ function whoIsSeen(model: Model, state: State, own: Own | null): string {
   if (state.scene === "side") return `${side} walkers at one tempo`;
   if (state.scene === "crowd") return `${crowd} walkers`;
   const name = nameOf(model, state, own);
-  return state.from === "average" ? `The ${name}` : name;
+  return name === AVERAGE ? `The ${name}` : name;
 }
 
 function changes(model: Model, state: State): string[] {

@@ -45,10 +45,13 @@ function one(model: Model, state: State, own: Own | null): Cast[] {
   return [member(model, nameOf(model, state, own), vectorOf(model, state, own))];
 }
 
+/** What the walker is called whom nobody was chosen for. */
+export const AVERAGE = "average walker";
+
 /** Who the walker is made from. */
 export function nameOf(model: Model, { from }: State, own: Own | null): string {
   if (from === "own" && own) return own.name;
-  return (typeof from === "number" ? model.walkers[from]?.name : undefined) ?? "average walker";
+  return (typeof from === "number" ? model.walkers[from]?.name : undefined) ?? AVERAGE;
 }
 
 /** Moler's figure: the mean walkers of two classes, and both with their difference tripled (M5). */

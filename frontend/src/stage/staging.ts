@@ -1,7 +1,7 @@
 /** Where walkers stand in a picture, and how large: each in the middle of a cell of its own. */
 
 import type { Walker } from "../core/stimulus";
-import { radians, type Vector } from "../core/vector";
+import { radians } from "../core/vector";
 
 /** Share of a cell that a walker fills. */
 const FILLED = 0.84;
@@ -49,21 +49,25 @@ export function middleOf({ p0 }: Walker): readonly [number, number] {
 }
 
 export function roomOf(walker: Walker): Room {
+  const { harmonics, phases, p0, p } = walker;
   const [x0, y0] = middleOf(walker);
-  let [radius, height] = [1, 1];
+  let [farSquared, height] = [1, 1];
   for (let moment = 0; moment < MOMENTS; moment++) {
-    const sines = walker.harmonics.map((harmonic, i) =>
-      Math.sin((harmonic * 2 * Math.PI * moment) / MOMENTS + walker.phases[i]!),
-    );
-    walker.p0.forEach((mean, dot) => {
-      const [x, y, z] = mean.map((at, axis) =>
-        sines.reduce((sum, sine, i) => sum + sine * walker.p[i]![dot]![axis]!, at),
-      ) as unknown as Vector;
-      radius = Math.max(radius, Math.hypot(x - x0, y - y0));
+    const angle = (2 * Math.PI * moment) / MOMENTS;
+    const sines = harmonics.map((harmonic, i) => Math.sin(harmonic * angle + phases[i]!));
+    for (let dot = 0; dot < p0.length; dot++) {
+      let [x, y, z] = p0[dot]!;
+      for (let i = 0; i < sines.length; i++) {
+        const far = p[i]![dot]!;
+        x += sines[i]! * far[0];
+        y += sines[i]! * far[1];
+        z += sines[i]! * far[2];
+      }
+      farSquared = Math.max(farSquared, (x - x0) * (x - x0) + (y - y0) * (y - y0));
       height = Math.max(height, z);
-    });
+    }
   }
-  return { radius, height };
+  return { radius: Math.sqrt(farSquared), height };
 }
 
 /** The room that any of some walkers takes; never less than the usual one and some to spare. */

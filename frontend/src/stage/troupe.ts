@@ -1,7 +1,7 @@
 /** Walkers of one model as typed arrays, posed and seen without a new object for each frame. */
 
 import type { Walker } from "../core/stimulus";
-import type { Axes } from "../core/vector";
+import type { Axes, Vector } from "../core/vector";
 import { middleOf, type Staging } from "./staging";
 
 const TURN = 2 * Math.PI;
@@ -39,8 +39,8 @@ export class Troupe {
     this.starts = new Float64Array(this.count);
     this.rates = Float64Array.from(walkers, ({ frequency_hz }) => frequency_hz);
     this.places = new Float64Array(2 * this.count * this.nDots);
-    this.#p0 = Float64Array.from(walkers.flatMap(({ p0 }) => p0.flat()));
-    this.#p = Float64Array.from(walkers.flatMap(({ p }) => p.flat(2)));
+    this.#p0 = flat(walkers.map(({ p0 }) => p0));
+    this.#p = flat(walkers.flatMap(({ p }) => p));
     this.#harmonics = Float64Array.from(first.harmonics);
     this.#phases = Float64Array.from(walkers.flatMap(({ phases }) => phases));
     this.#middles = Float64Array.from(walkers.flatMap((walker) => middleOf(walker)));
@@ -91,4 +91,18 @@ export class Troupe {
       for (let i = 0; i < size; i++) positions[i]! += sine * this.#p[p + i]!;
     }
   }
+}
+
+/** The coordinates of postures, one after the other. */
+function flat(postures: readonly (readonly Vector[])[]): Float64Array {
+  const nDots = postures[0]?.length ?? 0;
+  const coordinates = new Float64Array(3 * nDots * postures.length);
+  let at = 0;
+  for (const posture of postures) {
+    for (const place of posture) {
+      coordinates.set(place, at);
+      at += 3;
+    }
+  }
+  return coordinates;
 }
