@@ -13,8 +13,9 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.metric.alignment import align_windows
 from eigenwalker.metric.frame_metrics import FrameMetric, shaped
-from eigenwalker.metric.kernels import diagonal_means, point_distances, point_map
+from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.motion_maps import motion_map, motion_maps
+from eigenwalker.metric.point_maps import point_distances, point_map
 from eigenwalker.simulation import simulate_walk
 from eigenwalker.trajectories import label_trajectories
 

@@ -12,12 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.metric.frame_metrics import Shape
-from eigenwalker.metric.kernels import (
-    SHAPE_CODES,
-    diagonal_means,
-    in_threads,
-    rows_of_aligned_map,
-)
+from eigenwalker.metric.kernels import SHAPE_CODES, diagonal_means, rows_of_aligned_map
+from eigenwalker.metric.threads import in_threads
 
 _ROWS = 32
 

@@ -2,94 +2,23 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import reduce
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
-from eigenwalker.gait.gaps import fill_short_gaps
-from eigenwalker.metric.cycles import common_clock, mean_distances, register_pairs
-from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames, shaped
-from eigenwalker.metric.loops import loop
-from eigenwalker.metric.motion_maps import common_names, picked, points_of
+from eigenwalker.metric.all_pairs import compared_pairs
+from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
+from eigenwalker.metric.prepared import Clip as Clip
+from eigenwalker.metric.prepared import PreparedClip as PreparedClip
+from eigenwalker.metric.prepared import prepare as prepare
+from eigenwalker.metric.prepared import registration_of as registration_of
 from eigenwalker.metric.published import metric_named
-from eigenwalker.metric.registration import Registration, register, register_strides
-from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 if TYPE_CHECKING:
     from eigenwalker.folds import Progress  # which loads scikit-learn
-
-_AT_ONCE = 4096
-"""Pairs whose paths are kept in memory at a time."""
-
-
-@dataclass(frozen=True, eq=False)
-class PreparedClip:
-    """A clip made ready to be compared with many others, by several metrics.
-
-    Parameters
-    ----------
-    clip : DataArray of shape (time, marker, axis)
-        As it was, short gaps filled.
-    cycle : DataArray of shape (time, marker, axis), optional
-        One stride of it on the common clock; None if it does not repeat.
-    complaint : str
-        Why there is no stride.
-
-    """
-
-    clip: xr.DataArray
-    cycle: xr.DataArray | None
-    complaint: str = ""
-
-
-Clip = xr.DataArray | PreparedClip
-
-
-def prepare(clip: Clip) -> PreparedClip:
-    """Return a clip made ready to be compared.
-
-    Parameters
-    ----------
-    clip : DataArray of shape (time, marker, axis), or PreparedClip
-        Markers that were never seen are left out.
-
-    Returns
-    -------
-    PreparedClip
-
-    Raises
-    ------
-    ValueError
-        If it is one frame, or has gaps that are too long to be filled.
-
-    Examples
-    --------
-    >>> prepare(ew.simulate_walk(seed=1)).cycle.sizes["time"]
-    120
-
-    """
-    if isinstance(clip, PreparedClip):
-        return clip
-    clip = check_trajectories(clip)
-    rate_hz = sampling_rate(clip)
-    if np.isnan(clip.values[0]).any():
-        clip = clip.dropna("marker", how="all")
-    if not clip.sizes["marker"]:
-        raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
-    try:
-        return PreparedClip(clip, common_clock(loop(clip)))
-    except ValueError as error:
-        filled, gaps = fill_short_gaps(clip.values, rate_hz)
-        if gaps:
-            raise
-        return PreparedClip(clip.copy(data=filled), None, str(error))
 
 
 def clip_distance(a: Clip, b: Clip, *, metric: str | ComparesFrames = POSITIONS) -> float:
@@ -170,13 +99,6 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
 
     """
     return registration_of(prepare(a), prepare(b)).distances(by)
-
-
-def registration_of(a: PreparedClip, b: PreparedClip) -> Registration:
-    """Return how two prepared clips are registered: as strides if both repeat, else end to end."""
-    if a.cycle is None or b.cycle is None:
-        return register(a.clip, b.clip)
-    return register_strides(a.cycle, b.cycle)
 
 
 def pair_table(
@@ -273,95 +195,6 @@ def pair_components(
     (3, 15)
 
     """
-    asked = metric_named(metric)
-    if len(clips) < 2:
-        raise ValueError(f"Pairs need two clips or more; got {list(clips)}.")
-    steps = _Steps(progress, len(clips))
-    prepared = {name: steps.after(prepare(clip)) for name, clip in clips.items()}
-    pairs = np.array(list(combinations(range(len(clips)), 2)))
-    if still := [name for name, clip in prepared.items() if clip.cycle is None]:
-        _tell_of_actions(still, prepared)
-    if not still:
-        values, points = _of_strides(list(prepared.values()), pairs, asked, steps)
-    else:
-        values, points = _of_actions(list(prepared.values()), pairs, asked, steps)
+    values, points = compared_pairs(clips, metric_named(metric), progress)
     index = pd.MultiIndex.from_tuples(combinations(clips, 2), names=["first", "second"])
     return pd.DataFrame(values, index=index, columns=points)
-
-
-def _tell_of_actions(still: list[str], prepared: Mapping[str, PreparedClip]) -> None:
-    """Warn where clips that repeat are compared like those that do not."""
-    if len(still) < len(prepared):
-        warnings.warn(
-            f"All clips are compared from end to end, as {still[:6]} do not repeat: "
-            f"{prepared[still[0]].complaint} Leave them out to compare strides.",
-            stacklevel=3,
-        )
-
-
-class _Steps:
-    """Tells how many clips and pairs are done."""
-
-    def __init__(self, progress: Progress | None, n_clips: int) -> None:
-        self._progress, self._done = progress, 0
-        self._total = n_clips + n_clips * (n_clips - 1) // 2
-
-    def forward(self, steps: int) -> None:
-        self._done += steps
-        if self._progress is not None:
-            self._progress(self._done, self._total)
-
-    def after(self, clip: PreparedClip) -> PreparedClip:
-        self.forward(1)
-        return clip
-
-
-def _of_strides(
-    clips: list[PreparedClip], pairs: np.ndarray, metric: ComparesFrames, steps: _Steps
-) -> tuple[np.ndarray, list[str]]:
-    """Components of all pairs of strides, each pair in an order that its contents decide."""
-    cycles = [clip.cycle for clip in clips if clip.cycle is not None]
-    names, compared = _stacked(cycles, metric.by)
-    positions = compared if metric.by == "positions" else _stacked(cycles, "positions")[1]
-    known = np.flatnonzero(np.isfinite(compared).all(axis=(0, 1, 3)))
-    if not known.size:
-        raise ValueError(f"Of the {metric.by} of {names} none is known throughout all clips.")
-    compared = np.ascontiguousarray(compared[:, :, known])
-    ordered = _in_order_of_contents([cycle.tobytes() for cycle in positions], pairs)
-    parts = []
-    for start in range(0, len(pairs), _AT_ONCE):
-        found = register_pairs(positions, ordered[start : start + _AT_ONCE])
-        parts.append(mean_distances(compared, found, metric))
-        steps.forward(len(found.pairs))
-    return np.concatenate(parts), [names[index] for index in known]
-
-
-def _of_actions(
-    clips: list[PreparedClip], pairs: np.ndarray, metric: ComparesFrames, steps: _Steps
-) -> tuple[np.ndarray, list[str]]:
-    """Components of all pairs of clips from beginning to end."""
-    contents = [clip.clip.values.tobytes() for clip in clips]
-    rows = []
-    for first, second in _in_order_of_contents(contents, pairs):
-        found = register(clips[first].clip, clips[second].clip)
-        apart = found.distances(metric.by)
-        means = shaped(metric, apart.to_numpy()).mean(axis=0)
-        rows.append(dict(zip(apart.columns, means, strict=True)))
-        steps.forward(1)
-    table = pd.DataFrame(rows).dropna(axis=1)
-    return table.to_numpy(), list(table.columns)
-
-
-def _in_order_of_contents(contents: list[bytes], pairs: np.ndarray) -> np.ndarray:
-    """Return pairs so turned that it does not matter which clip of a pair was named first."""
-    rank = np.empty(len(contents), dtype=int)
-    rank[sorted(range(len(contents)), key=contents.__getitem__)] = np.arange(len(contents))
-    turned = rank[pairs[:, 0]] > rank[pairs[:, 1]]
-    return np.where(turned[:, None], pairs[:, ::-1], pairs)
-
-
-def _stacked(cycles: list[xr.DataArray], by: By) -> tuple[list[str], np.ndarray]:
-    """Points that all cycles have, and their values of shape (cycle, frame, point, part)."""
-    points = [points_of(cycle, by, periodic=True) for cycle in cycles]
-    names = reduce(common_names, [each for each, _ in points])
-    return names, np.stack([picked(*each, names) for each in points])

@@ -11,11 +11,11 @@ from eigenwalker.metric.frame_metrics import ComparesFrames, shape_parameter
 from eigenwalker.metric.kernels import (
     SHAPE_CODES,
     compiled,
-    in_threads,
     mean_along_path,
 )
 from eigenwalker.metric.loops import Loop
 from eigenwalker.metric.paths import SLOPE_LIMIT, closed_path
+from eigenwalker.metric.threads import in_threads
 from eigenwalker.metric.turns_between import quaternions_at, vectors_of
 from eigenwalker.trajectories import trajectories_at
 

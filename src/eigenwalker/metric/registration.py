@@ -7,24 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 import xarray as xr
-from scipy.interpolate import CubicSpline
 
 from eigenwalker.metric.alignment import Alignment, align_steps
 from eigenwalker.metric.cycles import CYCLE_FRAMES, common_clock, register_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
-from eigenwalker.metric.kernels import point_distances
 from eigenwalker.metric.loops import loop
-from eigenwalker.metric.motion_maps import (
-    SAME_RATE,
-    common_names,
-    common_positions,
-    motion_map,
-    picked,
-    points_of,
-)
+from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
-from eigenwalker.metric.turns_between import quaternions_at, vectors_of
-from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
+from eigenwalker.metric.point_maps import point_distances
+from eigenwalker.metric.points import common_names, common_positions, picked, points_of
+from eigenwalker.metric.resampling import at_one_rate, length_s, played
+from eigenwalker.trajectories import sampling_rate, trajectories_at
 
 WINDOW_S = 0.1
 """Seconds about each frame that decide how it is turned and moved, and over which maps average."""
@@ -107,7 +100,7 @@ class Registration:
             Of equal times; markers that both have.
 
         """
-        once = [_length_s(self.first), _length_s(self.second)] if self.periodic else [1.0, 1.0]
+        once = [length_s(self.first), length_s(self.second)] if self.periodic else [1.0, 1.0]
         moments = self.times / once  # seconds; of strides, parts of the cycle
         halfway, lead = moments.mean(axis=1), _smooth(moments[:, 1] - moments[:, 0], self.periodic)
         n_frames = max(self.first.sizes["time"], self.second.sizes["time"])
@@ -115,8 +108,8 @@ class Registration:
         clock = np.linspace(halfway[0], stop, n_frames, endpoint=not self.periodic)
         ahead = np.interp(clock, halfway, lead, period=1 if self.periodic else None) / 2
         names = common_names(self.first.marker.values, self.second.marker.values)
-        first = _played(self.first.sel(marker=names), (clock - ahead) * once[0], self.periodic)
-        second = _played(self.second.sel(marker=names), (clock + ahead) * once[1], self.periodic)
+        first = played(self.first.sel(marker=names), (clock - ahead) * once[0], self.periodic)
+        second = played(self.second.sel(marker=names), (clock + ahead) * once[1], self.periodic)
         angles = np.interp(clock, halfway, np.unwrap(self.alignment.angles))
         shifts = [np.interp(clock, halfway, along) for along in self.alignment.shifts.T]
         second = Alignment(angles, np.stack(shifts, axis=1)).apply(second)
@@ -277,51 +270,7 @@ def _middle(values: np.ndarray) -> np.ndarray:
 def _running_on(path: np.ndarray, first: xr.DataArray, second: xr.DataArray) -> np.ndarray:
     """Seconds of each step on both clocks, which run on over the seams."""
     onwards = np.unwrap(path, period=CYCLE_FRAMES, axis=0)
-    return onwards * [_length_s(first) / CYCLE_FRAMES, _length_s(second) / CYCLE_FRAMES]
-
-
-def _length_s(clip: xr.DataArray) -> float:
-    """Seconds that a clip lasts, its last frame too."""
-    return clip.sizes["time"] / sampling_rate(clip)
-
-
-def at_one_rate(a: xr.DataArray, b: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return both clips at the higher of their frame rates."""
-    a, b = check_trajectories(a), check_trajectories(b)
-    rates = sampling_rate(a), sampling_rate(b)
-    if abs(rates[0] / rates[1] - 1) <= SAME_RATE:
-        return a, b
-    if rates[0] > rates[1]:
-        return a, _resampled(b, rates[0])
-    return _resampled(a, rates[1]), b
-
-
-def _resampled(clip: xr.DataArray, rate_hz: float) -> xr.DataArray:
-    """Return a clip at a higher frame rate, by cubic splines; a marker with gaps stays unseen."""
-    time = clip.time.values
-    n_frames = int((time[-1] - time[0]) * rate_hz + 1e-6) + 1
-    clock = time[0] + np.arange(n_frames) / rate_hz
-    result = trajectories_at(clock, _played(clip, clock, periodic=False), clip.marker.values)
-    if "rotation" in clip.coords:
-        moments = (clock - time[0]) * sampling_rate(clip)
-        vectors = vectors_of(quaternions_at(clip.rotation.values, moments))
-        result = result.assign_coords(rotation=(clip.rotation.dims, vectors))
-    return result.assign_attrs(clip.attrs)
-
-
-def _played(clip: xr.DataArray, time: np.ndarray, periodic: bool) -> np.ndarray:
-    """Return positions at any times within a clip, or within its endless repetition."""
-    values, clock = clip.values, clip.time.values
-    if periodic:
-        values = np.concatenate([values, values[:1]])
-        clock = np.append(clock, clock[0] + _length_s(clip))
-        time = clock[0] + (time - clock[0]) % (clock[-1] - clock[0])
-    result = np.full((len(time), *values.shape[1:]), np.nan)
-    seen = np.isfinite(values).all(axis=(0, 2))
-    ends = "periodic" if periodic else "not-a-knot"
-    spline = CubicSpline(clock, values[:, seen], bc_type=ends)
-    result[:, seen] = spline(np.clip(time, clock[0], clock[-1]))
-    return result
+    return onwards * [length_s(first) / CYCLE_FRAMES, length_s(second) / CYCLE_FRAMES]
 
 
 def _smooth(values: np.ndarray, periodic: bool) -> np.ndarray:

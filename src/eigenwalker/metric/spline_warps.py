@@ -10,8 +10,10 @@ from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import least_squares
 
 from eigenwalker.metric.alignment import align_steps
-from eigenwalker.metric.motion_maps import common_positions, motion_map
-from eigenwalker.metric.registration import Registration, at_one_rate, register, unmoved
+from eigenwalker.metric.motion_maps import motion_map
+from eigenwalker.metric.points import common_positions
+from eigenwalker.metric.registration import Registration, register, unmoved
+from eigenwalker.metric.resampling import at_one_rate
 
 _DEGREE = 3
 

@@ -9,7 +9,8 @@ from scipy.ndimage import minimum_filter
 
 from eigenwalker.metric.alignment import align_steps
 from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames
-from eigenwalker.metric.motion_maps import common_positions, motion_map
+from eigenwalker.metric.motion_maps import motion_map
+from eigenwalker.metric.points import common_positions
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 WINDOW_S = 1 / 3

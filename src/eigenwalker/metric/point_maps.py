@@ -1,0 +1,153 @@
+"""Maps of weighted, shaped distances between the frames of two clips, as plain arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenwalker.metric.frame_metrics import Shape
+from eigenwalker.metric.kernels import SHAPE_CODES, rows_of_map
+from eigenwalker.metric.threads import in_threads
+
+_ROWS = 32
+"""Rows that one thread takes at a time."""
+
+_FEW = 200_000
+"""Distances below which a second thread costs more than it brings."""
+
+
+def point_map(
+    a: np.ndarray, b: np.ndarray, weights: np.ndarray, *, shape: Shape, parameter: float = 1.0
+) -> np.ndarray:
+    """Return ``sum_k w_k F(d_k)`` of every frame of one clip with every frame of another.
+
+    Parameters
+    ----------
+    a : array of shape (frame, point, part)
+        Three parts are a place or velocity and compared by their Euclidean distance, four a unit
+        quaternion and compared by the angle between orientations, 2 acos(min(1, abs(q.q'))) (A26).
+    b : array of shape (other frame, point, part)
+    weights : array of shape (point,)
+    shape : {"absolute", "squared", "sigmoid", "power"}
+        F.
+    parameter : float
+        Scale of the sigmoid, exponent of the power.
+
+    Returns
+    -------
+    array of shape (frame, other frame)
+        Points with a missing part (NaN) in either frame are left out and the others weigh more;
+        NaN where nothing is left.
+
+    Examples
+    --------
+    >>> a = np.array([[[0.0, 0, 0], [0, 0, 0]]])
+    >>> b = np.array([[[3.0, 4, 0], [0, 0, 1]]])
+    >>> point_map(a, b, np.array([0.5, 0.5]), shape="absolute").tolist()
+    [[3.0]]
+
+    """
+    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    same = a is b
+    kept = weights > 0
+    a, weights = a[:, kept], np.asarray(weights, dtype=float)[kept]
+    b = a if same else b[:, kept]
+    missing = np.isnan(a).any() or np.isnan(b).any()
+    if shape == "squared" and a.shape[-1] == 3 and not missing:
+        return _squared_map(a, b, weights)
+    if missing:
+        return _map_with_gaps(a, b, weights, shape, parameter)
+    return _filled(a, b, weights, shape, parameter)
+
+
+def _squared_map(a: np.ndarray, b: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Squared Euclidean distances by one product of matrices, about a common middle."""
+    middle = b.mean(axis=0, keepdims=True)
+    root = np.sqrt(weights)[:, None]
+    x = ((a - middle) * root).reshape(len(a), -1)
+    y = x if a is b else ((b - middle) * root).reshape(len(b), -1)
+    squared = x @ y.T
+    squared *= -2
+    squared += np.einsum("ij,ij->i", x, x)[:, None]
+    squared += np.einsum("ij,ij->i", y, y)
+    if a is b:
+        np.fill_diagonal(squared, 0)
+    return np.maximum(squared, 0, out=squared)
+
+
+def _map_with_gaps(
+    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
+) -> np.ndarray:
+    """Map in which each cell is made of the points that both frames have."""
+    seen_a, seen_b = (np.atleast_2d(~np.isnan(values).any(axis=2)) for values in (a, b))
+    total = np.zeros((len(a), len(b)))
+    weight = (seen_a * weights) @ seen_b.T.astype(float)
+    for k, w in enumerate(weights):
+        rows, columns = np.flatnonzero(seen_a[:, k]), np.flatnonzero(seen_b[:, k])
+        part = _filled(a[rows, k : k + 1], b[columns, k : k + 1], np.array([w]), shape, parameter)
+        total[np.ix_(rows, columns)] += part
+    return np.divide(total, weight, out=np.full_like(total, np.nan), where=weight > 1e-12)
+
+
+def _filled(
+    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
+) -> np.ndarray:
+    """Fill a map by blocks of rows; of a clip with itself half of them, which is mirrored."""
+    rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
+    fill_rows = _powers if shape == "power" else rows_of_map
+    half = a is b
+    result = np.empty((len(a), len(b)))
+
+    def fill(start: int) -> None:
+        block = slice(start, start + _ROWS)
+        first = start if half else 0
+        fill_rows(
+            rows[block], columns, weights, SHAPE_CODES[shape], parameter, first, result[block]
+        )
+        if half:
+            result[start + _ROWS :, block] = result[block, start + _ROWS :].T
+
+    in_threads(fill, range(0, len(a), _ROWS), few=result.size * len(weights) < _FEW)
+    return result
+
+
+def _powers(
+    rows: np.ndarray,
+    columns: np.ndarray,
+    weights: np.ndarray,
+    _code: int,
+    exponent: float,
+    first: int,
+    result: np.ndarray,
+) -> None:
+    """Fill rows of a map with shape "power": numpy knows a faster power than numba does."""
+    result[:, first:] = 0
+    one, distances = np.ones(1), np.zeros_like(result)
+    for k, weight in enumerate(weights):
+        point = slice(k, k + 1)
+        rows_of_map(rows[:, point].copy(), columns[point], one, 0, 1.0, first, distances)
+        result[:, first:] += weight * distances[:, first:] ** exponent
+
+
+def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return how far each point of one clip is from the same point of another, frame by frame.
+
+    Parameters
+    ----------
+    a, b : array of shape (step, point, part)
+        As for `point_map`.
+
+    Returns
+    -------
+    array of shape (step, point)
+
+    Examples
+    --------
+    >>> point_distances(np.array([[[1.0, 0, 0, 0]]]), np.array([[[0, 1.0, 0, 0]]])).round(6)
+    array([[3.141593]])
+
+    """
+    apart = np.linalg.norm(a - b, axis=2)
+    if a.shape[2] == 3:
+        return apart
+    together = np.linalg.norm(a + b, axis=2)
+    return 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
