@@ -134,6 +134,8 @@ def test_poles_that_are_numbers_are_as_short_as_those_of_the_walkers(people):
     poles = [two["traits"][0][end] for end in ("negative", "positive")]
     assert poles == [str(walker["traits"]["weight_kg"]) for walker in two["walkers"]]
     assert max(map(len, poles)) <= 7
+    named = replace(people.select([0, 30]), traits=pd.DataFrame({"group": ["01", "02"]}))
+    assert page_model(named)["traits"][0]["negative"] == "01"
 
 
 def test_flagged_walkers_are_left_out(people):

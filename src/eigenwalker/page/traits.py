@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, get_args
 
 import numpy as np
+import pandas as pd
 
 from eigenwalker.caricature import Kind, direction
 from eigenwalker.contrasts import Contrast, contrast
@@ -96,8 +97,8 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
         "column": asked.trait,
         "label": label,
         "unit": unit,
-        "negative": _short(asked.negative),
-        "positive": _short(asked.positive),
+        "negative": _pole(population, asked, asked.negative),
+        "positive": _pole(population, asked, asked.positive),
         "two_classes": asked.two_classes,
         "n": len(asked.rows),
         "steps": _steps(spaces, asked),
@@ -111,12 +112,12 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
     return told
 
 
-def _short(pole: str) -> str:
-    """A pole that is a number with as many figures as the traits of the page's walkers have."""
-    try:
-        return f"{float(pole):.6g}"
-    except ValueError:
-        return pole
+def _pole(population: Population, asked: Contrast, pole: str) -> str:
+    """A pole; one that is a number has as many figures as the traits of the page's walkers."""
+    number = asked.two_classes and pd.api.types.is_any_real_numeric_dtype(
+        population.traits[asked.trait]
+    )
+    return f"{float(pole):.6g}" if number else pole
 
 
 def _mean(population: Population, rows: np.ndarray) -> list[float]:
