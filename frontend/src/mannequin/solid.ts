@@ -1,7 +1,6 @@
 /** Hulls in three dimensions, with three.js. */
 
 import {
-  type Camera,
   DynamicDrawUsage,
   Float32BufferAttribute,
   InstancedBufferGeometry,
@@ -22,11 +21,17 @@ import vertexShader from "./hull.vert?raw";
 import { HULL, type Hulls } from "./hulls";
 import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
 
-/** Corners round a hull, and rings over each of its two caps. */
-const ROUND = 40;
-const RINGS = 9;
+/** Corners round a hull, and rings over each of its two caps, up to so many pixels a millimetre. */
+const LEVELS = [
+  { upTo: 0.35, round: 24, rings: 5 },
+  { upTo: 0.7, round: 32, rings: 7 },
+  { upTo: Infinity, round: 40, rings: 9 },
+] as const;
 /** Farther from the eye than this, in mm, nothing is drawn. */
 const FAR_MM = 1e6;
+
+type Four = [number, number, number, number];
+type Box = Readonly<Record<"left" | "top" | "width" | "height", number>>;
 
 /** What draws hulls; throws where the browser gives no WebGL. */
 export function solidDrawing(): DrawHulls {
@@ -37,10 +42,11 @@ export function solidDrawing(): DrawHulls {
     colour: { value: new Vector3() },
     light: { value: new Vector3(...LIGHT).normalize() },
     eye: { value: 0 },
+    rounder: { value: 1 },
   };
   const material = new ShaderMaterial({ vertexShader, fragmentShader, uniforms });
-  const geometry = hullGeometry();
-  const mesh = new Mesh(geometry, material);
+  const levels = LEVELS.map((level) => ({ ...level, geometry: hullGeometry(level) }));
+  const mesh = new Mesh<InstancedBufferGeometry, ShaderMaterial>(levels[0]!.geometry, material);
   mesh.frustumCulled = false;
   const scene = new Scene();
   scene.add(mesh);
@@ -48,71 +54,111 @@ export function solidDrawing(): DrawHulls {
   const near = new PerspectiveCamera();
   let buffer: InstancedInterleavedBuffer | undefined;
 
-  const give = (hulls: Hulls): void => {
+  const give = (hulls: Hulls, { fine, px_per_mm }: Look): void => {
     if (buffer?.array !== hulls.numbers) {
-      geometry.dispose();
       buffer = new InstancedInterleavedBuffer(hulls.numbers, HULL);
       buffer.setUsage(DynamicDrawUsage);
-      geometry.setAttribute("one", new InterleavedBufferAttribute(buffer, 4, 0));
-      geometry.setAttribute("other", new InterleavedBufferAttribute(buffer, 4, 4));
-      geometry.setAttribute("tone", new InterleavedBufferAttribute(buffer, 1, 8));
+      for (const { geometry } of levels) {
+        geometry.dispose();
+        geometry.setAttribute("one", new InterleavedBufferAttribute(buffer, 4, 0));
+        geometry.setAttribute("other", new InterleavedBufferAttribute(buffer, 4, 4));
+        geometry.setAttribute("tone", new InterleavedBufferAttribute(buffer, 1, 8));
+      }
     }
     buffer.needsUpdate = true;
-    geometry.instanceCount = hulls.count;
+    const level = levels.find(({ upTo }) => px_per_mm * fine <= upTo)!;
+    mesh.geometry = level.geometry;
+    mesh.geometry.instanceCount = hulls.count;
+    const [a, b] = [(2 * Math.PI) / level.round, Math.PI / 2 / level.rings];
+    uniforms.rounder.value = 1 + (a * a + b * b) / 48; // faces are as far outside as inside
   };
 
   const draw: DrawHulls = (context, hulls, look) => {
-    if (hulls.count === 0) return;
+    const { fine, width_px, height_px } = look;
+    const box = boxOf(hulls, look);
+    if (!box) return;
+    const { left, top, width, height } = box;
     const { domElement } = renderer;
-    const width = Math.round(look.width_px * look.fine);
-    const height = Math.round(look.height_px * look.fine);
     if (domElement.width < width || domElement.height < height) {
       // It only grows, so that pictures of several sizes take turns in its lower left corner.
       renderer.setSize(Math.max(domElement.width, width), Math.max(domElement.height, height), false);
     }
     renderer.setViewport(0, 0, width, height);
-    give(hulls);
+    give(hulls, look);
     uniforms.colour.value.set(...litColour(look.colour));
-    renderer.render(scene, aimed(look));
-    const top = domElement.height - height;
-    context.drawImage(domElement, 0, top, width, height, 0, 0, look.width_px, look.height_px);
+    const camera = aimed(look);
+    camera.setViewOffset(width_px * fine, height_px * fine, left, top, width, height);
+    renderer.render(scene, camera);
+    const placed = [left, top, width, height].map((size) => size / fine) as Four;
+    context.drawImage(domElement, 0, domElement.height - height, width, height, ...placed);
   };
 
-  const aimed = ({ width_px, height_px, px_per_mm, eye_distance_mm: eye }: Look): Camera => {
-    const [right, top] = [width_px / 2 / px_per_mm, height_px / 2 / px_per_mm];
+  const aimed = (look: Look): OrthographicCamera | PerspectiveCamera => {
+    const { px_per_mm, eye_distance_mm: eye } = look;
+    const [right, top] = [look.width_px / 2 / px_per_mm, look.height_px / 2 / px_per_mm];
     uniforms.eye.value = eye ?? 0;
     if (eye === null) {
-      Object.assign(level, { left: -right, right, top, bottom: -top, near: -FAR_MM, far: FAR_MM });
-      level.updateProjectionMatrix();
-      return level;
+      return Object.assign(level, { left: -right, right, top, bottom: -top, near: -FAR_MM, far: FAR_MM });
     }
-    const fov = (360 / Math.PI) * Math.atan(top / eye);
     near.position.z = eye;
-    Object.assign(near, { aspect: right / top, fov, near: eye / 1000, far: FAR_MM });
-    near.updateProjectionMatrix();
-    return near;
+    const fov = (360 / Math.PI) * Math.atan(top / eye);
+    return Object.assign(near, { aspect: right / top, fov, near: eye / 1000, far: FAR_MM });
   };
   return draw;
 }
 
+/** The part of the picture in which hulls may be, in pixels of the canvas; none if there is none. */
+function boxOf({ numbers, count }: Hulls, look: Look): Box | undefined {
+  const [across, upwards] = [0, 1].map((axis) => {
+    const ends = [Infinity, -Infinity] as [number, number];
+    for (let ball = 0; ball < 2 * count; ball++) {
+      const at = HULL * (ball >> 1) + 4 * (ball & 1);
+      const [beside, towards, radius] = [numbers[at + axis]!, numbers[at + 2]!, numbers[at + 3]!];
+      ends[0] = Math.min(ends[0], reach(beside, towards, -radius, look.eye_distance_mm));
+      ends[1] = Math.max(ends[1], reach(beside, towards, radius, look.eye_distance_mm));
+    }
+    return ends.map((end) => end * look.px_per_mm) as [number, number];
+  }) as [[number, number], [number, number]];
+  const pixels = (end: number, size: number): number =>
+    Math.min(Math.max((size / 2 + end) * look.fine, 0), Math.round(size * look.fine));
+  const left = Math.floor(pixels(across[0] - 1, look.width_px));
+  const top = Math.floor(pixels(-upwards[1] - 1, look.height_px));
+  const width = Math.ceil(pixels(across[1] + 1, look.width_px)) - left;
+  const height = Math.ceil(pixels(-upwards[0] + 1, look.height_px)) - top;
+  return width > 0 && height > 0 ? { left, top, width, height } : undefined;
+}
+
+/** How far a ball reaches to one side in the picture, in mm; `radius` is negative for the other. */
+function reach(beside: number, towards: number, radius: number, eye: number | null): number {
+  if (eye === null) return beside + radius;
+  const away = eye - towards;
+  const apart = Math.max(Math.hypot(beside, away), Math.abs(radius) * 1.000001);
+  const angle = Math.atan2(beside, away) + Math.asin(radius / apart);
+  return eye * Math.tan(Math.min(Math.max(angle, -1.57), 1.57));
+}
+
 /** Two caps of a ball on a common axis, of which the shader makes a hull. */
-function hullGeometry(): InstancedBufferGeometry {
+function hullGeometry({ round, rings }: (typeof LEVELS)[number]): InstancedBufferGeometry {
   const corners: number[] = [];
+  const shares: number[] = [];
   const faces: number[] = [];
-  const nRows = 2 * RINGS + 2;
+  const nRows = 2 * rings + 2;
   for (let row = 0; row < nRows; row++) {
-    const end = row <= RINGS ? 0 : 1;
-    for (let i = 0; i <= ROUND; i++) {
-      const turn = (2 * Math.PI * i) / ROUND;
-      corners.push(end, (row - end * (RINGS + 1)) / RINGS, turn);
-      if (row + 1 === nRows || i === ROUND) continue;
-      const here = row * (ROUND + 1) + i;
-      const above = here + ROUND + 1;
+    const end = row <= rings ? 0 : 1;
+    const fromPole = end === 0 ? row : nRows - 1 - row;
+    for (let i = 0; i <= round; i++) {
+      const turn = (2 * Math.PI * i) / round;
+      corners.push(Math.cos(turn), Math.sin(turn), end);
+      shares.push(1 - Math.cos((Math.PI / 2) * (fromPole / rings)));
+      if (row + 1 === nRows || i === round) continue;
+      const here = row * (round + 1) + i;
+      const above = here + round + 1;
       faces.push(here, here + 1, above, above, here + 1, above + 1);
     }
   }
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new Float32BufferAttribute(corners, 3));
+  geometry.setAttribute("share", new Float32BufferAttribute(shares, 1));
   geometry.setIndex(faces);
   return geometry;
 }
