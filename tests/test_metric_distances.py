@@ -261,3 +261,14 @@ def test_two_halves_of_a_real_walk_are_nearer_than_two_people(captures):
     half = (steady.attrs["steady_start_s"] + steady.attrs["steady_end_s"]) / 2
     first, second = walk.sel(time=slice(None, half + 0.7)), walk.sel(time=slice(half - 0.7, None))
     assert clip_distance(first, second) < 0.5 * clip_distance(first, walks[1])
+
+
+def test_captured_rotations_count_only_where_both_walks_have_them():
+    walk, other = some_walk(1), some_walk(2)
+    metric = FrameMetric("angles")
+    chance = np.random.default_rng(0)
+    turning = walk.assign_coords(rotation=(walk.dims, chance.normal(size=walk.shape)))
+    expected = clip_distance(walk, other, metric=metric)
+    assert clip_distance(turning, other, metric=metric) == pytest.approx(expected, rel=1e-9)
+    both = other.assign_coords(rotation=(other.dims, chance.normal(size=other.shape)))
+    assert clip_distance(turning, both, metric=metric) > 1.5 * expected

@@ -14,7 +14,7 @@ import xarray as xr
 
 from eigenwalker.metric.cycles import mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, shaped
-from eigenwalker.metric.points import common_names, picked, points_of
+from eigenwalker.metric.points import common_names, picked, points_of, told_alike
 from eigenwalker.metric.prepared import Clip, PreparedClip, prepare
 from eigenwalker.metric.registration import register
 
@@ -125,6 +125,6 @@ def _in_order_of_contents(contents: list[bytes], pairs: np.ndarray) -> np.ndarra
 
 def _stacked(cycles: list[xr.DataArray], by: By) -> tuple[list[str], np.ndarray]:
     """Points that all cycles have, and their values of shape (cycle, frame, point, part)."""
-    points = [points_of(cycle, by, periodic=True) for cycle in cycles]
+    points = [points_of(cycle, by, periodic=True) for cycle in told_alike(cycles)]
     names = reduce(common_names, [each for each, _ in points])
     return names, np.stack([picked(*each, names) for each in points])

@@ -16,7 +16,14 @@ from eigenwalker.metric.frame_metrics import (
 )
 from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.point_maps import point_map
-from eigenwalker.metric.points import UNITS, common_names, common_positions, picked, points_of
+from eigenwalker.metric.points import (
+    UNITS,
+    common_names,
+    common_positions,
+    picked,
+    points_of,
+    told_alike,
+)
 from eigenwalker.metric.published import metric_named
 from eigenwalker.metric.resampling import SAME_RATE
 from eigenwalker.trajectories import check_trajectories, sampling_rate
@@ -188,8 +195,9 @@ def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames) -> _B
             f"A map of {a.sizes['time']} x {b.sizes['time']} frames would hold {n_cells:.2g} "
             f"cells, more than {MOST_CELLS:.2g}. Take parts of the clips, or every n-th frame."
         )
-    points_a = points_of(a, metric.by, periodic=False)
-    points_b = points_a if b is a else points_of(b, metric.by, periodic=False)
+    alike = (a, b) if b is a else told_alike((a, b))
+    points_a = points_of(alike[0], metric.by, periodic=False)
+    points_b = points_a if b is a else points_of(alike[1], metric.by, periodic=False)
     names = common_names(points_a[0], points_b[0])
     values_a = picked(*points_a, names)
     values_b = values_a if b is a else picked(*points_b, names)

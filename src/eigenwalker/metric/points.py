@@ -59,6 +59,17 @@ def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str],
     return names, values
 
 
+def told_alike(clips: Sequence[xr.DataArray]) -> list[xr.DataArray]:
+    """Return clips without their captured rotations, unless all have them.
+
+    What positions tell of a joint's turn is not what was captured of it, so angles are compared
+    of one kind only.
+    """
+    if all("rotation" in clip.coords for clip in clips):
+        return list(clips)
+    return [clip.drop_vars("rotation", errors="ignore") for clip in clips]
+
+
 def picked(names: list[str], values: np.ndarray, wanted: list[str]) -> np.ndarray:
     """Return the wanted points of an array of shape (time, point, part)."""
     if names == wanted:

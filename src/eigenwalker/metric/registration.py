@@ -15,7 +15,7 @@ from eigenwalker.metric.loops import loop
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
 from eigenwalker.metric.point_maps import point_distances
-from eigenwalker.metric.points import common_names, common_positions, picked, points_of
+from eigenwalker.metric.points import common_names, common_positions, picked, points_of, told_alike
 from eigenwalker.metric.resampling import at_one_rate, length_s, played
 from eigenwalker.trajectories import sampling_rate, trajectories_at
 
@@ -78,7 +78,8 @@ class Registration:
             Points that are missing anywhere are left out.
 
         """
-        points = [points_of(clip, by, periodic=self.periodic) for clip in (self.first, self.second)]
+        clips = told_alike((self.first, self.second))
+        points = [points_of(clip, by, periodic=self.periodic) for clip in clips]
         names = common_names(points[0][0], points[1][0])
         a, b = (
             picked(*each, names)[frames] for each, frames in zip(points, self.path.T, strict=True)
