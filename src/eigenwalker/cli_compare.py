@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from eigenwalker.metric.clip_distances import PreparedClip
+    from eigenwalker.metric.prepared import PreparedClip
     from eigenwalker.report.compared_walks import Walks
 
 SOME_REFUSED = 1

@@ -9,17 +9,11 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import (
-    Clip,
-    PreparedClip,
-    clip_components,
-    pair_distances,
-    prepare,
-    registration_of,
-)
+from eigenwalker.metric.clip_distances import clip_components, pair_distances
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric
 from eigenwalker.metric.group_tables import by_group
 from eigenwalker.metric.groups import GROUPS, group_points
+from eigenwalker.metric.prepared import Clip, PreparedClip, prepare, registration_of
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration
 

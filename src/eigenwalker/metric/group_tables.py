@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import pandas as pd
 
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import Clip, pair_components, prepare
+from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.frame_metrics import By, ComparesFrames
 from eigenwalker.metric.groups import group_points
+from eigenwalker.metric.prepared import Clip, prepare
 from eigenwalker.metric.published import metric_named
 
 

@@ -10,13 +10,14 @@ import pandas as pd
 
 from eigenwalker.display.difference_tables import figure_difference_table, figure_map_of_walks
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import Clip, pair_components, pair_table
+from eigenwalker.metric.clip_distances import pair_components, pair_table
 from eigenwalker.metric.difference_structure import (
     clusters_of_walks,
     map_of_walks,
     memberships,
     order_of_walks,
 )
+from eigenwalker.metric.prepared import Clip
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.report.compared_walks import Walks
 from eigenwalker.report.content import Block, Figure, Items, Report, Section, Table, Text

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import PreparedClip, prepare
 from eigenwalker.metric.comparable import comparable_walk
+from eigenwalker.metric.prepared import PreparedClip, prepare
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.mocap import read_mocap
 from eigenwalker.population import Population

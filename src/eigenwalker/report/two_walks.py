@@ -19,10 +19,10 @@ from eigenwalker.display.difference_maps import (
     picture_of_strides,
 )
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import PreparedClip
 from eigenwalker.metric.comparison import PLAIN, Comparison, by_metric, share_nearer
 from eigenwalker.metric.loops import Loop, loop
 from eigenwalker.metric.motion_maps import motion_map
+from eigenwalker.metric.prepared import PreparedClip
 from eigenwalker.metric.published import GroupMetric
 from eigenwalker.metric.transitions import find_transitions
 from eigenwalker.report.compared_walks import Walks, walks_of_population, without_rotations
