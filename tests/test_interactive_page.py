@@ -31,6 +31,8 @@ playwright = pytest.importorskip("playwright.sync_api", reason="playwright is no
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 AXE = Path(__file__).parents[1] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "phone": (390, 844), "small": (360, 640)}
+LATER = "requestAnimationFrame(() => requestAnimationFrame(() => {{ {} }}))"
+"""Once the page has shown what was done, and drawn it."""
 DROP = """([name, text]) => {
     const data = new DataTransfer();
     data.items.add(new File([text], name));
@@ -108,15 +110,14 @@ class Visit:
 
     def state(self) -> dict[str, str]:
         """What the address says, once it has followed."""
-        self.page.wait_for_timeout(320)  # the address follows a moment later
-        said = self.page.evaluate("location.hash.slice(1)")
+        rested = "setTimeout(() => done(location.hash.slice(1)), 300)"
+        said = self.page.evaluate(f"new Promise((done) => {LATER.format(rested)})")
         return said_in(said)
 
     def picture(self) -> str:
         """What the stage draws, two frames from now."""
         drawn = "document.querySelector('#stage canvas').toDataURL()"
-        later = f"requestAnimationFrame(() => requestAnimationFrame(() => done({drawn})))"
-        return self.page.evaluate(f"new Promise((done) => {later})")
+        return self.page.evaluate(f"new Promise((done) => {LATER.format(f'done({drawn})')})")
 
 
 @pytest.fixture
