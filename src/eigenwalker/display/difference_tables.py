@@ -106,7 +106,7 @@ def figure_map_of_walks(
     for number, name in enumerate(np.unique(of)):
         color, mark = _LOOK[number % len(_LOOK)]
         chosen = places[of == name]
-        label = f"{name} ({len(chosen)})"
+        label = f"{name} ({len(chosen)})".replace("$", r"\$")  # words, not mathematics
         axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)
     for place, name in zip(places, names or [], strict=False):
         axes.annotate(
