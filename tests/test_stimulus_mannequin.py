@@ -101,6 +101,18 @@ def test_a_hull_is_all_balls_between_its_two(ends, radii, eye_mm):
     assert np.abs(light - lit)[inside].max(initial=0) < 0.02
 
 
+@pytest.mark.parametrize("eye_mm", [None, 300.0])
+@pytest.mark.parametrize("radii", [(8, 12), (12, 8), (10, 10)])
+@pytest.mark.parametrize("way", [(1, 0, 30), (1, 2, -30), (0, 0, 3), (3, 0, 30)])
+def test_a_hull_seen_along_its_axis(way, radii, eye_mm):
+    hull = Hulls(np.array([[[0, 0, 0], way]], float), np.array([radii], float), np.ones(1))
+    look = Look((44, 44), 1.0, (21.5, 21.5), eye_mm)
+    cover, light = whole(draw_hulls(hull, look), look.shape)
+    met, lit = by_balls(hull, look, 400)
+    assert cover.sum() == pytest.approx(met.sum(), rel=0.02)
+    assert np.abs(light - lit)[cover > 0.999].max() < 0.02
+
+
 def test_the_nearer_hides_the_farther():
     near, far = [[-10, 0, 30], [10, 0, 30]], [[0, -10, 0], [0, 10, 0]]
     look = Look((40, 40), 1.0, (19.5, 19.5), None)

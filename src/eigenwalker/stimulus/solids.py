@@ -262,18 +262,18 @@ def _first_met(sight: _Sight, radius: float, wider: float) -> np.ndarray:
     most = radius**2 - sight.u**2 - sight.v**2 + middle**2 * safe
     ratio = most / (safe * (safe + sight.nearer**2))
     share = middle + np.sign(safe) * sight.nearer * np.sqrt(np.maximum(ratio, 0))
-    ends = (
-        np.stack([_front(sight, radius, wider, end) for end in (0.0, 1.0)])
-        if (np.min(flat2) <= TINY)
-        else None
-    )
-    if ends is not None:
-        nearest = np.where(ends[0] == ends[1], float(wider > 0), ends.argmax(axis=0))
-        share = np.where((flat2 > TINY) | (ratio > 0), share, nearest)
-    return np.clip(share, 0, 1)
+    share = np.clip(share, 0, 1)
+    if np.min(flat2) > TINY:
+        return share
+    # One outline lies within the other: it is stationary there, or nearest at an end.
+    shares = np.stack(np.broadcast_arrays(share, 0.0, 1.0))
+    fronts = np.stack([_front(sight, radius, wider, end) for end in shares])
+    nearest = np.take_along_axis(shares, fronts.argmax(axis=0)[None], axis=0)[0]
+    nested = np.where(np.isfinite(fronts).any(axis=0), nearest, float(wider > 0))
+    return np.where(flat2 > TINY, share, nested)
 
 
-def _front(sight: _Sight, radius: float, wider: float, share: float) -> np.ndarray:
+def _front(sight: _Sight, radius: float, wider: float, share: np.ndarray) -> np.ndarray:
     """How near the front of a ball is; minus infinity where a line of sight misses it."""
     half2 = (radius + share * wider) ** 2 - (sight.u - share * sight.long) ** 2 - sight.v**2
     front = sight.near + share * sight.nearer + np.sqrt(np.maximum(half2, 0))
