@@ -21,7 +21,7 @@ import vertexShader from "./hull.vert?raw";
 import { HULL, type Hulls } from "./hulls";
 import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
 
-/** Corners round a hull, and rings over each of its two caps, up to so many pixels a millimetre. */
+/** Corners round a hull, and rings over each of its two caps, up to so many pixels a mm. */
 const LEVELS = [
   { upTo: 0.35, round: 24, rings: 5 },
   { upTo: 0.7, round: 32, rings: 7 },
@@ -54,7 +54,7 @@ export function solidDrawing(): DrawHulls {
   const near = new PerspectiveCamera();
   let buffer: InstancedInterleavedBuffer | undefined;
 
-  const give = (hulls: Hulls, { fine, px_per_mm }: Look): void => {
+  const give = (hulls: Hulls, look: Look): void => {
     if (buffer?.array !== hulls.numbers) {
       buffer = new InstancedInterleavedBuffer(hulls.numbers, HULL);
       buffer.setUsage(DynamicDrawUsage);
@@ -66,7 +66,8 @@ export function solidDrawing(): DrawHulls {
       }
     }
     buffer.needsUpdate = true;
-    const level = levels.find(({ upTo }) => px_per_mm * fine <= upTo)!;
+    const size = largest(hulls, look);
+    const level = levels.find(({ upTo }) => size <= upTo)!;
     mesh.geometry = level.geometry;
     mesh.geometry.instanceCount = hulls.count;
     const [a, b] = [(2 * Math.PI) / level.round, Math.PI / 2 / level.rings];
@@ -126,6 +127,17 @@ function boxOf({ numbers, count }: Hulls, look: Look): Box | undefined {
   const width = Math.ceil(pixels(across[1] + 1, look.width_px)) - left;
   const height = Math.ceil(pixels(-upwards[0] + 1, look.height_px)) - top;
   return width > 0 && height > 0 ? { left, top, width, height } : undefined;
+}
+
+/** The pixels of the canvas that a millimetre of what is nearest takes. */
+function largest({ numbers, count }: Hulls, look: Look): number {
+  const { px_per_mm, fine, eye_distance_mm: eye } = look;
+  if (eye === null) return px_per_mm * fine;
+  let away = eye;
+  for (let hull = 0; hull < count; hull++) {
+    away = Math.min(away, eye - numbers[HULL * hull + 2]!, eye - numbers[HULL * hull + 6]!);
+  }
+  return (px_per_mm * fine * eye) / away;
 }
 
 /** How far a ball reaches to one side in the picture, in mm; `radius` is negative for the other. */
