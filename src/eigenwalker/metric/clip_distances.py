@@ -97,6 +97,12 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
     -------
     DataFrame of steps by points
 
+    Examples
+    --------
+    >>> walk, other = (ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2))
+    >>> float(step_distances(walk, other)["left_ankle"].max().round()) > 50
+    True
+
     """
     return registration_of(prepare(a), prepare(b)).distances(by)
 
@@ -157,6 +163,12 @@ def pair_distances(
     -------
     Series of pairs
         In the order of `itertools.combinations`.
+
+    Examples
+    --------
+    >>> walks = {name: ew.simulate_walk(seed=len(name), rate_hz=60) for name in ("a", "bb", "ccc")}
+    >>> pair_distances(walks).index.to_list()
+    [('a', 'bb'), ('a', 'ccc'), ('bb', 'ccc')]
 
     """
     asked = metric_named(metric)
