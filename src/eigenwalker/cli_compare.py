@@ -96,7 +96,7 @@ def compare(
     if walks.refused:
         print(f"{len(walks.refused)} not compared:", file=sys.stderr)
         print("".join(f"  {name}: {why}\n" for name, why in walks.refused.items()), file=sys.stderr)
-        raise typer.Exit(SOME_REFUSED)
+        raise typer.Exit(SOME_REFUSED if first.is_dir() else 0)
 
 
 def _compare_two(first: Path, second: Path, output: Path | None, metric: str, told: dict) -> None:

@@ -89,7 +89,7 @@ def walks_of_population(
     clips, refused = {}, {}
     for row, (name, walker) in enumerate(zip(names, population.walkers, strict=True)):
         if population.flagged[row]:
-            refused[name] = "flagged"
+            refused[name] = "flagged; --with-flagged counts it too"
         else:
             clips[name] = prepare(walk_of_walker(walker, mannequin=mannequin))
         if progress is not None:
