@@ -9,10 +9,7 @@ import { castOf } from "../src/model/cast";
 import { readModel } from "../src/model/read";
 import { initialState, TRANSFORM_NAMES, usualSettings, type State } from "../src/model/state";
 import { encodeFilm, NoFilm } from "../src/stage/film";
-import type { Track } from "../src/stage/container";
-import { mp4File } from "../src/stage/mp4";
 import { pageFile, stimulusFile, type Kept } from "../src/stage/saving";
-import { webmFile } from "../src/stage/webm";
 
 const model = readModel(golden.model);
 const PLAYER =
@@ -91,72 +88,6 @@ describe("pages", () => {
 
   it("cannot be made where there is no player", () => {
     expect(() => pageFile(kept())).toThrow("stimulus file");
-  });
-});
-
-describe("film files", () => {
-  const track = (frames: readonly number[]): Track => ({
-    width: 320,
-    height: 240,
-    rateHz: 60,
-    packets: frames.map((frame, i) => ({
-      bytes: Uint8Array.from({ length: 5 + i }, () => 100 + i),
-      isKey: i % 3 === 0,
-      frame,
-    })),
-  });
-  const view = (bytes: Uint8Array): DataView => new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-
-  /** Boxes of an MP4 by their path; those that hold boxes are opened. */
-  function boxesOf(bytes: Uint8Array, path = "", found = new Map<string, Uint8Array>()): Map<string, Uint8Array> {
-    for (let at = 0; at < bytes.length; ) {
-      const size = view(bytes).getUint32(at);
-      const name = `${path}/${String.fromCharCode(...bytes.subarray(at + 4, at + 8))}`;
-      expect(size).toBeGreaterThanOrEqual(8);
-      expect(at + size).toBeLessThanOrEqual(bytes.length);
-      found.set(name, bytes.subarray(at + 8, at + size));
-      if (/(moov|trak|mdia|minf|stbl)$/.test(name)) boxesOf(found.get(name)!, name, found);
-      at += size;
-    }
-    return found;
-  }
-
-  it("of H.264 say where each frame is", () => {
-    const made = track([0, 1, 2, 3, 4]);
-    const file = mp4File(made, Uint8Array.of(1, 2, 3));
-    const boxes = boxesOf(file);
-    const table = (name: string): number[] => {
-      const bytes = boxes.get(`/moov/trak/mdia/minf/stbl/${name}`)!;
-      return Array.from({ length: bytes.length / 4 }, (_, i) => view(bytes).getUint32(4 * i));
-    };
-    const [, , count, ...sizes] = table("stsz");
-    let [, , at] = table("stco") as [number, number, number];
-    expect(count).toBe(5);
-    made.packets.forEach(({ bytes }, i) => {
-      expect(file.subarray(at, at + sizes[i]!)).toEqual(bytes);
-      at += sizes[i]!;
-    });
-    expect(at).toBe(file.length);
-    expect(table("stss")).toEqual([0, 2, 1, 4]);
-    expect(boxes.has("/moov/trak/mdia/minf/stbl/ctts")).toBe(false);
-  });
-
-  it("of H.264 tell when frames are shown that were decoded in another order", () => {
-    const boxes = boxesOf(mp4File(track([0, 2, 1, 3]), Uint8Array.of(1)));
-    const bytes = boxes.get("/moov/trak/mdia/minf/stbl/ctts")!;
-    const numbers = Array.from({ length: bytes.length / 4 }, (_, i) => view(bytes).getInt32(4 * i));
-    expect(numbers).toEqual([1 << 24, 4, 1, 0, 1, 2, 1, -2, 1, 0]);
-  });
-
-  it("of VP9 begin a cluster at each frame that they can be entered at", () => {
-    const made = track([0, 1, 2, 3, 4]);
-    const file = webmFile(made, "V_VP9");
-    const starts = [...file.keys()].filter((i) => view(file).byteLength >= i + 4 && view(file).getUint32(i) === 0x1f43b675);
-    expect(starts.length).toBe(2);
-    const sizeOf = (at: number): number => view(file).getUint32(at + 8);
-    expect(starts[0]! + 12 + sizeOf(starts[0]!)).toBe(starts[1]);
-    expect(starts[1]! + 12 + sizeOf(starts[1]!)).toBe(file.length);
-    expect(file.subarray(-9)).toEqual(made.packets[4]!.bytes);
   });
 });
 

@@ -1,9 +1,6 @@
 /** Films made in the browser: H.264 in MP4, or what else this browser can encode. */
 
-import type { Bytes } from "./bytes";
-import type { Packet, Track } from "./container";
-import { mp4File } from "./mp4";
-import { webmFile } from "./webm";
+import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat } from "mediabunny";
 
 /** This browser makes no films; the message says what does. */
 export class NoFilm extends Error {}
@@ -26,30 +23,20 @@ export interface Film {
   readonly suffix: "mp4" | "webm";
 }
 
-interface Encoded {
-  readonly packets: readonly Packet[];
-  /** What a decoder of H.264 must know beforehand. */
-  readonly description: Uint8Array | undefined;
-}
-
+type Codec = "avc" | "vp9" | "vp8";
 interface Choice {
-  /** As WebCodecs calls it. */
-  readonly codec: string;
+  readonly codec: Codec;
+  /** As WebCodecs calls it: H.264 high and baseline, VP9 and VP8. */
+  readonly string: string;
   readonly suffix: Film["suffix"];
-  readonly file: (track: Track, description: Uint8Array | undefined) => Bytes;
 }
 
-const mp4: Choice["file"] = (track, description) => {
-  if (!description) throw new NoFilm("The encoder of this browser does not say what its film is.");
-  return mp4File(track, description);
-};
-
-/** H.264 of the high and the baseline profile, VP9, VP8: the best first. */
+/** The best first. */
 const CHOICES: readonly Choice[] = [
-  { codec: "avc1.640033", suffix: "mp4", file: mp4 },
-  { codec: "avc1.42003e", suffix: "mp4", file: mp4 },
-  { codec: "vp09.00.51.08", suffix: "webm", file: (track) => webmFile(track, "V_VP9") },
-  { codec: "vp8", suffix: "webm", file: (track) => webmFile(track, "V_VP8") },
+  { codec: "avc", string: "avc1.640033", suffix: "mp4" },
+  { codec: "avc", string: "avc1.42003e", suffix: "mp4" },
+  { codec: "vp9", string: "vp09.00.51.08", suffix: "webm" },
+  { codec: "vp8", string: "vp8", suffix: "webm" },
 ];
 /** Bits a pixel and frame: dots with sharp edges are to stay sharp. */
 const BITS_A_PIXEL = 0.2;
@@ -60,10 +47,18 @@ const MOST_WAITING = 8;
 /** Make a film, frame by frame. */
 export async function encodeFilm(wish: FilmWish): Promise<Film> {
   const { choice, config } = await choose(wish);
-  const { packets, description } = await encodeFrames(wish, config);
-  const { width, height, rateHz } = wish;
-  const file = choice.file({ width, height, rateHz, packets }, description);
-  return { blob: new Blob([file], { type: `video/${choice.suffix}` }), suffix: choice.suffix };
+  const output = new Output({
+    format: choice.suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
+    target: new BufferTarget(),
+  });
+  const source = new EncodedVideoPacketSource(choice.codec);
+  output.addVideoTrack(source, { frameRate: wish.rateHz });
+  await output.start();
+  await encodeFrames(wish, config, source);
+  await output.finalize();
+  const { buffer } = output.target;
+  if (!buffer) throw new NoFilm("The film came out empty.");
+  return { blob: new Blob([buffer], { type: `video/${choice.suffix}` }), suffix: choice.suffix };
 }
 
 /** What this browser encodes of what was wished for. */
@@ -73,13 +68,12 @@ async function choose({ width, height, rateHz }: FilmWish): Promise<{ choice: Ch
   }
   for (const choice of CHOICES) {
     const config: VideoEncoderConfig = {
-      codec: choice.codec,
+      codec: choice.string,
       width,
       height,
       framerate: rateHz,
       bitrate: Math.round(width * height * rateHz * BITS_A_PIXEL),
       latencyMode: "quality",
-      avc: { format: "avc" },
     };
     const support = await VideoEncoder.isConfigSupported(config).catch(() => null);
     if (support?.supported) return { choice, config };
@@ -87,7 +81,7 @@ async function choose({ width, height, rateHz }: FilmWish): Promise<{ choice: Ch
   throw new NoFilm(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
 }
 
-async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig): Promise<Encoded> {
+async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig, source: EncodedVideoPacketSource): Promise<void> {
   const { width, height, frames, rateHz, progress, signal } = wish;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });
@@ -96,14 +90,10 @@ async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig): Promise
   let fail = (_: Error): void => {};
   const failed = new Promise<never>((_, refuse) => (fail = refuse));
   failed.catch(() => {}); // heard below, or too late to matter
-  const packets: Packet[] = [];
-  let description: Uint8Array | undefined;
+  let written: Promise<unknown> = Promise.resolve();
   const encoder = new VideoEncoder({
     output: (chunk, meta) => {
-      const bytes = new Uint8Array(chunk.byteLength);
-      chunk.copyTo(bytes);
-      packets.push({ bytes, isKey: chunk.type === "key", frame: Math.round((chunk.timestamp * rateHz) / 1e6) });
-      description ??= bytesOf(meta?.decoderConfig?.description);
+      written = written.then(() => source.add(EncodedPacket.fromEncodedChunk(chunk), meta));
     },
     error: (error) => fail(new NoFilm(`The encoder of this browser failed: ${error.message}`)),
   });
@@ -122,7 +112,7 @@ async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig): Promise
       await Promise.race([roomIn(encoder), failed]);
     }
     await Promise.race([encoder.flush(), failed]);
-    return { packets, description };
+    await written;
   } finally {
     if (encoder.state !== "closed") encoder.close();
   }
@@ -134,10 +124,4 @@ async function roomIn(encoder: VideoEncoder): Promise<void> {
   while (encoder.encodeQueueSize > MOST_WAITING) {
     await new Promise<void>((go) => encoder.addEventListener("dequeue", () => go(), { once: true }));
   }
-}
-
-function bytesOf(source: AllowSharedBufferSource | undefined): Uint8Array | undefined {
-  if (source === undefined) return undefined;
-  if (!ArrayBuffer.isView(source)) return new Uint8Array(source).slice();
-  return new Uint8Array(source.buffer, source.byteOffset, source.byteLength).slice();
 }
