@@ -219,7 +219,7 @@ class Population:
         """
         together, _, flag = correspond_to(walker, self._correspondence.reference)
         if flag:
-            raise ValueError(f"This walker cannot be compared with the population: {flag}.")
+            raise ValueError(f"This walker cannot be compared with the population: {flag}")
         return self._unwrapped(self.layout.vector(together)[None])[0]
 
     def hybrid(self, *, structure: np.ndarray, dynamics: np.ndarray) -> np.ndarray:
