@@ -12,7 +12,17 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure as Drawing
 
 from eigenwalker.display.films import write_film
-from eigenwalker.report.content import Code, Figure, Film, Items, Report, Section, Table, Text
+from eigenwalker.report.content import (
+    Code,
+    Figure,
+    Film,
+    Items,
+    Link,
+    Report,
+    Section,
+    Table,
+    Text,
+)
 from eigenwalker.report.page import render_report, write_report
 from eigenwalker.walker import Walker
 
@@ -217,3 +227,11 @@ def test_sections_can_be_reached_from_the_top(film):
     page = Page(render_report(whole_report(film)))
     targets = {found["id"] for found in page.all("section")}
     assert {link["href"].lstrip("#") for link in page.all("a")} == targets
+
+
+def test_a_report_links_to_a_page_beside_it_and_no_further():
+    html = render_report(Report("Sex", "Told.", beside=Link("Play <here>", "my page.html")))
+    assert '<a href="my%20page.html">Play &lt;here&gt;</a>' in html
+    for elsewhere in ("../page.html", "https://example.org", "javascript:alert(1)", "a/b.html"):
+        with pytest.raises(ValueError, match="files beside it"):
+            Link("Play", elsewhere)
