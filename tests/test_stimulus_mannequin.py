@@ -113,6 +113,12 @@ def test_a_hull_seen_along_its_axis(way, radii, eye_mm):
     assert np.abs(light - lit)[cover > 0.999].max() < 0.02
 
 
+def test_what_is_worked_out_in_parts_is_the_same(average, monkeypatch):
+    whole_picture = frame(wooden(average))
+    monkeypatch.setattr("eigenwalker.stimulus.solids.MOST_PIXELS", 200)
+    np.testing.assert_array_equal(frame(wooden(average)), whole_picture)
+
+
 def test_the_nearer_hides_the_farther():
     near, far = [[-10, 0, 30], [10, 0, 30]], [[0, -10, 0], [0, 10, 0]]
     look = Look((40, 40), 1.0, (19.5, 19.5), None)

@@ -6,6 +6,7 @@ much of the pixel is covered, where it meets it first says how bright it is ther
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ LIGHT = np.array([-0.44, 0.67, 0.6]) / np.sqrt(0.44**2 + 0.67**2 + 0.6**2)
 SHADOW, EDGE = 0.34, 0.8
 """Light in the deepest shadow, and share of light where the surface turns away."""
 Pixels = np.ndarray | np.float32
+MOST_PIXELS = 1_000_000
+"""Pixels of a hull that are worked out at once."""
 TIE_MM = 1e-3
 """Balls nearer to each other than this are one."""
 TINY = 1e-6
@@ -88,22 +91,32 @@ def draw_hulls(hulls: Hulls, look: Look) -> Lit:
     cover, light = np.zeros(size, np.float32), np.zeros(size, np.float32)
     depth = np.full(size, -np.inf, np.float32)
     for piece in np.argsort(hulls.middles[..., 2].mean(axis=1)):
-        box = boxes[piece]
-        if box is None:
-            continue
-        x, y = _picture(box, look)
-        beside, near, shade = _seen(hulls.middles[piece], hulls.radii[piece], x, y, look)
-        part = tuple(
-            slice(a.start - b.start, a.stop - b.start) for a, b in zip(box, whole, strict=True)
-        )
-        # Where pieces cut into each other the passage is as soft as an edge.
-        before = np.clip((near - depth[part]) * look.px_per_mm + 0.5, 0, 1)
-        covered = np.clip(beside + 0.5, 0, 1) * before
-        left = 1 - covered
-        cover[part] = covered + left * cover[part]
-        light[part] = covered * (hulls.tones[piece] * shade) + left * light[part]
-        depth[part] = np.where(covered > 0.5, near, depth[part])
+        for box in _bands(boxes[piece]):
+            x, y = _picture(box, look)
+            beside, near, shade = _seen(hulls.middles[piece], hulls.radii[piece], x, y, look)
+            rows, columns = (
+                slice(side.start - corner.start, side.stop - corner.start)
+                for side, corner in zip(box, whole, strict=True)
+            )
+            part = (rows, columns)
+            # Where pieces cut into each other the passage is as soft as an edge.
+            before = np.clip((near - depth[part]) * look.px_per_mm + 0.5, 0, 1)
+            covered = np.clip(beside + 0.5, 0, 1) * before
+            left = 1 - covered
+            cover[part] = covered + left * cover[part]
+            light[part] = covered * (hulls.tones[piece] * shade) + left * light[part]
+            depth[part] = np.where(covered > 0.5, near, depth[part])
     return Lit(whole, cover, light)
+
+
+def _bands(box: tuple[slice, slice] | None) -> Iterator[tuple[slice, slice]]:
+    """Parts of a box, one above the other, of so many pixels that memory holds them."""
+    if box is None:
+        return
+    rows, columns = box
+    step = max(MOST_PIXELS // (columns.stop - columns.start), 1)
+    for first in range(rows.start, rows.stop, step):
+        yield slice(first, min(first + step, rows.stop)), columns
 
 
 def brightness(lit: np.ndarray, facing: np.ndarray) -> np.ndarray:

@@ -48,8 +48,8 @@ def put_wood(canvas: np.ndarray, lit: Lit) -> None:
     if canvas.any():
         canvas[:] = np.rint(canvas * np.float32(DOTS / 255))
     light = np.clip(lit.light / np.maximum(lit.cover, 1e-6), 0, 1)
-    share = np.rint(lit.cover * (EDGES + 1)).astype(int)
-    edge = FIRST_EDGE + (share - 1) * BRIGHT + np.rint(light * (BRIGHT - 1)).astype(int)
-    full = FIRST_FULL + np.rint(light * (FULL - 1)).astype(int)
+    share = np.rint(lit.cover * (EDGES + 1)).astype(np.int16)
+    edge = FIRST_EDGE + (share - 1) * BRIGHT + np.rint(light * (BRIGHT - 1)).astype(np.int16)
+    full = FIRST_FULL + np.rint(light * (FULL - 1)).astype(np.int16)
     wood = np.where(before, DOTS, np.where(share > EDGES, full, edge))
     np.copyto(canvas[lit.box], wood.astype(np.uint8), where=share > 0)
