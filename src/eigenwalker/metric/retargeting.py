@@ -64,7 +64,8 @@ def retarget(walk: xr.DataArray) -> xr.DataArray:
     ----------
     walk : DataArray of shape (time, marker, axis)
         A walk of the 15 joints (`virtual_markers`), in place (`in_place`), hands and feet if
-        there are any. A coordinate ``rotation`` stays: turns of bones are not changed.
+        there are any. Positions of a capture of rotations, such as BVH, are those of turned bones,
+        so the directions kept are the captured ones; a coordinate ``rotation`` stays as it is.
 
     Returns
     -------
