@@ -205,10 +205,11 @@ def test_clips_that_do_not_fit_are_refused_with_words(other, options, told):
         motion_map(some_clip(), other, **options)
 
 
-def test_a_map_that_would_not_fit_into_memory_is_refused():
-    long = label_trajectories(np.zeros((9000, 1, 3)), markers=["head"], rate_hz=120)
+@pytest.mark.parametrize(("n_frames", "align"), [(9000, False), (3500, True)])
+def test_a_map_that_would_not_fit_into_memory_is_refused(n_frames, align):
+    long = label_trajectories(np.zeros((n_frames, 1, 3)), markers=["head"], rate_hz=120)
     with pytest.raises(ValueError, match="every n-th frame"):
-        motion_map(long)
+        motion_map(long, align=align)
 
 
 @pytest.mark.parametrize(

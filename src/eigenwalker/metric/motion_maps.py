@@ -31,6 +31,9 @@ from eigenwalker.trajectories import check_trajectories, sampling_rate
 MOST_CELLS = 60_000_000
 """Cells of the largest map: half a gigabyte. Two clips of a minute at 120 Hz stay below."""
 
+MOST_ALIGNED_CELLS = MOST_CELLS // 6
+"""Aligned maps need several numbers a cell. Two clips of 25 s at 120 Hz stay below."""
+
 
 def motion_map(
     a: xr.DataArray,
@@ -85,7 +88,7 @@ def motion_map(
 
     """
     metric = metric_named(metric)
-    clips = _both(a, b, metric)
+    clips = _both(a, b, metric, align)
     half = _half_window(clips.a, clips.b, window_s)
     values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
     return xr.DataArray(
@@ -135,7 +138,7 @@ def motion_maps(
 
     """
     metric = metric_named(metric)
-    clips = _both(a, b, metric)
+    clips = _both(a, b, metric, align)
     half = _half_window(clips.a, clips.b, window_s)
     present = {name: set(points) & set(clips.names) for name, points in groups.items()}
     present = {name: points for name, points in present.items() if points}
@@ -184,16 +187,17 @@ class _Both(NamedTuple):
         return diagonal_means(cells, half) if half else cells
 
 
-def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames) -> _Both:
+def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames, align: bool) -> _Both:
     a = check_trajectories(a)
     b = a if b is None else check_trajectories(b)
     n_cells = a.sizes["time"] * b.sizes["time"]
     if not n_cells:
         raise ValueError("A clip without frames has no motion map.")
-    if n_cells > MOST_CELLS:
+    most = MOST_ALIGNED_CELLS if align else MOST_CELLS
+    if n_cells > most:
         raise ValueError(
             f"A map of {a.sizes['time']} x {b.sizes['time']} frames would hold {n_cells:.2g} "
-            f"cells, more than {MOST_CELLS:.2g}. Take parts of the clips, or every n-th frame."
+            f"cells, more than {most:.2g}. Take parts of the clips, or every n-th frame."
         )
     alike = (a, b) if b is a else told_alike((a, b))
     points_a = points_of(alike[0], metric.by, periodic=False)
