@@ -54,6 +54,17 @@ def by_librosa(cost: np.ndarray) -> np.ndarray:
     return librosa.sequence.dtw(C=cost)[1][::-1]
 
 
+def processor_seconds(ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
+    """Return the least processor time of each way, which a busy machine hardly changes."""
+    times: dict[str, list[float]] = {name: [] for name in ways}
+    for _ in range(9):
+        for name, way in ways.items():
+            start = process_time()
+            way()
+            times[name].append(process_time() - start)
+    return {name: min(taken) for name, taken in times.items()}
+
+
 def maps() -> None:
     labelled = clips()
     a, b = (clip.values for clip in labelled)
@@ -68,6 +79,7 @@ def maps() -> None:
         title = f"Map of {N_FRAMES} x {N_FRAMES} frames, {N_JOINTS} joints, {shape}"
         aims = {} if shape == "power" else {"point_map": 8, "motion_map": 8}
         print_table(title, seconds(ways, rounds=7), aims=aims)
+        print_table(f"{title}, processor time", processor_seconds(ways), aims={})
 
 
 def paths() -> None:
@@ -91,17 +103,6 @@ def paths() -> None:
 
 def mean_along(cost: np.ndarray, path: np.ndarray) -> float:
     return float(cost[path[:, 0], path[:, 1]].mean())
-
-
-def processor_seconds(ways: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Return the least processor time of each way, which a busy machine hardly changes."""
-    times: dict[str, list[float]] = {name: [] for name in ways}
-    for _ in range(9):
-        for name, way in ways.items():
-            start = process_time()
-            way()
-            times[name].append(process_time() - start)
-    return {name: min(taken) for name, taken in times.items()}
 
 
 def all_pairs() -> None:
