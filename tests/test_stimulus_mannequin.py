@@ -53,7 +53,7 @@ def whole(lit: Lit, shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
     return cover, light
 
 
-def by_balls(hull: Hulls, look: Look, n_balls: int = 120) -> tuple[np.ndarray, np.ndarray]:
+def by_balls(hull: Hulls, look: Look, n_balls: int = 400) -> tuple[np.ndarray, np.ndarray]:
     """Whether each pixel's line of sight meets the hull, and how bright: ball after ball."""
     rows, columns = np.mgrid[: look.shape[0], : look.shape[1]]
     x = (columns - look.middle_px[0]) / look.px_per_mm
