@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _HOME = {
+    "Comparison": "metric.comparison",
     "DiscriminantClassifier": "discriminant",
     "DiscriminantRegressor": "discriminant",
     "FrameMetric": "metric.frame_metrics",
     "GroupMetric": "metric.published",
     "JOINTS": "skeleton",
     "Loop": "metric.loops",
+    "PUBLISHED": "metric.published",
     "Pattern": "simulation",
     "PerceptualMetric": "metric.perceptual",
     "Population": "population",
@@ -31,14 +33,17 @@ _HOME = {
     "UnreadableFile": "mocap",
     "Walker": "walker",
     "WalkerSpace": "space",
+    "angle_between": "metric.angles",
     "assess": "quality",
     "bootstrap_weights": "metric.observers",
     "classify": "classification",
     "clip_distance": "metric.clip_distances",
+    "clusters_of_walks": "metric.difference_structure",
     "comparable_walk": "metric.comparable",
     "compare_metrics": "metric.fit_quality",
     "compare_walks": "metric.comparison",
     "contrast": "contrasts",
+    "count_pairs": "metric.answers",
     "decompose_fourier": "decomposition",
     "decompose_pca": "decomposition",
     "direction": "caricature",
@@ -47,18 +52,23 @@ _HOME = {
     "figure_curves": "display.curves",
     "figure_eigenpostures": "display.eigenpostures",
     "figure_joints": "display.bodies",
+    "figure_maps": "display.difference_maps",
     "figure_regression_curves": "display.curves",
     "figure_scores": "display.components",
     "figure_space": "display.populations",
+    "figure_two_walks": "display.difference_maps",
     "figure_variance": "display.components",
     "figure_walkers": "display.bodies",
     "find_transitions": "metric.transitions",
     "fit_folder": "study",
+    "fit_from_random_starts": "metric.outer_search",
     "from_movement": "interchange",
     "from_pyomeca": "interchange",
     "fundamental_frequency": "gait",
     "gait_events": "gait",
     "gait_parameters": "gait",
+    "group_points": "metric.groups",
+    "group_table": "metric.group_tables",
     "in_place": "gait",
     "is_capture": "mocap",
     "jackknife_curves": "jackknife",
@@ -68,12 +78,14 @@ _HOME = {
     "load_population": "datasets",
     "loop": "metric.loops",
     "make_stimulus": "stimulus",
+    "map_of_walks": "metric.difference_structure",
     "mend": "mending",
     "metric_named": "metric.published",
     "motion_map": "metric.motion_maps",
     "motion_maps": "metric.motion_maps",
     "nested_leave_one_out": "validation",
     "nested_regression": "validation",
+    "order_of_walks": "metric.difference_structure",
     "pair_components": "metric.clip_distances",
     "pair_table": "metric.clip_distances",
     "permutation_test": "validation",
@@ -141,6 +153,8 @@ if TYPE_CHECKING:
     from eigenwalker.display.components import figure_variance as figure_variance
     from eigenwalker.display.curves import figure_curves as figure_curves
     from eigenwalker.display.curves import figure_regression_curves as figure_regression_curves
+    from eigenwalker.display.difference_maps import figure_maps as figure_maps
+    from eigenwalker.display.difference_maps import figure_two_walks as figure_two_walks
     from eigenwalker.display.eigenpostures import figure_eigenpostures as figure_eigenpostures
     from eigenwalker.display.films import write_film as write_film
     from eigenwalker.display.populations import figure_space as figure_space
@@ -160,23 +174,33 @@ if TYPE_CHECKING:
     from eigenwalker.jackknife import regression_curves as regression_curves
     from eigenwalker.measures import walker_measures as walker_measures
     from eigenwalker.mending import mend as mend
+    from eigenwalker.metric.angles import angle_between as angle_between
     from eigenwalker.metric.angles import joint_quaternions as joint_quaternions
+    from eigenwalker.metric.answers import count_pairs as count_pairs
     from eigenwalker.metric.clip_distances import clip_distance as clip_distance
     from eigenwalker.metric.clip_distances import pair_components as pair_components
     from eigenwalker.metric.clip_distances import pair_table as pair_table
     from eigenwalker.metric.comparable import comparable_walk as comparable_walk
+    from eigenwalker.metric.comparison import Comparison as Comparison
     from eigenwalker.metric.comparison import compare_walks as compare_walks
+    from eigenwalker.metric.difference_structure import clusters_of_walks as clusters_of_walks
+    from eigenwalker.metric.difference_structure import map_of_walks as map_of_walks
+    from eigenwalker.metric.difference_structure import order_of_walks as order_of_walks
     from eigenwalker.metric.fit_quality import compare_metrics as compare_metrics
     from eigenwalker.metric.fit_quality import leave_walkers_out as leave_walkers_out
     from eigenwalker.metric.frame_metrics import FrameMetric as FrameMetric
+    from eigenwalker.metric.group_tables import group_table as group_table
+    from eigenwalker.metric.groups import group_points as group_points
     from eigenwalker.metric.loops import Loop as Loop
     from eigenwalker.metric.loops import loop as loop
     from eigenwalker.metric.motion_maps import motion_map as motion_map
     from eigenwalker.metric.motion_maps import motion_maps as motion_maps
     from eigenwalker.metric.observers import bootstrap_weights as bootstrap_weights
     from eigenwalker.metric.observers import split_half as split_half
+    from eigenwalker.metric.outer_search import fit_from_random_starts as fit_from_random_starts
     from eigenwalker.metric.outer_search import search_shape as search_shape
     from eigenwalker.metric.perceptual import PerceptualMetric as PerceptualMetric
+    from eigenwalker.metric.published import PUBLISHED as PUBLISHED
     from eigenwalker.metric.published import GroupMetric as GroupMetric
     from eigenwalker.metric.published import metric_named as metric_named
     from eigenwalker.metric.registration import Registration as Registration

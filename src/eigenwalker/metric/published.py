@@ -149,7 +149,8 @@ LEE = GroupMetric(
 )
 """The angles' part of Lee et al. (2002): squared turns of shoulders, elbows, hips and knees, all
 alike, nothing for neck, wrists, ankles and toes. Their pelvis and spine belong to no group of
-figure 5 and are left out, as are their terms of velocity and of the root."""
+figure 5 and are left out, as are their terms of velocity and of the root. (Which joints they take
+is as later papers tell it; their own was not at hand.)"""
 
 KOVAR = GroupMetric("kovar", "positions", "squared", dict.fromkeys(GROUPS, 1.0))
 """In the manner of Kovar, Gleicher and Pighin (2002): squared distances of points that all weigh
