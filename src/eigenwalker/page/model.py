@@ -68,6 +68,7 @@ def page_model(
     known, layout = population.X[rows], population.layout
     shown, points = _evenly(len(rows), MOST_WALKERS), _evenly(len(rows), MOST_POINTS)
     axes = model_traits(population, traits, first=first)
+    space = _space(known)
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -80,9 +81,9 @@ def page_model(
         "n_flagged": len(population) - len(rows),
         **_body(layout),
         "average": rounded_vectors(known.mean(axis=0), layout),
-        **_variation(known, layout, points),
+        **_variation(space, known, layout, points),
         "walkers": _walkers(population, rows[shown], axes),
-        "cloud": _cloud(known, points, shown),
+        "cloud": _cloud(space, known, points, shown),
         "traits": axes,
     }
 
@@ -124,9 +125,9 @@ def walker_model(walker: Walker, *, title: str = "One walker") -> dict[str, Any]
         "n_flagged": 0,
         **_body(layout),
         "average": own,
-        **_variation(vector[None], layout, np.array([0])),
+        **_variation(None, vector[None], layout, np.array([0])),
         "walkers": [{"name": title, "row": 0, "vector": own, "traits": {}}],
-        "cloud": _cloud(vector[None], np.array([0]), np.array([0])),
+        "cloud": _cloud(None, vector[None], np.array([0]), np.array([0])),
         "traits": [],
     }
 
@@ -153,9 +154,10 @@ def _evenly(number: int, most: int) -> np.ndarray:
     return np.unique(np.linspace(0, number - 1, min(number, most)).round().astype(int))
 
 
-def _variation(known: np.ndarray, layout: FeatureLayout, points: np.ndarray) -> dict[str, Any]:
+def _variation(
+    space: WalkerSpace | None, known: np.ndarray, layout: FeatureLayout, points: np.ndarray
+) -> dict[str, Any]:
     """What varies between the walkers: scale, eigenwalkers, and how far they spread."""
-    space = _space(known)
     if space is None:
         spread = {"rms": 1.0, "distances": [0.0] * len(points)}
         return {"scale": [1.0] * len(layout), "eigenwalkers": [], "spread": spread}
@@ -187,9 +189,10 @@ def _space(known: np.ndarray) -> WalkerSpace | None:
         return None
 
 
-def _cloud(known: np.ndarray, points: np.ndarray, shown: np.ndarray) -> dict[str, Any]:
+def _cloud(
+    space: WalkerSpace | None, known: np.ndarray, points: np.ndarray, shown: np.ndarray
+) -> dict[str, Any]:
     """Every walker as a point: its scores in standard deviations of the walkers."""
-    space = _space(known)
     if space is None:
         return {"n": 0, "scores": [], "walker": []}
     scores = space.transform(known[points]) / np.sqrt(space.explained_variance_)
