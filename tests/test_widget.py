@@ -26,7 +26,7 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))
 
 @pytest.fixture(scope="module")
 def people() -> ew.Population:
-    return ew.load_population()
+    return ew.simulate_population(6, 6, seed=1)
 
 
 def test_setting_traits_moves_the_walker(people):
@@ -47,9 +47,9 @@ def test_everything_chosen_makes_the_walker(people):
 
 
 def test_ones_own_walker_moves_along_traits_of_a_population(people):
-    other = people.walkers[30]
-    widget = show(other, population=people.drop([30]), alpha={"sex": -1})
-    rest = people.drop([30])
+    other = people.walkers[9]
+    widget = show(other, population=people.drop([9]), alpha={"sex": -1})
+    rest = people.drop([9])
     step = ew.trait_axis(rest, "sex").step
     np.testing.assert_allclose(widget.vector, rest.vector(other) - step, atol=1e-5)
 
@@ -89,7 +89,7 @@ def test_a_stimulus_is_shown_as_it_is(people):
         ("alpha", {"shoe": 1}, "no trait 'shoe'"),
         ("alpha", {"sex": "much"}, "float"),
         ("alpha", {"sex": float("nan")}, "not finite"),
-        ("start", 40, "0 to 39"),
+        ("start", 40, "0 to 11"),
         ("start", "own", "no walker 'own'"),
         ("part", "p9", None),
         ("bias", {"trait": "age_years", "steps": 1}, "no two classes"),
