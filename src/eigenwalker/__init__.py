@@ -37,6 +37,7 @@ _HOME = {
     "assess": "quality",
     "bootstrap_weights": "metric.observers",
     "classify": "classification",
+    "clip_components": "metric.clip_distances",
     "clip_distance": "metric.clip_distances",
     "clusters_of_walks": "metric.difference_structure",
     "comparable_walk": "metric.comparable",
@@ -87,9 +88,11 @@ _HOME = {
     "nested_regression": "validation",
     "order_of_walks": "metric.difference_structure",
     "pair_components": "metric.clip_distances",
+    "pair_distances": "metric.clip_distances",
     "pair_table": "metric.clip_distances",
     "permutation_test": "validation",
     "plausibility": "extrapolation",
+    "prepare": "metric.prepared",
     "project": "display.projection",
     "random_pattern": "simulation",
     "read_bml_axes": "bml",
@@ -99,6 +102,7 @@ _HOME = {
     "read_walkers_mat": "walker_files",
     "register": "metric.registration",
     "register_by_spline": "metric.spline_warps",
+    "register_walks": "metric.registration",
     "regress": "classification",
     "regression_curves": "jackknife",
     "regression_permutation_test": "validation",
@@ -111,6 +115,7 @@ _HOME = {
     "split_half": "metric.observers",
     "stance_speed": "gait",
     "stand_alone_page": "page",
+    "step_distances": "metric.clip_distances",
     "to_movement": "interchange",
     "to_pyomeca": "interchange",
     "trait_axis": "trait_axes",
@@ -177,9 +182,12 @@ if TYPE_CHECKING:
     from eigenwalker.metric.angles import angle_between as angle_between
     from eigenwalker.metric.angles import joint_quaternions as joint_quaternions
     from eigenwalker.metric.answers import count_pairs as count_pairs
+    from eigenwalker.metric.clip_distances import clip_components as clip_components
     from eigenwalker.metric.clip_distances import clip_distance as clip_distance
     from eigenwalker.metric.clip_distances import pair_components as pair_components
+    from eigenwalker.metric.clip_distances import pair_distances as pair_distances
     from eigenwalker.metric.clip_distances import pair_table as pair_table
+    from eigenwalker.metric.clip_distances import step_distances as step_distances
     from eigenwalker.metric.comparable import comparable_walk as comparable_walk
     from eigenwalker.metric.comparison import Comparison as Comparison
     from eigenwalker.metric.comparison import compare_walks as compare_walks
@@ -200,11 +208,13 @@ if TYPE_CHECKING:
     from eigenwalker.metric.outer_search import fit_from_random_starts as fit_from_random_starts
     from eigenwalker.metric.outer_search import search_shape as search_shape
     from eigenwalker.metric.perceptual import PerceptualMetric as PerceptualMetric
+    from eigenwalker.metric.prepared import prepare as prepare
     from eigenwalker.metric.published import PUBLISHED as PUBLISHED
     from eigenwalker.metric.published import GroupMetric as GroupMetric
     from eigenwalker.metric.published import metric_named as metric_named
     from eigenwalker.metric.registration import Registration as Registration
     from eigenwalker.metric.registration import register as register
+    from eigenwalker.metric.registration import register_walks as register_walks
     from eigenwalker.metric.retargeting import retarget as retarget
     from eigenwalker.metric.spline_warps import register_by_spline as register_by_spline
     from eigenwalker.metric.transitions import find_transitions as find_transitions
