@@ -5,7 +5,7 @@
 PYTHON ?= $(firstword $(foreach p,python3.14 python3.13 python3.12 python3.11 python3 python,$(if $(shell $p -c "import sys, venv, ensurepip; print(sys.version_info >= (3, 11) or '')" 2>/dev/null | grep True),$p)))
 BIN := .venv/bin
 # What the pages are built from, when the package is installed:
-PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json frontend/vite.config.ts src/eigenwalker/stimulus/schema.json
+PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json frontend/vite.config.ts $(wildcard src/eigenwalker/stimulus/*.json)
 
 .PHONY: demo test lint bench clean
 

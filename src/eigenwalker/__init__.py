@@ -33,6 +33,7 @@ _HOME = {
     "UnreadableFile": "mocap",
     "Walker": "walker",
     "WalkerSpace": "space",
+    "WalkerWidget": "widget",
     "angle_between": "metric.angles",
     "assess": "quality",
     "bootstrap_weights": "metric.observers",
@@ -71,6 +72,7 @@ _HOME = {
     "group_points": "metric.groups",
     "group_table": "metric.group_tables",
     "in_place": "gait",
+    "interactive_page": "page.interactive",
     "is_capture": "mocap",
     "jackknife_curves": "jackknife",
     "joint_quaternions": "metric.angles",
@@ -87,6 +89,7 @@ _HOME = {
     "nested_leave_one_out": "validation",
     "nested_regression": "validation",
     "order_of_walks": "metric.difference_structure",
+    "page_model": "page.model",
     "pair_components": "metric.clip_distances",
     "pair_distances": "metric.clip_distances",
     "pair_table": "metric.clip_distances",
@@ -226,6 +229,8 @@ if TYPE_CHECKING:
     from eigenwalker.mocap import virtual_markers as virtual_markers
     from eigenwalker.mocap.mat import read_mat as read_mat
     from eigenwalker.page import stand_alone_page as stand_alone_page
+    from eigenwalker.page.interactive import interactive_page as interactive_page
+    from eigenwalker.page.model import page_model as page_model
     from eigenwalker.population import Population as Population
     from eigenwalker.quality import Quality as Quality
     from eigenwalker.quality import assess as assess
@@ -262,6 +267,7 @@ if TYPE_CHECKING:
     from eigenwalker.walker_tables import walker_from_table as walker_from_table
     from eigenwalker.walker_tables import walker_to_mm as walker_to_mm
     from eigenwalker.walker_tables import walker_to_table as walker_to_table
+    from eigenwalker.widget import WalkerWidget as WalkerWidget
     from eigenwalker.widget import show as show
     from eigenwalker.writing import write_mocap as write_mocap
 

@@ -34,12 +34,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 
 from corpus.sound_files import KINDS, Files, sound_files, walk_of
+from eigenwalker.attempts import walker_from_file
 from eigenwalker.bml import read_bml_axes
 from eigenwalker.inspection import inspect_file
 from eigenwalker.mocap import RateAssumed, UnitGuessed, UnreadableFile, read_mocap
 from eigenwalker.mocap.mat_arrays import mat_arrays
 from eigenwalker.population import Population
-from eigenwalker.attempts import walker_from_file
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 from fuzz.mutations import mutated
 

@@ -21,7 +21,7 @@ FORMAT, VERSION = "eigenwalker model", 1
 N_EIGENWALKERS = 10
 MOST_WALKERS = 100
 """Walkers that can be shown themselves."""
-MOST_POINTS = 2000
+MOST_POINTS = 500
 """Walkers that are points of the cloud."""
 
 
@@ -207,11 +207,12 @@ def _cloud(
 def _walkers(population: Population, rows: np.ndarray, axes: list[dict]) -> list[dict[str, Any]]:
     two = next((axis["column"] for axis in axes if axis["two_classes"]), None)
     told = [str(name) for name in population.traits if name != FLAG]
+    finer = -1 if len(rows) == MOST_WALKERS else 0  # pages of many walkers stay small
     return [
         {
             "name": _name(population.traits, row, two),
             "row": int(row),
-            "vector": rounded_vectors(population.X[row], population.layout),
+            "vector": rounded_vectors(population.X[row], population.layout, finer=finer),
             "traits": {name: _plain(population.traits[name].iloc[row]) for name in told},
         }
         for row in rows

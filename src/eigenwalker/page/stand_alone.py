@@ -15,7 +15,7 @@ HELD = '<script id="stimulus" type="application/json">{}</script>'
 HELD_MODULE = '<script id="mannequin" type="text/plain">{}</script>'
 """Where it holds the module that draws the mannequin, which is run when it is asked for."""
 SCRIPTS = "script-src 'unsafe-inline'"
-"""What the page may run: what stands in it; for the mannequin, what it makes of its own text too."""
+"""What the page may run: what stands in it; for the mannequin also what it makes of its text."""
 
 
 def stand_alone_page(stimulus: Stimulus) -> str:
