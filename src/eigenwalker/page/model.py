@@ -66,7 +66,8 @@ def page_model(
     if not len(rows):
         rows = np.arange(len(population))
     known, layout = population.X[rows], population.layout
-    shown, points = _evenly(len(rows), MOST_WALKERS), _evenly(len(rows), MOST_POINTS)
+    shown = _evenly(len(rows), MOST_WALKERS)
+    points = np.union1d(shown, _evenly(len(rows), MOST_POINTS - len(shown)))
     axes = model_traits(population, traits, first=first)
     space = _space(known)
     return {
