@@ -42,11 +42,13 @@ def test_the_browser_agrees_with_python_and_passes_its_own_tests():
 
 
 @pytest.mark.usefixtures("installed")
-def test_the_page_of_the_package_is_built_from_these_sources(tmp_path: Path):
-    answer = npm("run", "build:page", "--", "--outDir", str(tmp_path))
+@pytest.mark.parametrize("name", ["player.html", "interactive.html", "mannequin.js", "widget.js"])
+def test_the_pages_of_the_package_are_built_from_these_sources(tmp_path: Path, name: str):
+    mode = name.partition(".")[0]
+    answer = npm("exec", "--", "vite", "build", "--mode", mode, "--outDir", str(tmp_path))
     assert answer.returncode == 0, answer.stdout + answer.stderr
-    page = files("eigenwalker.page").joinpath("player.html")
-    built = (tmp_path / "player.html").read_text(encoding="utf-8")
+    page = files("eigenwalker.page").joinpath(name)
+    built = (tmp_path / name).read_text(encoding="utf-8")
     assert page.read_text(encoding="utf-8") == built, "run 'npm run build' in frontend/"
 
 

@@ -273,7 +273,8 @@ def _first_met(sight: _Sight, radius: float, wider: float) -> np.ndarray:
     safe = np.where(np.abs(flat2) > TINY, flat2, TINY)
     middle = (radius * wider + sight.u * sight.long) / safe
     most = radius**2 - sight.u**2 - sight.v**2 + middle**2 * safe
-    ratio = most / (safe * (safe + sight.nearer**2))
+    below = safe * (safe + sight.nearer**2)
+    ratio = most / np.where(np.abs(below) > TINY, below, TINY)
     share = middle + np.sign(safe) * sight.nearer * np.sqrt(np.maximum(ratio, 0))
     share = np.clip(share, 0, 1)
     if np.min(flat2) > TINY:
