@@ -34,6 +34,7 @@ bench: .venv/installed-dev
 
 .venv/installed-dev: pyproject.toml $(PAGE) | .venv/bin/python
 	$(BIN)/python -m pip install --quiet -e ".[dev]"
+	@if command -v npm >/dev/null; then cd frontend && npm ci --silent || echo "npm could not fetch what tests of the browser's side need; they are skipped"; fi
 	@touch $@ .venv/installed
 
 clean:
