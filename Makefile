@@ -22,6 +22,7 @@ lint: .venv/installed-dev
 	$(BIN)/pyright
 
 bench: .venv/installed-dev
+	$(BIN)/python -m pip install --quiet -e ".[dev,bench]"
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 .venv/bin/python:
