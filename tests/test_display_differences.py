@@ -6,6 +6,8 @@ import io
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 
 from eigenwalker.display.difference_maps import (
@@ -16,9 +18,10 @@ from eigenwalker.display.difference_maps import (
     picture_of_strides,
 )
 from eigenwalker.display.difference_tables import (
+    MOST_CLASSES,
     figure_difference_table,
     figure_map_of_walks,
-    short_name,
+    short_names,
 )
 from eigenwalker.display.fitted_weights import figure_predictions, figure_weights
 from eigenwalker.display.style import BLUE, RED
@@ -94,7 +97,24 @@ def test_names_of_any_letters_are_words():
         figure_maps([MapPicture(np.eye(3), *[np.arange(3.0)] * 2, AWKWARD, names=(*names,))]),
     ):
         figure.savefig(io.BytesIO(), format="svg")
-    assert len(short_name(names[1])) <= 15
+    assert all(len(name) <= 15 for name in short_names(names))
+
+
+@given(st.lists(st.text("ab_-. ", min_size=1, max_size=60), min_size=2, max_size=6, unique=True))
+def test_short_names_tell_apart_what_names_do(names):
+    short = short_names(names)
+    assert len(set(short)) == len(names)
+    assert all(0 < len(name) <= 30 for name in short)
+
+
+def test_many_classes_all_look_different():
+    classes = [f"class {number:02}" for number in range(MOST_CLASSES)]
+    axes = figure_map_of_walks(np.arange(2 * MOST_CLASSES).reshape(-1, 2), classes).axes[0]
+    looks = {
+        (tuple(drawn.get_facecolor()[0]), drawn.get_paths()[0].vertices.tobytes())
+        for drawn in axes.collections
+    }
+    assert len(looks) == MOST_CLASSES
 
 
 def test_weights_and_predictions_are_those_given():

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from eigenwalker.display.bodies import HEAD_MM, INCH_MM, draw_body
-from eigenwalker.display.difference_tables import short_name
+from eigenwalker.display.difference_tables import short_names
 from eigenwalker.display.links import LINKS
 from eigenwalker.display.projection import project
 from eigenwalker.display.style import (
@@ -167,14 +167,17 @@ def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
         )
     if picture.path is not None:
         axes.plot(picture.path[:, 1], picture.path[:, 0], color=RED, lw=1.4)
+        axes.set_xlim(b[0] - half_b, b[-1] + half_b)
+        axes.set_ylim(a[0] - half_a, a[-1] + half_a)
     if picture.marks is not None:
         axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
     scale = figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
     scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
     scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
-    axes.set_ylabel(f"{short_name(picture.names[0])} (s)", parse_math=False)
-    axes.set_xlabel(f"{short_name(picture.names[1])} (s)", parse_math=False)
+    ordinate, abscissa = short_names(picture.names)
+    axes.set_ylabel(f"{ordinate} (s)", parse_math=False)
+    axes.set_xlabel(f"{abscissa} (s)", parse_math=False)
     head_line(axes, picture.title)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,9 +14,10 @@ from eigenwalker.display.style import BLUE, GREY, INK, RED, SMALL, new_figure, p
 MOST_NAMED = 45
 """Walks up to which each gets its name; more would stand over each other."""
 _LONGEST = 15
-_INKS = (BLUE, RED, "#009988", "#AA4499", GREY)
-_LOOK = tuple(zip(_INKS * 2, "o^sDv" + "v*PXd", strict=True))
-"""Colours and marks of classes; beyond ten they repeat."""
+_INKS = (BLUE, RED, "#009988", "#AA4499", GREY, "#DDAA33", "#882255", INK)
+_MARKS = "o^sDvP*X>"
+MOST_CLASSES = len(_INKS) * len(_MARKS)
+"""Classes that have a colour and a mark of their own."""
 
 
 def figure_difference_table(
@@ -63,7 +65,8 @@ def figure_difference_table(
             axes.axhline(border, color="#009988", lw=1.0, ls="--")
             axes.axvline(border, color="#009988", lw=1.0, ls="--")
     if len(order) <= MOST_NAMED:
-        labels = [short_name(str(names[walk])) for walk in order]
+        short = short_names(names)
+        labels = [short[walk] for walk in order]
         axes.set_xticks(range(len(order)), labels, rotation=90, parse_math=False)
         axes.set_yticks(range(len(order)), labels, parse_math=False)
     else:
@@ -85,7 +88,7 @@ def figure_map_of_walks(
     places : array of shape (walk, 2)
         As `map_of_walks` gives them.
     classes : sequence of str
-        The cluster or label of each walk, told by colour and mark.
+        The cluster or label of each walk, told by colour and mark; of up to `MOST_CLASSES`.
     names : sequence of str, optional
         Written beside the points.
 
@@ -104,13 +107,13 @@ def figure_map_of_walks(
     figure = new_figure(4.8, 3.9)
     axes = panels(figure, 1, 1)[0][0]
     for number, name in enumerate(np.unique(of)):
-        color, mark = _LOOK[number % len(_LOOK)]
+        color, mark = _INKS[number % len(_INKS)], _MARKS[number % len(_MARKS)]
         chosen = places[of == name]
         label = f"{name} ({len(chosen)})".replace("$", r"\$")  # words, not mathematics
         axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)
-    for place, name in zip(places, names or [], strict=False):
+    for place, name in zip(places, short_names(names or []), strict=False):
         axes.annotate(
-            short_name(name),
+            name,
             tuple(place),
             xytext=(3, 3),
             textcoords="offset points",
@@ -128,16 +131,49 @@ def figure_map_of_walks(
     return figure
 
 
-def short_name(name: str) -> str:
-    """Return a name that fits beside a picture: what tells files apart is mostly at their ends.
+def short_names(names: Sequence[str]) -> list[str]:
+    """Return names that fit beside a picture, different ones as long as the names are different.
+
+    What all begin and end with is left out, up to a separator; what is still long is told by its
+    beginning and its end, and by a number where these do not tell names apart.
 
     Examples
     --------
-    >>> short_name("dataset-2_walk_normal_001.bvh")
-    'datase…rmal_001'
+    >>> short_names(["walk_sad_1.bvh", "walk_happy_2.bvh"])
+    ['sad_1', 'happy_2']
+    >>> short_names(["dataset-2_walk_normal_001.bvh"])
+    ['datase…rmal_001']
 
     """
-    stem = name.rpartition(".")[0] or name
-    if len(stem) <= _LONGEST:
-        return stem
-    return f"{stem[:6]}\N{HORIZONTAL ELLIPSIS}{stem[-8:]}"
+    names = [str(name) for name in names]
+    stems = _without_shared([name.rpartition(".")[0] or name for name in names])
+    if len(set(stems)) < len(set(names)):
+        stems = names
+    for longest in range(_LONGEST, 2 * _LONGEST):
+        short = [_elided(stem, longest) for stem in stems]
+        if len(set(short)) == len(set(names)):
+            return short
+    return [f"{n}: {_elided(stem, _LONGEST)}" for n, stem in enumerate(stems, start=1)]
+
+
+def _without_shared(names: list[str]) -> list[str]:
+    """Return names without the words that all of them begin with, and end with."""
+    if len(set(names)) < 2:
+        return names
+    start = _words_shared(names)
+    end = _words_shared([name[start:][::-1] for name in names])
+    kept = [name[start : len(name) - end] for name in names]
+    return kept if all(kept) else names
+
+
+def _words_shared(names: list[str]) -> int:
+    """Return how many letters of whole words, with the separator after them, all begin with."""
+    shared = os.path.commonprefix(names)  # noqa: RUF071 - letters are what is wanted
+    return max(shared.rfind(mark) for mark in "/_- ") + 1
+
+
+def _elided(name: str, longest: int) -> str:
+    if len(name) <= longest:
+        return name
+    head = max(longest - 9, longest // 2 - 1)
+    return f"{name[:head]}\N{HORIZONTAL ELLIPSIS}{name[head + 1 - longest :]}"
