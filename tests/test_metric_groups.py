@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import pytest
 
+from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.groups import BONES, GROUPS, group_points
+from eigenwalker.simulation import simulate_walk
 from eigenwalker.skeleton import JOINTS
 
 
@@ -33,3 +35,17 @@ def test_groups_that_a_capture_lacks_are_left_out():
 def test_points_of_no_group_are_refused():
     with pytest.raises(ValueError, match="virtual_markers"):
         group_points(["C7", "T10"])
+
+
+def test_the_mannequin_s_sternum_does_not_stand_in_for_clavicles():
+    names = [*JOINTS.markers, "left_toe", "right_toe"]
+    assert tuple(group_points(names, mannequin=True)) == tuple(g for g in GROUPS if g != "clavicle")
+    own = group_points([*names, "left_clavicle"], mannequin=True)
+    assert own["clavicle"] == ("left_clavicle",)
+
+
+def test_groups_that_go_together_are_told():
+    walks = {str(seed): simulate_walk(seed=seed, rate_hz=60) for seed in range(8)}
+    told = group_table(walks, "positions-absolute").attrs["alike"]
+    together = {(first, second): r for first, second, r in told}
+    assert 0.95 < together["clavicle", "upper_arm"] <= 1  # the sternum is between the shoulders

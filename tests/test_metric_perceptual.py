@@ -13,12 +13,17 @@ from scipy.optimize import lsq_linear
 from scipy.spatial.distance import pdist
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
+from eigenwalker.datasets import load_population
 from eigenwalker.metric.answers import count_pairs
+from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.fit_quality import compare_metrics, goodness, leave_walkers_out
+from eigenwalker.metric.group_tables import by_group, group_table
 from eigenwalker.metric.observers import bootstrap_weights, difference, split_half
 from eigenwalker.metric.outer_search import fit_from_random_starts, search_shape
 from eigenwalker.metric.perceptual import PerceptualMetric
+from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.published import PUBLISHED
+from eigenwalker.metric.retargeting import retarget
 
 N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
 PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
@@ -79,6 +84,64 @@ def test_planted_weights_are_found_from_as_many_answers_as_the_paper_had(tempera
         intervals = fitted.intervals([*range(8)])
         within += [(intervals.relative_low <= planted) & (planted <= intervals.relative_high)]
     assert np.mean(within) >= 0.95  # intervals of 95 per cent
+
+
+@pytest.fixture(scope="module")
+def mannequins():
+    """21 of the built-in people, ready to be compared, on the neutral mannequin."""
+    walkers = load_population().walkers[:N_WALKERS]
+    walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
+    return {f"walker {i}": prepare(retarget(walk)) for i, walk in enumerate(walks)}
+
+
+def planted_in(X: pd.DataFrame, name: str) -> np.ndarray:
+    """Relative weights of a published metric's groups, for the columns of a table."""
+    weights = pd.Series(PUBLISHED[name].group_weights)[list(X)].to_numpy()
+    return weights / weights.sum()
+
+
+def nearness(X: pd.DataFrame, y: np.ndarray, planted: np.ndarray) -> float:
+    """Correlation of weights that are fitted with those that were planted."""
+    return float(np.corrcoef(PerceptualMetric().fit(X, y).relative_weights_, planted)[0, 1])
+
+
+@pytest.mark.parametrize("by", ["positions", "velocities", "angles"])
+def test_planted_weights_are_found_in_tables_made_of_walks(mannequins, by):
+    X = group_table(mannequins, f"{by}-absolute")
+    planted = planted_in(X, f"{by}-absolute")
+    share = X.to_numpy() @ planted
+    share /= share.max()
+    rng = np.random.default_rng(0)
+    drawn = rng.binomial(52, share, size=(8, len(share))) / 52  # a pair is shown 52 times (A31)
+    assert np.median([nearness(X, y, planted) for y in drawn]) >= 0.95
+
+
+@pytest.mark.parametrize(("by", "least"), [("positions", 0.8), ("velocities", 0.75)])
+def test_shares_of_trials_level_off_which_blurs_weights_of_groups_that_go_together(
+    mannequins, by, least
+):
+    """Pairs that differ much are never chosen, however much: no weighted sum can follow that."""
+    X = group_table(mannequins, f"{by}-absolute")
+    planted = planted_in(X, f"{by}-absolute")
+    told = X.to_numpy() @ planted
+    found = []
+    for seed in range(4):
+        chosen, shown = answers(0.75 * told / told.mean(), seed=seed, temperature=0.1)
+        y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+        found.append(nearness(X, y, planted))
+    assert least < np.mean(found) < 0.95
+
+
+def test_with_the_mannequin_s_sternum_for_clavicles_weights_would_be_lost(mannequins):
+    points = pair_components(mannequins, metric="positions-absolute")
+    X = by_group(points, "positions")
+    assert X.corr().loc["clavicle", "upper_arm"] > 0.99
+    planted = planted_in(X, "positions-absolute")
+    told = X.to_numpy() @ planted
+    chosen, shown = answers(0.75 * told / told.mean(), seed=0, temperature=0.1)
+    assert nearness(X, difference(chosen.sum(axis=0), shown.sum(axis=0)), planted) < 0.6
+    kept = group_table(mannequins, "positions-absolute")
+    assert kept.attrs == {"left_out": ["clavicle"], "alike": []}
 
 
 def test_weights_that_differences_were_made_with_come_back():

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 
 from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.frame_metrics import By, ComparesFrames
-from eigenwalker.metric.groups import group_points
-from eigenwalker.metric.prepared import Clip, prepare
+from eigenwalker.metric.groups import GROUPS, group_points
+from eigenwalker.metric.prepared import Clip, on_mannequin, prepare
 from eigenwalker.metric.published import metric_named
+
+ALIKE = 0.95
+"""Correlation above which two columns of a table can hardly be told apart by a fit."""
 
 
 def group_table(
@@ -34,7 +38,10 @@ def group_table(
     DataFrame of pairs by groups
         F(d_k) in the mean along the registered path, and of both sides. Pairs are in the order of
         `itertools.combinations`. Columns are groups (``"forearm"``), or with several metrics
-        ``"positions forearm"``; groups that the walks lack are left out.
+        ``"positions forearm"``; ``attrs["left_out"]`` names those of groups that the walks do not
+        show, among them the clavicles of the mannequin, whose shoulders sit on its sternum.
+        ``attrs["alike"]`` lists columns that correlate above `ALIKE`, as (column, column,
+        correlation): a fit can give the weight of one to the other, and knows only their sum.
 
     Examples
     --------
@@ -42,18 +49,41 @@ def group_table(
     >>> X = group_table(walks, "positions-sigmoid", "velocities-absolute")
     >>> X.shape, X.columns[3], X.columns[-1]
     ((3, 16), 'positions forearm', 'velocities toe')
+    >>> neutral = {name: ew.retarget(walk) for name, walk in walks.items()}
+    >>> group_table(neutral, "positions-absolute").attrs["left_out"]
+    ['clavicle']
 
     """
     asked = [metric_named(metric) for metric in metrics]
     prepared = {name: prepare(clip) for name, clip in clips.items()}
-    tables = []
+    mannequin = on_mannequin(prepared.values())
+    tables, left_out = [], []
     for metric in asked:
-        table = by_group(pair_components(prepared, metric=metric, progress=progress), metric.by)
-        tables.append(table if len(asked) == 1 else table.add_prefix(f"{metric.by} "))
-    return pd.concat(tables, axis=1)
+        points = pair_components(prepared, metric=metric, progress=progress)
+        table = by_group(points, metric.by, mannequin=mannequin)
+        prefix = "" if len(asked) == 1 else f"{metric.by} "
+        left_out += [prefix + group for group in GROUPS if group not in table]
+        tables.append(table.add_prefix(prefix))
+    found = pd.concat(tables, axis=1)
+    found.attrs = {"left_out": left_out, "alike": _alike(found)}
+    return found
 
 
-def by_group(points: pd.DataFrame, by: By) -> pd.DataFrame:
+def _alike(table: pd.DataFrame) -> list[tuple[str, str, float]]:
+    """Return pairs of columns that correlate above `ALIKE`; of fewer than three rows, none."""
+    varied = table.loc[:, np.ptp(table.to_numpy(), axis=0) > 0]
+    if len(varied) < 3 or varied.shape[1] < 2:
+        return []
+    together = np.corrcoef(varied.to_numpy(), rowvar=False)
+    rows, columns = np.nonzero(np.triu(together > ALIKE, 1))
+    names = [str(name) for name in varied]
+    return [
+        (names[row], names[column], float(together[row, column]))
+        for row, column in zip(rows, columns, strict=True)
+    ]
+
+
+def by_group(points: pd.DataFrame, by: By, *, mannequin: bool = False) -> pd.DataFrame:
     """Return a table of joint groups from one of points.
 
     Parameters
@@ -62,6 +92,8 @@ def by_group(points: pd.DataFrame, by: By) -> pd.DataFrame:
         Mean F(d) of each point, as `pair_components` gives it.
     by : {"positions", "velocities", "angles"}
         What was compared.
+    mannequin : bool
+        As in `group_points`.
 
     Returns
     -------
@@ -76,6 +108,6 @@ def by_group(points: pd.DataFrame, by: By) -> pd.DataFrame:
     [{'head': 5.0, 'calf': 15.0}]
 
     """
-    groups = group_points([str(name) for name in points.columns], by)
+    groups = group_points([str(name) for name in points.columns], by, mannequin=mannequin)
     means = {group: points[list(names)].mean(axis=1) for group, names in groups.items()}
     return pd.DataFrame(means, index=points.index)

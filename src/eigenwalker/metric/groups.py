@@ -25,7 +25,9 @@ _POINT = {
 """The joint whose place stands for a bone (A37): its proximal one; after it, what stands in."""
 
 
-def group_points(names: Sequence[str], by: By = "positions") -> dict[str, tuple[str, ...]]:
+def group_points(
+    names: Sequence[str], by: By = "positions", *, mannequin: bool = False
+) -> dict[str, tuple[str, ...]]:
     """Return which points stand for each joint group, among those that a clip has.
 
     Figure 5 of Pražák et al. (2010) names bones, their eqs. 2 and 3 take places of joints. By
@@ -40,6 +42,9 @@ def group_points(names: Sequence[str], by: By = "positions") -> dict[str, tuple[
         Markers of a clip, or for angles the bones of `joint_quaternions`.
     by : {"positions", "velocities", "angles"}
         What is compared.
+    mannequin : bool
+        Whether these are points of the mannequin (`retarget`), whose shoulders sit on its sternum:
+        there the sternum tells nothing of clavicles that shoulders do not, and does not stand in.
 
     Returns
     -------
@@ -61,6 +66,8 @@ def group_points(names: Sequence[str], by: By = "positions") -> dict[str, tuple[
     """
     present = set(map(str, names))
     found = {group: _members(group, present, by) for group in GROUPS}
+    if mannequin and found["clavicle"] == ("sternum",):
+        del found["clavicle"]
     found = {group: points for group, points in found.items() if points}
     if not found:
         raise ValueError(

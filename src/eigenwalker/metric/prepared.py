@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,6 +76,11 @@ def prepare(clip: Clip) -> PreparedClip:
         if gaps:
             raise
         return PreparedClip(clip.copy(data=filled), None, str(error))
+
+
+def on_mannequin(clips: Iterable[PreparedClip]) -> bool:
+    """Return whether any of these clips is of the neutral mannequin (`retarget`)."""
+    return any(bool(each.clip.attrs.get("retargeted")) for each in clips)
 
 
 def registration_of(a: PreparedClip, b: PreparedClip) -> Registration:
