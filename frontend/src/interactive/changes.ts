@@ -3,7 +3,7 @@
 import { MEASURES, measuresOf, type MeasureName } from "../model/measures";
 import { vectorOf } from "../model/mix";
 import type { Model } from "../model/model";
-import { placeOf, type Place } from "../model/place";
+import { placeOf } from "../model/place";
 import { initialState, RANGES, type State } from "../model/state";
 import { walkerOf } from "../model/walker";
 import type { Axis } from "./axis";
@@ -27,32 +27,32 @@ const at = (vector: ArrayLike<number>, model: Model): Measures =>
   measuresOf(walkerOf(model, Float64Array.from(vector)));
 
 /**
- * One small plot for each measure: across, the main trait from end to end; up, the measure. Points
- * are people, the line is where the main slider leads, the dot is the walker now.
+ * One small plot for each measure: across, where walkers lie along the main trait; up, the measure.
+ * Points are people, the line is where the main slider would lead this walker, the dot is where it is.
  */
 export function changes(session: Session): Part {
   const { model } = session;
   const [axis] = session.axes;
-  const people = model.walkers.map(({ vector }) => ({
-    measures: at(vector, model),
-    place: placeOf(model, Float64Array.from(vector)),
-  }));
+  const people = model.walkers.map(({ vector }) => spotOf(model, vector, axis));
   const usual = along(model, initialState(model), null, axis);
   const average = at(model.average, model);
   const known = MEASURES.filter(({ name }) => Number.isFinite(average[name]));
   const plots = known.map((measure) => {
-    const all = [average, ...usual, ...people.map(({ measures }) => measures)];
+    const all = [average, ...[...usual, ...people].map(({ measures }) => measures)];
     const values = all.map((of) => of[measure.name]);
     return plot(model, axis, measure, people, [Math.min(...values), Math.max(...values)]);
   });
-  const legend = ["Small points: people", colours(axis?.trait), axis ? "line: where the large slider leads" : ""];
+  const legend = ["Small points: people", colours(axis?.trait), axis ? "line: where the large slider leads this walker" : ""];
   let line = usual;
   let last: Now | undefined;
+  const element = make("div", {},
+    make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
+    make("p", { class: "note" }, `${legend.filter(Boolean).join("; ")}.`));
   return {
-    element: make("div", {},
-      make("dl", { class: "measures" }, ...plots.map(({ element }) => element)),
-      make("p", { class: "note" }, `${legend.filter(Boolean).join("; ")}.`)),
+    element,
     show(now) {
+      element.hidden = now.state.scene !== "one";
+      if (element.hidden) return;
       if (!last || !sameLine(last, now, axis)) line = along(model, now.state, now.own, axis);
       last = now;
       for (const one of plots) one.show(now, line);
@@ -70,36 +70,52 @@ function sameLine(before: Now, { state, own }: Now, axis: Axis | undefined): boo
   return same && before.own === own && others(before.state) === others(state);
 }
 
-/** The measures from one end of the main slider to the other, all else as it is. */
-function along(model: Model, state: State, own: Now["own"], axis: Axis | undefined): Measures[] {
+/** A walker in the plots. */
+interface Spot {
+  readonly measures: Measures;
+  /** Standard deviations along the main trait. */
+  readonly score: number;
+}
+
+const spotOf = (model: Model, vector: ArrayLike<number>, axis: Axis | undefined): Spot => ({
+  measures: at(vector, model),
+  score: axis?.at(placeOf(model, vector)) ?? 0,
+});
+
+/** On the line to which the main slider leads, where it stands so. */
+interface Stop extends Spot {
+  readonly steps: number;
+}
+
+/** From one end of the main slider to the other, all else as it is. */
+export function along(model: Model, state: State, own: Now["own"], axis: Axis | undefined): Stop[] {
   const [low, high] = RANGES.trait;
   return Array.from({ length: axis ? N_ALONG : 0 }, (_, i) => {
     const steps = low + ((high - low) * i) / (N_ALONG - 1);
-    return at(vectorOf(model, { ...state, ...axis!.moved(state, steps) }, own), model);
+    return { steps, ...spotOf(model, vectorOf(model, { ...state, ...axis!.moved(state, steps) }, own), axis) };
   });
 }
 
-interface Person {
-  readonly measures: Measures;
-  readonly place: Place;
+/** The line with the walker itself as one of its points. */
+function through(line: readonly Stop[], { state, measures, place }: Now, axis: Axis | undefined): Stop[] {
+  const here = { steps: axis?.value(state) ?? 0, measures, score: axis?.at(place) ?? 0 };
+  return [...line, here].sort((a, b) => a.steps - b.steps);
 }
 
 function plot(
   model: Model,
   axis: Axis | undefined,
   { name, label, unit, digits }: (typeof MEASURES)[number],
-  people: readonly Person[],
+  people: readonly Spot[],
   [least, greatest]: readonly [number, number],
 ) {
   const [low, high] = RANGES.trait;
   const over = greatest - least || 1;
   const inside = (place: number, most: number): number => Math.min(Math.max(place, MARGIN), most - MARGIN);
-  const x = (sd: number): number => inside((WIDTH * (sd - low)) / (high - low), WIDTH);
-  const y = (value: number): number =>
-    inside(HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - least)) / over, HEIGHT);
-  const where = (place: Place): number => x(axis?.at(place) ?? 0);
-  const dots = people.map(({ measures, place }, i) => {
-    const at = { cx: where(place).toFixed(1), cy: y(measures[name]).toFixed(1) };
+  const x = (sd: number): number => (WIDTH * (sd - low)) / (high - low);
+  const y = (value: number): number => HEIGHT - MARGIN - ((HEIGHT - 2 * MARGIN) * (value - least)) / over;
+  const dots = people.map(({ measures, score }, i) => {
+    const at = { cx: x(score).toFixed(1), cy: y(measures[name]).toFixed(1) };
     return draw("circle", { class: `person ${classOf(model, i)}`, r: 1.4, ...at });
   });
   const line = draw("polyline", { class: "trail" });
@@ -112,13 +128,16 @@ function plot(
     make("dd", { class: "plot", "aria-hidden": "true" },
       draw("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}` }, ...dots, line, here)),
   );
-  const show = (now: Now, measures: readonly Measures[]): void => {
+  const show = (now: Now, stops: readonly Stop[]): void => {
     const value = now.measures[name];
     const more = make("small", {}, difference(value - average, digits));
     said.replaceChildren(make("b", {}, value.toFixed(digits)), ` ${unit}`, more);
-    const curve = measures.map((of, i) => [x(low + ((high - low) * i) / (N_ALONG - 1)), y(of[name])]);
+    const curve = through(stops, now, axis).map(({ score, measures }) => [x(score), y(measures[name])]);
     put(line, { points: curve.map((point) => point.map((at) => at.toFixed(1)).join()).join(" ") });
-    put(here, { cx: where(now.place).toFixed(1), cy: y(value).toFixed(1) });
+    const [h, v] = [x(axis?.at(now.place) ?? 0), y(value)];
+    const [heldH, heldV] = [inside(h, WIDTH), inside(v, HEIGHT)];
+    put(here, { cx: heldH.toFixed(1), cy: heldV.toFixed(1) });
+    here.classList.toggle("beyond", Math.hypot(h - heldH, v - heldV) > MARGIN);
   };
   return { element, show };
 }

@@ -83,6 +83,7 @@ export function cloud(session: Session): Part {
     const [h, v] = [across(held(x.at(now.place))), down(held(y.at(now.place)))];
     cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
     put(trail, trailOf(now, first, x, y));
+    for (const mark of [cross, trail]) put(mark, { visibility: now.state.scene === "one" ? undefined : "hidden" });
     points.forEach(({ circle, walker }) => put(circle, { "aria-selected": String(now.state.from === walker) }));
   };
   const choose = (name: string, first: boolean) => {

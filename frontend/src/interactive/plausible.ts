@@ -17,6 +17,9 @@ const CARICATURE = 3;
 /** Nobody goes that way, so nobody can be said to go too far. */
 const LEAST = 0.1;
 
+/** Numbers are of one walker. */
+const SEVERAL = "Several walk: numbers are shown where one walks alone.";
+
 /** How far the walkers of a population go, each way. */
 export interface Reach {
   readonly distance: number;
@@ -78,7 +81,8 @@ export function plausible(session: Session): Part {
   return {
     element: make("div", { class: "plausible" }, words, bar),
     show({ place, state }) {
-      words.textContent = howPlausible(reach, place, state.from === "own");
+      bar.hidden = state.scene !== "one";
+      words.textContent = bar.hidden ? SEVERAL : howPlausible(reach, place, state.from === "own");
       const { times } = extreme(reach, place);
       bar.style.setProperty("--now", `${Math.min(times / FARTHEST, 1) * 100}%`);
     },

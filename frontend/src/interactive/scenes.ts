@@ -21,7 +21,7 @@ export function scenes(session: Session): Part {
   const about = make("p", { class: "note" });
   const said: Record<SceneName, string> = {
     one: "One walker, changed by all the sliders.",
-    four: trait ? `Mean ${ends(trait).join(" and mean ")}; then both with what sets them apart tripled.` : "",
+    four: trait ? `Mean ${ends(trait).join(" and mean ")}; then both with what sets them apart tripled. Sliders of traits change one walker: to move one leaves this.` : "",
     side: "Walkers of the population, brought to one tempo.",
     crowd: `${crowd} walkers of the population. Choose one to see it alone.`,
   };

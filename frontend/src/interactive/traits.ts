@@ -1,16 +1,21 @@
 /** Sliders of the traits: the first one large below the stage, the others beside it. */
 
-import { RANGES, type State } from "../model/state";
+import { RANGES, within, type State } from "../model/state";
 import { realRange, type Axis } from "./axis";
 import { make } from "./element";
 import { ridge } from "./ridge";
 import type { Part, Session } from "./session";
 import { signed, slider, type Slider } from "./slider";
 
+/** So far from the thumb, a walker has a mark of its own. */
+const MARKED_SD = 0.1;
 /** Places of the scale below the large slider. */
 const SCALE = [-6, -4.5, -3, 0, 3, 4.5, 6];
 
-/** The large slider, with the people there are as hills behind its track. */
+/**
+ * The large slider, with the people there are as hills behind its track. Its thumb says how far the
+ * walker was led; a mark on the hills, where the walker that came of it lies among the people.
+ */
 export function mainSlider(session: Session): Part {
   const [axis] = session.axes;
   const element = make("div", { class: "hero" });
@@ -22,9 +27,25 @@ export function mainSlider(session: Session): Part {
   const scale = make("div", { class: "scale", "aria-hidden": "true" },
     ...SCALE.map((mark) => (Math.abs(mark) === 4.5 ? far() : make("span", {}, signed(mark, 0)))),
   );
-  one.element.append(make("div", { class: "hill" }, ridge(session.model, axis)), scale);
+  const mark = make("i", { class: "mark", "aria-hidden": "true" }, make("span"));
+  one.element.append(make("div", { class: "hill" }, ridge(session.model, axis), mark), scale);
   element.append(one.element);
-  return { element, show: ({ state }) => one.show(axis.value(state)) };
+  return {
+    element,
+    show({ state, place }) {
+      one.show(axis.value(state));
+      showMark(mark, axis.at(place), state.scene === "one" ? axis.value(state) : null);
+    },
+  };
+}
+
+/** Mark where the walker lies, where that is not where the thumb stands. */
+function showMark(mark: HTMLElement, score: number, thumb: number | null): void {
+  const [low, high] = RANGES.trait;
+  mark.hidden = thumb === null || Math.abs(score - thumb) < MARKED_SD;
+  mark.style.setProperty("--at", String(within([0, 1], (score - low) / (high - low))));
+  mark.classList.toggle("left", score < (low + high) / 2);
+  mark.firstElementChild!.textContent = `this walker ${signed(score)}`;
 }
 
 /** Sliders of all traits but the first. */
