@@ -36,6 +36,12 @@ class Alignment(NamedTuple):
         turned[..., :2] += self.shifts[:, None]
         return turned
 
+    def inverse(self) -> Alignment:
+        """Return what brings the first clip over the second, along a path."""
+        moves = np.concatenate([self.shifts, 0 * self.shifts[:, :1]], axis=1)[:, None]
+        back = Alignment(-self.angles, 0 * self.shifts)
+        return Alignment(-self.angles, -back.apply(moves)[:, 0, :2])
+
 
 def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
     """Return how each window of frames of one clip is brought over each window of another.

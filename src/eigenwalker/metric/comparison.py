@@ -13,7 +13,13 @@ from eigenwalker.metric.clip_distances import clip_components, pair_distances
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric
 from eigenwalker.metric.group_tables import by_group
 from eigenwalker.metric.groups import GROUPS, group_points
-from eigenwalker.metric.prepared import Clip, PreparedClip, prepare, registration_of
+from eigenwalker.metric.prepared import (
+    Clip,
+    PreparedClip,
+    on_mannequin,
+    prepare,
+    registration_of,
+)
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration
 
@@ -34,14 +40,14 @@ class Comparison:
     metric : FrameMetric or GroupMetric
         By which they are compared.
     registration : Registration
-        Which moments correspond.
+        Which moments correspond: the path along which all here is measured.
     distance : float
         The mean of the metric along that path.
     shares : Series of groups
         How much each joint group makes of the distance; they sum to 1, and are NaN where it is 0.
     groups : DataFrame of groups by components
         How far each group is apart: ``positions_mm``, ``velocities_mm_s``, ``angles_deg``; NaN
-        where it cannot be known.
+        where it cannot be known. The mannequin has no clavicles (`group_points`).
     left_out : tuple of str
         Groups that the metric weighs and the walks do not show.
 
@@ -116,7 +122,7 @@ def _apart(a: PreparedClip, b: PreparedClip) -> pd.DataFrame:
     table = {}
     for by, metric in PLAIN.items():
         points = clip_components(a, b, metric=metric).to_frame().T
-        means = by_group(points, by).iloc[0]
+        means = by_group(points, by, mannequin=on_mannequin([a, b])).iloc[0]
         table[columns[by]] = np.rad2deg(means) if by == "angles" else means
     found = pd.DataFrame(table)
     return found.loc[[group for group in GROUPS if group in found.index]]

@@ -11,6 +11,7 @@ import xarray as xr
 from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.loops import loop
+from eigenwalker.metric.points import common_names
 from eigenwalker.metric.registration import Registration, register, register_strides
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
@@ -84,7 +85,15 @@ def on_mannequin(clips: Iterable[PreparedClip]) -> bool:
 
 
 def registration_of(a: PreparedClip, b: PreparedClip) -> Registration:
-    """Return how two prepared clips are registered: as strides if both repeat, else end to end."""
+    """Return how two prepared clips are registered: as strides if both repeat, else end to end.
+
+    Along the same path as in tables of pairs, whichever clip is named first.
+    """
     if a.cycle is None or b.cycle is None:
-        return register(a.clip, b.clip)
-    return register_strides(a.cycle, b.cycle)
+        first, second, way = a.clip, b.clip, register
+    else:
+        names = common_names(a.cycle.marker.values, b.cycle.marker.values)
+        first, second, way = a.cycle.sel(marker=names), b.cycle.sel(marker=names), register_strides
+    if first.values.tobytes() > second.values.tobytes():
+        return way(second, first).turned_round()
+    return way(first, second)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -88,6 +88,19 @@ class Registration:
             moves = self.alignment.shifts if by == "positions" else 0 * self.alignment.shifts
             b = Alignment(self.alignment.angles, moves).apply(b)
         return pd.DataFrame(point_distances(a, b), columns=names).dropna(axis=1)
+
+    def turned_round(self) -> Registration:
+        """Return the same with the second clip first."""
+        cells = self.map.rename(time_a="time_b", time_b="time_a").transpose("time_a", "time_b")
+        return replace(
+            self,
+            first=self.second,
+            second=self.first,
+            path=self.path[:, ::-1],
+            times=self.times[:, ::-1],
+            map=cells,
+            alignment=self.alignment.inverse(),
+        )
 
     def on_common_clock(self) -> tuple[xr.DataArray, xr.DataArray]:
         """Return both clips so that corresponding moments come at the same time.
