@@ -152,6 +152,23 @@ def test_missing_points_leave_their_weight_to_the_others():
     assert np.isnan(motion_map(lost, b).values[3]).all()
 
 
+@pytest.mark.parametrize("lost_frames", [[3], [0, 7, 8], [*range(4, 12)]])
+def test_a_window_is_the_mean_of_those_frames_that_were_seen(lost_frames):
+    a, b = some_clip(1), some_clip(2)
+    lost = a.copy()
+    lost[lost_frames] = np.nan
+    cells = motion_map(lost, b).values
+    found = motion_map(lost, b, window_s=4 / 50).values
+    steps = range(-2, 3)
+    for i, j in np.ndindex(cells.shape):
+        before, after = min(2, i, j), min(2, len(a) - 1 - i, len(b) - 1 - j)
+        window = np.array([cells[i + s, j + s] for s in steps if -before <= s <= after])
+        seen = window[np.isfinite(window)]
+        expected = seen.mean() if seen.size else np.nan
+        np.testing.assert_allclose(found[i, j], expected, rtol=1e-9)
+    assert np.isfinite(found).mean() > 0.5
+
+
 def test_velocities_do_not_know_where_a_clip_is():
     a = some_clip(1)
     metric = FrameMetric("velocities")

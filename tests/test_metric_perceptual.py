@@ -268,6 +268,38 @@ def test_counts_that_cannot_be_are_refused():
         bootstrap_weights(np.ones((3, 1)), np.ones((2, 4)), np.ones((2, 4)))
 
 
+@pytest.mark.parametrize("n_walkers", [4, 5])
+def test_few_walkers_are_drawn_anew_until_they_make_pairs(n_walkers):
+    pairs = list(itertools.combinations(range(n_walkers), 2))
+    X = np.random.default_rng(0).uniform(size=(len(pairs), 2))
+    shown = np.full((3, len(pairs)), 10)
+    chosen = np.random.default_rng(1).integers(0, 10, shown.shape)
+    fitted = bootstrap_weights(X, chosen, shown, pairs=pairs, n_samples=300)
+    assert fitted.weights.shape == (300, 2)
+    assert np.isfinite(fitted.weights).all()
+    assert np.isfinite(fitted.constants).all()
+
+
+def test_too_few_walkers_to_draw_from_are_refused_in_a_sentence():
+    with pytest.raises(ValueError, match="four walkers or more"):
+        bootstrap_weights([[1.0]], [[1], [2]], [[3], [3]], pairs=[("a", "b")], n_samples=5)
+
+
+def test_observers_of_opposite_minds_have_no_ceiling():
+    found = split_half([[0, 5, 10], [10, 5, 0]], np.full((2, 3), 10))
+    assert found == (pytest.approx(-1), 0, 0)
+
+
+@pytest.mark.parametrize(
+    "chosen", [[[5, 5, 5, 0], [5, 5, 5, 0]], [[1, 2, 0, 0], [3, 1, 0, 0]]], ids=["alike", "few"]
+)
+def test_where_nothing_can_be_correlated_it_is_said(chosen):
+    shown = [[10, 10, 10, 0]] * 2 if chosen[0][2] else [[10, 10, 0, 5], [10, 10, 5, 0]]
+    with pytest.warns(UserWarning, match="cannot be told"):
+        found = split_half(chosen, shown)
+    assert np.isnan(found).all()
+
+
 def test_goodness_of_a_constant_has_no_correlation():
     found = goodness([0.1, 0.5], [0.3, 0.3])
     assert np.isnan(found["pearson"])
@@ -293,6 +325,29 @@ def test_counts_of_pairs_are_those_of_the_definition():
         together = [row for row in answers.itertuples() if {first, second} <= set(row[2:6])]
         picked = [row for row in together if {row.chosen_1, row.chosen_2} == {first, second}]
         assert told == pytest.approx(1 - len(picked) / len(together))
+
+
+def test_numbers_may_stand_for_walkers_where_a_trial_ran_out_of_time_too():
+    answers = trials(60)
+    columns = [*"abcd", "chosen_1", "chosen_2"]
+    numbered = answers.assign(**{name: answers[name].str[1:].astype(int) for name in columns})
+    numbered.loc[3, columns[-2:]] = np.nan  # which makes pandas read 1.0 for 1
+    counts = count_pairs(numbered, walkers=range(6))
+    assert counts.pairs.tolist() == list(itertools.combinations("012345", 2))
+    np.testing.assert_array_equal(counts.chosen, count_pairs(answers.drop(3)).chosen)
+
+
+def test_a_line_is_told_that_one_can_find_though_trials_ran_out_of_time():
+    answers = trials(9)
+    answers.loc[[0, 4], "chosen_1"] = None
+    answers.loc[6, "a"] = "w9"
+    with pytest.raises(ValueError, match="Line 8 of the answers"):
+        count_pairs(answers, walkers=[f"w{i}" for i in range(6)])
+
+
+def test_a_walker_named_twice_is_refused():
+    with pytest.raises(ValueError, match=r"\['w1'\] come more than once"):
+        count_pairs(trials(5), walkers=["w1", "w0", "w1", "w2"])
 
 
 def test_each_observer_s_counts_are_their_own():
@@ -333,10 +388,12 @@ def test_order_of_trials_and_of_walkers_in_them_does_not_matter():
     ("change", "said"),
     [
         (lambda t: t.drop(columns="d"), r"\['d'\] are missing"),
-        (lambda t: t.assign(chosen_1="w9"), "Trial 0 shows"),
+        (lambda t: t.assign(chosen_1="w9"), "Line 2 of the answers shows"),
         (lambda t: t.assign(chosen_1=t.chosen_2), "cannot be the pair"),
         (lambda t: t.assign(b=t.a), "four different"),
         (lambda t: t[:0], "no answered trial"),
+        (lambda t: t.assign(observer=[*"abc", None, "d"]), "Line 5 .* 'observer'"),
+        (lambda t: t.assign(c=t.c.where(t.index != 2)), "Line 4 .* 'c'"),
     ],
 )
 def test_answers_that_cannot_be_are_refused(change, said):

@@ -48,7 +48,7 @@ class PairCounts:
         return pd.Series(shares, index=self.pairs, name="difference")
 
 
-def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) -> PairCounts:
+def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[object] | None = None) -> PairCounts:
     """Return how often each observer was shown each pair, and chose it as the most similar.
 
     Parameters
@@ -58,7 +58,7 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) 
         ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not count (A34).
     walkers : sequence of str, optional
         All walkers in the order of pairs wanted, such as that of a `group_table`; left out, those
-        that were shown, sorted.
+        that were shown, sorted. Numbers may stand for names.
 
     Returns
     -------
@@ -67,8 +67,9 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) 
     Raises
     ------
     ValueError
-        If a column is missing, a trial shows a walker twice or one that is not known, or walkers
-        were chosen that it did not show, naming the row.
+        If a column or an observer is missing, a trial shows a walker twice, none, or one that is
+        not known, or walkers were chosen that it did not show; or `walkers` names one twice. Lines
+        are counted as in a file whose first line is the headings.
 
     Examples
     --------
@@ -89,13 +90,18 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) 
         raise ValueError(
             f"Answers need the columns {columns}; {missing} are missing from {list(answers)}."
         )
-    answered = answers.dropna(subset=list(CHOSEN))
-    shown, chosen = (answered[list(names)].to_numpy(dtype=str) for names in (SHOWN, CHOSEN))
-    names = sorted(set(shown.ravel())) if walkers is None else [str(name) for name in walkers]
-    _check_trials(shown, chosen, answered.index, set(names))
+    given = answers[columns].notna().to_numpy()
+    kept = given[:, -2:].all(axis=1)
+    answered, lines = answers[kept], 2 + np.flatnonzero(kept)
+    _refuse_empty(given[kept], columns, lines)
+    shown, chosen = (_names_in(answered, names) for names in (SHOWN, CHOSEN))
+    names = sorted(set(shown.ravel())) if walkers is None else [as_name(each) for each in walkers]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"Each walker is to be named once; {twice[:20]} come more than once.")
+    _check_trials(shown, chosen, lines, set(names))
     number = {name: index for index, name in enumerate(names)}
     seen, picked = (np.vectorize(number.__getitem__)(table) for table in (shown, chosen))
-    observers, who = np.unique(answered["observer"].to_numpy(), return_inverse=True)
+    observers, who = np.unique(_names_in(answered, ["observer"])[:, 0], return_inverse=True)
     rows, columns = np.triu_indices(len(names), 1)
     place = np.zeros((len(names), len(names)), dtype=int)
     place[rows, columns] = place[columns, rows] = np.arange(len(rows))
@@ -107,16 +113,42 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[str] | None = None) 
     return PairCounts(pairs, tuple(observers.tolist()), chosen=counts[1], shown=counts[0])
 
 
-def _check_trials(shown: np.ndarray, chosen: np.ndarray, index: pd.Index, known: set[str]) -> None:
+def as_name(said: object) -> str:
+    """Return a walker's name; 3.0, as columns of numbers with an empty cell are read, is 3."""
+    return str(int(said)) if isinstance(said, float) and said.is_integer() else str(said)
+
+
+def _names_in(answers: pd.DataFrame, columns: Sequence[str]) -> np.ndarray:
+    return np.column_stack([answers[name].map(as_name).to_numpy(dtype=str) for name in columns])
+
+
+def _refuse_empty(given: np.ndarray, columns: list[str], lines: np.ndarray) -> None:
+    if given.all():
+        return
+    row, column = np.argwhere(~given)[0]
+    raise ValueError(
+        f"Line {lines[row]} of the answers has an empty cell in the column {columns[column]!r}; an "
+        "answered trial needs its observer and the four walkers shown."
+    )
+
+
+def _check_trials(
+    shown: np.ndarray, chosen: np.ndarray, lines: np.ndarray, known: set[str]
+) -> None:
     if not len(shown):
         raise ValueError("There is no answered trial.")
-    for row, four, two in zip(index, shown.tolist(), chosen.tolist(), strict=True):
+    for line, four, two in zip(lines, shown.tolist(), chosen.tolist(), strict=True):
         if len(set(four)) < 4:
-            raise ValueError(f"Trial {row} shows {four}; expected four different walkers.")
+            raise ValueError(
+                f"Line {line} of the answers shows {four}; expected four different walkers."
+            )
         if not set(four) <= known:
             raise ValueError(
-                f"Trial {row} shows {sorted(set(four) - known)}, which are not among the walkers "
-                f"{sorted(known)[:20]}."
+                f"Line {line} of the answers shows {sorted(set(four) - known)}, which are not "
+                f"among the walkers {sorted(known)[:20]}."
             )
         if len(set(two)) < 2 or not set(two) <= set(four):
-            raise ValueError(f"Trial {row} shows {four}, of which {two} cannot be the pair chosen.")
+            raise ValueError(
+                f"Line {line} of the answers shows {four}, of which {two} cannot be the pair "
+                "chosen."
+            )

@@ -124,18 +124,25 @@ def mean_along_path(path, a, b, code, parameter, result):
 
 @compiled
 def diagonal_means(values, half):
-    """Return means over windows of 2 * half + 1 cells along the diagonals, shorter at the edges."""
+    """Return means over windows of 2 * half + 1 cells along the diagonals, shorter at the edges.
+
+    Missing cells (NaN) are left out; a mean of none is NaN.
+    """
     n, m = values.shape
     sums = np.zeros((n + 1, m + 1))
+    counts = np.zeros((n + 1, m + 1), np.int32)
     for i in range(n):
         above, below, row = sums[i, :m], sums[i + 1, 1:], values[i, :m]
+        so_far, number = counts[i, :m], counts[i + 1, 1:]
         for j in range(m):
-            below[j] = above[j] + row[j]
+            seen = not np.isnan(row[j])
+            below[j] = above[j] + (row[j] if seen else 0.0)
+            number[j] = so_far[j] + seen
     means = np.empty((n, m))
     for i in range(n):
         for j in range(m):
             before = min(half, min(i, j))
             after = min(half, min(n - 1 - i, m - 1 - j)) + 1
             total = sums[i + after, j + after] - sums[i - before, j - before]
-            means[i, j] = total / (before + after)
+            means[i, j] = total / (counts[i + after, j + after] - counts[i - before, j - before])
     return means

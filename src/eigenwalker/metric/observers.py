@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -9,7 +10,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from eigenwalker.metric.perceptual import non_negative_fit
+from eigenwalker.metric.perceptual import Weights, non_negative_fit
+
+LEAST_PAIRS = 3
+"""Different pairs of walkers that a sample needs, to tell anything of weights."""
+_MOST_DRAWS = 50
 
 
 class Bootstrap(NamedTuple):
@@ -73,6 +78,10 @@ def bootstrap_weights(
     rather than pairs, for the same reason. With walkers the intervals are wider: they then tell
     what might have come out with other walkers too, and where the metric does not quite fit.
 
+    Neither is calibrated. A walker drawn twice makes pairs count four times, so with walkers the
+    samples spread wider than studies do that are repeated, by about a half; with observers alone
+    they spread less than half as much as repeated studies with other walkers.
+
     Parameters
     ----------
     X : array of shape (pair, group)
@@ -89,7 +98,13 @@ def bootstrap_weights(
     Returns
     -------
     Bootstrap
-        Pairs that the observers drawn were never shown are left out of that sample.
+        Pairs that the observers drawn were never shown are left out of that sample; samples of
+        fewer than `LEAST_PAIRS` different pairs are drawn anew.
+
+    Raises
+    ------
+    ValueError
+        If counts cannot be, or there are too few walkers or pairs to draw from.
 
     Examples
     --------
@@ -103,13 +118,24 @@ def bootstrap_weights(
     X, chosen, shown = (np.asarray(each, dtype=float) for each in (X, chosen, shown))
     _check_counts(chosen, shown, n_pairs=len(X))
     rng = np.random.default_rng(seed)
-    times = _times_drawn(rng, len(shown), n_samples)
-    differences = difference(times @ chosen, times @ shown)
-    counts = _counts_of_pairs(pairs, rng, n_samples) if pairs is not None else np.ones((1, len(X)))
-    fits = []
-    for y, count in zip(differences, np.broadcast_to(counts, differences.shape), strict=True):
-        kept = np.isfinite(y) & (count > 0)
-        fits.append(non_negative_fit(X[kept], y[kept], sample_weight=count[kept]))
+    fits: list[Weights] = []
+    for _ in range(_MOST_DRAWS):
+        times = _times_drawn(rng, len(shown), n_samples)
+        differences = difference(times @ chosen, times @ shown)
+        counts = np.ones_like(differences)
+        if pairs is not None:
+            counts = _counts_of_pairs(pairs, rng, n_samples)
+        for y, count in zip(differences, counts, strict=True):
+            kept = np.isfinite(y) & (count > 0)
+            if kept.sum() >= LEAST_PAIRS and len(fits) < n_samples:
+                fits.append(non_negative_fit(X[kept], y[kept], sample_weight=count[kept]))
+        if len(fits) == n_samples:
+            break
+    else:
+        raise ValueError(
+            f"Only {len(fits)} of {_MOST_DRAWS * n_samples} samples hold {LEAST_PAIRS} different "
+            f"pairs, of {len(X)} pairs; four walkers or more, each shown with each, are needed."
+        )
     return Bootstrap(
         np.array([fit.weights for fit in fits]), np.array([fit.constant for fit in fits])
     )
@@ -145,8 +171,9 @@ def split_half(
 
     Observers are split into random halves and the tables of the halves correlated over pairs; the
     mean correlation r is that of half the data. All observers together would agree with as many
-    others by 2 r / (1 + r) (Spearman and Brown). Since half of that unreliability is not the
-    metric's to explain, even the true differences correlate with the table by its square root only.
+    others by 2 r / (1 + r) (Spearman and Brown), or not at all where r is below 0. Since half of
+    that unreliability is not the metric's to explain, even the true differences correlate with the
+    table by its square root only.
 
     Parameters
     ----------
@@ -160,8 +187,9 @@ def split_half(
     Returns
     -------
     Reliability
-        Correlations: ``halves`` (r), ``whole``, and ``ceiling``, which is 0 where halves do not
-        agree at all.
+        Correlations: ``halves`` (r), ``whole``, and ``ceiling``, which are 0 where halves do not
+        agree at all; NaN, with a warning, where halves have no differences that could be
+        correlated.
 
     Examples
     --------
@@ -184,10 +212,19 @@ def split_half(
             for part in (order[:half], order[half : 2 * half])
         )
         both = np.isfinite(first) & np.isfinite(second)
-        agreement.append(np.corrcoef(first[both], second[both])[0, 1])
-    halves = float(np.nanmean(agreement))
-    whole = 2 * halves / (1 + halves)
-    return Reliability(halves, whole, float(np.sqrt(max(whole, 0.0))))
+        if both.sum() >= LEAST_PAIRS and np.ptp(first[both]) > 0 and np.ptp(second[both]) > 0:
+            agreement.append(np.corrcoef(first[both], second[both])[0, 1])
+    if not agreement:
+        warnings.warn(
+            f"How far halves of the {len(shown)} observers agree cannot be told: no two halves saw "
+            f"{LEAST_PAIRS} pairs alike, of which they chose some more often than others.",
+            stacklevel=2,
+        )
+        return Reliability(np.nan, np.nan, np.nan)
+    halves = float(np.mean(agreement))
+    agreeing = max(halves, 0.0)
+    whole = 2 * agreeing / (1 + agreeing)
+    return Reliability(halves, whole, float(np.sqrt(whole)))
 
 
 def difference(chosen: np.ndarray, shown: np.ndarray) -> np.ndarray:
