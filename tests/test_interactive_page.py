@@ -181,6 +181,25 @@ def test_everything_can_be_undone_and_reset(visit):
     assert there.state() == {}
 
 
+def test_a_drag_is_one_step_that_is_undone_and_reset_knows_the_view(visit):
+    there = visit("az=0&still")
+    box = there.page.locator("#stage canvas").bounding_box()
+    there.page.mouse.move(box["x"] + 300, box["y"] + 300)
+    there.page.mouse.down()
+    there.page.mouse.move(box["x"] + 360, box["y"] + 300, steps=5)
+    there.page.wait_for_timeout(800)
+    there.page.mouse.move(box["x"] + 400, box["y"] + 300, steps=5)
+    there.page.wait_for_timeout(150)  # a hand that rests throws nothing
+    there.page.mouse.up()
+    assert float(there.state()["az"]) == pytest.approx(50, abs=1)
+    there.page.get_by_role("button", name="Undo").click()
+    assert there.state()["az"] == "0"
+    there.page.get_by_role("button", name="Reset all").click()
+    assert "az" not in there.state()
+    there.page.get_by_role("button", name="Undo").click()
+    assert there.state()["az"] == "0"
+
+
 def test_dragging_turns_the_walker_and_so_do_the_arrows(visit):
     there = visit("az=0&still")
     box = there.page.locator("#stage canvas").bounding_box()
@@ -270,6 +289,32 @@ def test_a_hostile_address_is_passed_over(visit):
     assert there.page.get_by_role("alert").inner_text() == ""
 
 
+def test_a_link_to_a_capture_says_that_it_does_not_hold_it(visit):
+    there = visit("w=own&t=sex:2")
+    there.page.get_by_role("status").get_by_text("drop it again").wait_for()
+    assert there.state() == {"t": "sex:2"}
+
+
+def test_the_hills_show_where_somebody_is_and_the_thumb_how_far_one_was_led(visit, model):
+    there = visit("w=27&still")
+    assert there.page.get_by_role("slider", name="Sex").input_value() == "0"
+    told = model["traits"][0]["told"]
+    score = told["offset"] + np.dot(told["gradient"], model["walkers"][27]["vector"])
+    assert there.page.locator(".mark").inner_text() == f"this walker +{score:.1f}"
+    there.page.get_by_role("button", name="Reset all").click()
+    there.page.locator(".mark").wait_for(state="hidden")
+
+
+def test_to_move_a_slider_of_a_trait_leaves_the_mean_walkers(visit):
+    there = visit("show=four&t=sex:3&still")
+    changes = there.open("What changes")
+    assert changes.get_by_text("Several walk").is_visible()
+    assert changes.locator(".measures").is_hidden()
+    there.page.get_by_role("slider", name="Sex").press("ArrowRight")
+    assert there.state() == {"t": "sex:3.05", "still": ""}
+    assert changes.locator(".measures").is_visible()
+
+
 def test_a_component_walks_alone(visit):
     there = visit()
     section = there.open("Stride, sway, hop, bounce")
@@ -308,6 +353,26 @@ def test_a_file_that_cannot_be_read_is_told_and_nothing_is_lost(visit):
         alert.get_by_role("button", name="Dismiss").click()
         assert alert.inner_text() == ""
     assert there.state() == {"t": "sex:2"}
+
+
+@pytest.mark.parametrize("size", ["desktop", "phone", "small"])
+def test_notices_lie_over_the_stage_alone(visit, size):
+    there = visit("still", size)
+    long = "a very long name of a file " * 30
+    for _ in range(3):
+        there.bring(f"{long}.c3d", b"")
+        there.page.get_by_role("alert").get_by_text("serve").wait_for()
+    there.open("Keep and share").get_by_role("button", name="Stimulus").click()
+    there.page.get_by_role("status").get_by_text("saved").wait_for()
+    notices = there.page.locator(".notice")
+    assert notices.count() == 2
+    boxes = [notices.nth(i).bounding_box() for i in range(2)]
+    assert boxes[1]["y"] < boxes[0]["y"]  # the newer one, which is further down in the page
+    lowest = max(box["y"] + box["height"] for box in boxes)
+    for control in ("#hero", "#tools .scrub", "#tools .round"):
+        place = there.page.locator(control).bounding_box()
+        gone_by = place["y"] + place["height"] <= 0
+        assert gone_by or lowest <= place["y"]
 
 
 def test_a_dropped_model_is_walked(visit):

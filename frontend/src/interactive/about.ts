@@ -17,9 +17,20 @@ function reportLink(): HTMLElement[] {
 }
 
 /** One line: how many walkers, whether they exist, and out of what file. */
-export function peopleIn({ n_walkers, simulated, source }: Model): string {
+export function peopleIn({ n_walkers, simulated, source, captures }: Model): string {
   const people = `${n_walkers} ${simulated ? "simulated " : ""}${n_walkers === 1 ? "walker" : "walkers"}`;
-  return source ? `${people} of ${source}` : people;
+  const from = captures ?? source;
+  return from ? `${people} of ${from}` : people;
+}
+
+/** Walkers below this number say little about others. */
+const FEW = 10;
+
+/** What to mind of a population that is small, or of which nothing is known but how it walks. */
+export function warnings({ n_walkers, traits }: Model): string[] {
+  const few = `${n_walkers} walkers are few: sliders push what sets just these apart, and say little of others.`;
+  const blank = "No trait tells these walkers apart, for want of a table of traits or of walkers: the large slider is what varies most among them.";
+  return [...(n_walkers < FEW ? [few] : []), ...(traits.length === 0 ? [blank] : [])];
 }
 
 /** The ideas in four sentences, and where the model comes from. */
@@ -35,6 +46,7 @@ export function about(model: Model): HTMLElement {
     make("div", { class: "body" },
       make("p", {}, IDEA),
       ...(model.simulated ? [make("p", {}, "The walkers here are simulated: nobody was captured.")] : []),
+      ...warnings(model).map((sentence) => make("p", {}, sentence)),
       make("p", { class: "note" }, SOURCES),
       ...reportLink(),
       make("dl", { class: "facts" },

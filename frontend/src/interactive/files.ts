@@ -5,8 +5,14 @@ import { find } from "./element";
 /** More than these at once is a mistake. */
 const MOST_FILES = 500;
 
+/** Files that came together, and the folder in which they lay, if it was one. */
+export interface Brought {
+  readonly files: readonly File[];
+  readonly folder: string;
+}
+
 /** Hand over files that are dropped or chosen; the returned function opens the choosing. */
-export function takeFiles(take: (files: readonly File[]) => void): () => void {
+export function takeFiles(take: (brought: Brought) => void): () => void {
   const veil = find("#drop", HTMLDivElement);
   const input = find("#file", HTMLInputElement);
   const brings = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
@@ -25,20 +31,20 @@ export function takeFiles(take: (files: readonly File[]) => void): () => void {
     void dropped(event.dataTransfer!).then(take);
   });
   input.addEventListener("change", () => {
-    take([...(input.files ?? [])]);
+    take({ files: [...(input.files ?? [])], folder: "" });
     input.value = "";
   });
   return () => input.click();
 }
 
 /** What was dropped, with all that is in folders. */
-async function dropped({ items, files }: DataTransfer): Promise<File[]> {
-  const plain = [...files];
+async function dropped({ items, files }: DataTransfer): Promise<Brought> {
+  const plain = { files: [...files], folder: "" };
   const entries = [...items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   if (!entries.some(({ isDirectory }) => isDirectory)) return plain;
   const found: File[] = [];
   for (const entry of entries) await gather(entry, found);
-  return found;
+  return { files: found, folder: entries.length === 1 ? entries[0]!.name : "" };
 }
 
 async function gather(entry: FileSystemEntry, found: File[]): Promise<void> {

@@ -1,15 +1,17 @@
 /** The page: reads the model that it holds, puts its parts together, and takes what is brought. */
 
 import { addressOf } from "../model/address";
-import { peopleIn } from "./about";
+import type { Own } from "../model/model";
+import type { State } from "../model/state";
+import { peopleIn, warnings } from "./about";
 import { address, stateAt } from "./address";
 import { corner } from "./corner";
 import { find, make } from "./element";
-import { takeFiles } from "./files";
+import { takeFiles, type Brought } from "./files";
 import { pageKeys } from "./keyboard";
-import { Notices } from "./notices";
+import { Notices, sentenceOf } from "./notices";
 import { onStage } from "./onstage";
-import { bundles, heldIn, openFiles, type Held, type Opened } from "./opening";
+import { bundles, callIt, heldIn, openFiles, type Held, type Opened } from "./opening";
 import { panels } from "./panels";
 import { Session, type Shown } from "./session";
 import { mainSlider } from "./traits";
@@ -23,20 +25,25 @@ interface Visit {
 
 const notices = new Notices();
 let visit: Visit | null = null;
-const choose = takeFiles((files) => void take(files));
+const choose = takeFiles((brought) => void take(brought));
 
 /** Open what is brought; what cannot be read is said, and all else stays. */
-async function take(files: readonly File[]): Promise<void> {
+async function take({ files, folder }: Brought): Promise<void> {
+  const troubles: string[] = [];
+  notices.clear();
   for (const bundle of bundles(files)) {
-    const name = bundle.length === 1 ? bundle[0]!.name : `${bundle.length} files`;
+    const name = callIt(bundle, folder);
     const done = notices.busy(`Reading ${name} \u2026`);
     try {
-      const opened = await openFiles(bundle, visit?.held ?? null);
+      const opened = await openFiles(bundle, visit?.held ?? null, folder);
       const walks = show(opened, name);
-      if (opened.told.length > 0) notices.told([walks, ...opened.told]);
+      const mind = opened.kind === "model" ? warnings(opened.held.model) : [];
+      const told = [...mind, ...opened.told];
+      if (told.length > 0) notices.told([walks, ...told]);
       else notices.news(walks);
     } catch (error) {
-      notices.caught(error);
+      troubles.push(sentenceOf(error));
+      notices.trouble(...troubles);
     } finally {
       done();
     }
@@ -49,21 +56,30 @@ function show(opened: Opened, name: string): string {
     visit?.session.take(opened.own);
     return `${opened.own.name} walks.`;
   }
-  const before = visit && { held: visit.held, address: addressOf(visit.session.state, visit.held.model) };
+  const before = visit && { ...visit, address: addressOf(visit.session.state, visit.held.model) };
   try {
     begin(opened.held, visit?.session.state.dark === false ? "dark=0" : "");
   } catch (error) {
-    if (before) begin(before.held, before.address);
+    if (before) begin(before.held, before.address, before.session.own);
     throw error;
   }
-  return `${name}: ${peopleIn(opened.held.model)}.`;
+  const people = peopleIn(opened.held.model);
+  return people.endsWith(name) ? `${people}.` : `${name}: ${people}.`;
+}
+
+/** What an address tells; a capture of one's own is in no address. */
+function wanted(told: string, { model }: Held, own: Own | null): State {
+  const state = stateAt(told, model);
+  if (state.from !== "own" || own) return state;
+  notices.told(["The walker of this link was a capture of one's own, which a link does not hold: drop it again."]);
+  return { ...state, from: "average" };
 }
 
 /** Show a model as an address tells. */
-function begin(held: Held, told: string): void {
+function begin(held: Held, told: string, own: Own | null = null): void {
   visit?.session.end();
   visit?.parts.forEach((part) => part.leave?.());
-  const session = new Session(held.model, stateAt(told, held.model));
+  const session = new Session(held.model, wanted(told, held, own), own);
   const hero = mainSlider(session);
   find("#hero", HTMLDivElement).replaceChildren(hero.element);
   const parts = [onStage(session), hero, corner(session, choose), panels(session, notices, choose), address()];
@@ -81,8 +97,10 @@ function inPage(): Held | null {
 function start(): void {
   find("#notices", HTMLDivElement).append(notices.element);
   document.addEventListener("keydown", (event) => visit && pageKeys(visit.session)(event));
+  document.addEventListener("pointerdown", () => visit?.session.hold(true), { capture: true });
+  for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, () => visit?.session.hold(false));
   window.addEventListener("hashchange", () => {
-    visit?.session.change(stateAt(location.hash.slice(1), visit.held.model));
+    visit?.session.change(wanted(location.hash.slice(1), visit.held, visit.session.own));
   });
   try {
     const inside = inPage();

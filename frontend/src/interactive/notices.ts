@@ -3,62 +3,86 @@
 import { icon, make } from "./element";
 
 const NEWS_MS = 4000;
-const MOST = 3;
 const MOST_SENTENCES = 20;
 
-function lasting(kind: string, sentences: readonly string[]): HTMLElement {
-  const close = make("button", { type: "button", class: "quiet", "aria-label": "Dismiss" }, icon("close"));
-  const paragraphs = sentences.slice(0, MOST_SENTENCES).map((sentence) => make("p", {}, sentence));
-  const notice = make("div", { class: kind }, make("div", {}, ...paragraphs), close);
-  close.addEventListener("click", () => notice.remove());
-  return notice;
-}
-
-function stay(place: HTMLElement, notice: HTMLElement): void {
-  place.append(notice);
-  while (place.childElementCount > MOST) place.firstElementChild?.remove();
-}
-
+/**
+ * One notice of trouble and one of anything else, the newer one on top: what is new of a kind takes
+ * the place of what was.
+ */
 export class Notices {
   readonly element = make("div", { class: "notices" });
   readonly #alerts = make("div", { role: "alert" });
   readonly #news = make("div", { role: "status" });
-  #last: HTMLElement | null = null;
+  #busy: HTMLElement | null = null;
   #timer = 0;
+  #count = 0;
 
   constructor() {
     this.element.append(this.#alerts, this.#news);
   }
 
-  /** A sentence that stays until it is read. */
-  trouble(sentence: string): void {
-    stay(this.#alerts, lasting("notice trouble", [sentence]));
+  /** Sentences that stay until they are read. */
+  trouble(...sentences: string[]): void {
+    this.#put(this.#alerts, this.#lasting("notice trouble", sentences));
   }
 
   /** Good news that takes longer to read than it would stay. */
   told(sentences: readonly string[]): void {
-    stay(this.#news, lasting("notice", sentences));
+    this.#put(this.#news, this.#lasting("notice", sentences));
   }
 
   /** A word that passes. */
   news(sentence: string): void {
     const notice = make("div", { class: "notice" }, make("p", {}, sentence));
-    this.#last?.remove();
-    this.#last = notice;
-    this.#news.append(notice);
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => notice.remove(), NEWS_MS);
+    this.#put(this.#news, notice);
+    this.#timer = window.setTimeout(() => this.#remove(notice), NEWS_MS);
   }
 
-  /** A word that stays until the returned function is called. */
+  /** A word that stays until the returned function is called, and comes back after others. */
   busy(sentence: string): () => void {
     const notice = make("div", { class: "notice" }, make("p", {}, sentence), make("progress", {}));
-    this.#news.append(notice);
-    return () => notice.remove();
+    this.#busy = notice;
+    this.#put(this.#news, notice);
+    return () => {
+      if (this.#busy === notice) this.#busy = null;
+      this.#remove(notice);
+    };
   }
 
   /** Whatever was thrown, as a sentence. */
   caught(error: unknown): void {
-    this.trouble(error instanceof Error && error.message ? error.message : String(error));
+    this.trouble(sentenceOf(error));
+  }
+
+  /** Nothing of what was said before matters any more. */
+  clear(): void {
+    this.#alerts.replaceChildren();
+    this.#news.replaceChildren(...(this.#busy ? [this.#busy] : []));
+  }
+
+  #put(place: HTMLElement, notice: HTMLElement): void {
+    if (place === this.#news) clearTimeout(this.#timer);
+    place.style.order = String(--this.#count);
+    place.replaceChildren(notice);
+  }
+
+  #remove(notice: HTMLElement): void {
+    const inNews = notice.parentElement === this.#news;
+    notice.remove();
+    if (inNews && this.#busy) this.#news.append(this.#busy);
+  }
+
+  #lasting(kind: string, sentences: readonly string[]): HTMLElement {
+    const close = make("button", { type: "button", class: "quiet", "aria-label": "Dismiss" }, icon("close"));
+    const more = sentences.length - MOST_SENTENCES;
+    const said = [...sentences.slice(0, MOST_SENTENCES), ...(more > 0 ? [`And ${more} more of the kind.`] : [])];
+    const paragraphs = said.map((sentence) => make("p", {}, sentence));
+    const notice = make("div", { class: kind }, make("div", {}, ...paragraphs), close);
+    close.addEventListener("click", () => this.#remove(notice));
+    return notice;
   }
 }
+
+/** What was thrown, in its own words. */
+export const sentenceOf = (error: unknown): string =>
+  error instanceof Error && error.message ? error.message : String(error);

@@ -22,6 +22,8 @@ export interface Held {
 const MOST_TEXT_BYTES = 64e6;
 const POPULATION = /\.nc$/i;
 const TEXT = /\.json$/i;
+/** More files than these are not named one by one. */
+const MOST_NAMED = 2;
 /** Needed beside a capture, and no capture itself. */
 const BESIDE = /\.asf$/i;
 
@@ -38,8 +40,16 @@ export function bundles(files: readonly File[]): File[][] {
   return [...alone.map((file) => [file]), ...(others.length > 0 ? [others] : [])];
 }
 
+/** What to call files that are opened together. */
+export function callIt(files: readonly File[], folder = ""): string {
+  const names = files.map(({ name }) => name);
+  if (names.length > 1 && folder) return `${folder}/`;
+  const more = names.length - MOST_NAMED;
+  return more > 1 ? `${names.slice(0, MOST_NAMED).join(", ")} and ${more} more` : names.join(", ");
+}
+
 /** Read what belongs together, by the page itself where it can, else by the server. */
-export async function openFiles(files: readonly File[], held: Held | null): Promise<Opened> {
+export async function openFiles(files: readonly File[], held: Held | null, folder = ""): Promise<Opened> {
   const [file, ...others] = files;
   if (!file) throw new CannotOpen("There is no file in that.");
   if (TEXT.test(file.name)) return openText(file, held?.model ?? null);
@@ -51,7 +61,10 @@ export async function openFiles(files: readonly File[], held: Held | null): Prom
   const captures = files.filter(({ name }) => !BESIDE.test(name));
   if (people || captures.length > 1) {
     const { model, told } = await readPopulation(files);
-    return { kind: "model", held: heldIn(model), told };
+    const opened = heldIn(model);
+    if (people) return { kind: "model", held: opened, told };
+    const made = { ...opened.model, captures: callIt(captures, folder) };
+    return { kind: "model", held: { ...opened, model: made }, told };
   }
   return openCapture(files, held);
 }

@@ -34,13 +34,11 @@ export interface Part extends Shown {
   readonly element: HTMLElement;
 }
 
-/** Changes that follow one another within this time are undone together. */
+/** Changes that follow one another within this time are undone together, and those of one drag. */
 const TOGETHER_MS = 700;
 const MOST_UNDONE = 100;
-/** Not worth a step back: how it is looked at, and when. */
-const PASSING: readonly (keyof State)[] = [
-  "playing", "cycle", "dark", "azimuth_deg", "elevation_deg",
-];
+/** Not worth a step back. */
+const PASSING: readonly (keyof State)[] = ["playing", "cycle", "dark"];
 
 /** What walkers are made from; all else is how they are looked at. */
 const WALKS: readonly (keyof State)[] = [
@@ -56,6 +54,7 @@ export class Session {
   #past: State[] = [];
   #lastKept = -Infinity;
   #undoing = false;
+  #held: "no" | "new" | "kept" = "no";
   #hears: ((now: Now) => void)[] = [];
   #request = 0;
   #last: Now | null = null;
@@ -63,7 +62,9 @@ export class Session {
   constructor(
     readonly model: Model,
     state: State = initialState(model),
+    own: Own | null = null,
   ) {
+    this.#own = own;
     this.store = new Store(state);
     this.axes = axesOf(model);
     this.store.listen((after, before) => {
@@ -96,7 +97,7 @@ export class Session {
     this.change(playing ? { playing } : { playing, cycle: this.stage?.cycle ?? 0 });
   }
 
-  /** All as it was when the page was new; how it is looked at stays. */
+  /** All as it was when the page was new, the view too; dark or light stays. */
   reset(): void {
     const { dark, playing, cycle } = this.state;
     this.change({ ...initialState(this.model), dark, playing, cycle });
@@ -109,11 +110,16 @@ export class Session {
   undo(): void {
     const before = this.#past.pop();
     if (!before) return;
-    const { dark, playing, cycle, azimuth_deg, elevation_deg } = this.state;
+    const { dark, playing, cycle } = this.state;
     this.#undoing = true;
-    this.change({ ...before, dark, playing, cycle, azimuth_deg, elevation_deg });
+    this.change({ ...before, dark, playing, cycle });
     this.#undoing = false;
     this.#lastKept = -Infinity;
+  }
+
+  /** A hand holds something, or lets it go: what changes meanwhile is undone together. */
+  hold(holds: boolean): void {
+    this.#held = holds ? "new" : "no";
   }
 
   /** Be told once for each frame of the screen in which something changed. */
@@ -158,7 +164,9 @@ export class Session {
     const keys = Object.keys(after) as (keyof State)[];
     if (keys.every((key) => PASSING.includes(key) || after[key] === before[key])) return;
     const time = performance.now();
-    if (time - this.#lastKept > TOGETHER_MS) this.#past = [...this.#past, before].slice(-MOST_UNDONE);
+    const together = this.#held === "no" ? time - this.#lastKept <= TOGETHER_MS : this.#held === "kept";
+    if (this.#held === "new") this.#held = "kept";
+    if (!together) this.#past = [...this.#past, before].slice(-MOST_UNDONE);
     this.#lastKept = time;
   }
 }

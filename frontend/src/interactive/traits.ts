@@ -34,6 +34,7 @@ export function mainSlider(session: Session): Part {
     element,
     show({ state, place }) {
       one.show(axis.value(state));
+      one.element.classList.toggle("idle", state.scene === "four");
       showMark(mark, axis.at(place), state.scene === "one" ? axis.value(state) : null);
     },
   };
@@ -66,7 +67,11 @@ function sliders(session: Session, axes: readonly Axis[], label?: (axis: Axis, i
   const all = axes.map((axis, i) => axisSlider(session, axis, label?.(axis, i)));
   return {
     element: make("div", { class: "sliders" }, ...all.map(({ element }) => element)),
-    show: ({ state }) => all.forEach((one, i) => one.show(axes[i]!.value(state))),
+    show: ({ state }) =>
+      all.forEach((one, i) => {
+        one.show(axes[i]!.value(state));
+        one.element.classList.toggle("idle", state.scene === "four");
+      }),
   };
 }
 

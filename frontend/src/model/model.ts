@@ -59,6 +59,8 @@ export interface Model {
   readonly title: string;
   /** File of the population; empty for the one that comes with the program. */
   readonly source: string;
+  /** Captures that it was made of just now, of which there is no file of a population. */
+  readonly captures?: string;
   readonly simulated: boolean;
   readonly provenance: Readonly<Record<string, string>>;
   readonly n_walkers: number;

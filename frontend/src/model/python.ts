@@ -20,17 +20,24 @@ export function pythonLine(model: Model, state: State, own: Own | null = null): 
     "import eigenwalker as ew",
     ...(start.includes("np.") ? ["import numpy as np"] : []),
     "",
-    `people = ew.load_population(${model.source === "" ? "" : quoted(model.source)})`,
+    `people = ew.load_population(${model.source === "" ? "" : quoted(model.source)})${made(model)}`,
     start,
     ...changes,
     "walker = people.walker(vector)",
   ].join("\n");
 }
 
+/** How to get the file, where there is none yet. */
+const made = ({ captures }: Model): string =>
+  captures === undefined ? "" : `  # as eigenwalker fit makes it of ${captures.replace(/\s+/g, " ")}`;
+
+/** As near as a millionth of a millimetre, as numbers of the page are. */
+const near = (value: number): number => Number(value.toFixed(7));
+
 function startLine(model: Model, state: State, own: Own | null): string {
   const known = typeof state.from === "number" ? model.walkers[state.from] : undefined;
   if (known) return `vector = people.X[${known.row}].copy()  # ${known.name.replace(/\s+/g, " ")}`;
-  if (state.from === "own" && own) return `vector = np.array([${startOf(model, state, own).join(", ")}])`;
+  if (state.from === "own" && own) return `vector = np.array([${startOf(model, state, own).map(near).join(", ")}])`;
   return "vector = people.average.copy()";
 }
 
