@@ -64,7 +64,7 @@ def people(tmp_path_factory) -> Path:
 
 
 def difference(said: str) -> float:
-    found = re.search(r"Difference \(\S+\): ([\d.e+-]+)[,.]", said)
+    found = re.search(r"Difference \(\S+\): ([\d.e+-]+)[,.;]", said)
     assert found, said
     return float(found[1].rstrip("."))
 
@@ -112,7 +112,7 @@ def test_all_pairs_of_a_folder_become_a_table_and_a_report(run, folder, tmp_path
     assert table.shape == (4, 4)
     assert (table.to_numpy() == table.to_numpy().T).all()
     assert "6 pairs of 4 walks by kovar" in said
-    assert re.search(r"person1 .*2 .* 1\n", said)  # all have their own person as the nearest
+    assert re.search(r"person1 +2 .* 1 +0.333\n", said)  # all have their own person as the nearest
     assert (tmp_path / "pairs" / "report.html").read_text().count("<img") == 2
 
 
@@ -177,6 +177,8 @@ def test_weights_are_fitted_to_answers_and_reported(run, tmp_path):
     assert (weights.relative_high + 1e-9 >= 0.8 * planted[weights.index]).mean() > 0.8
     pairs = pd.read_csv(tmp_path / "fit" / "pairs.csv")
     assert np.corrcoef(pairs.difference, pairs.predicted)[0, 1] > 0.6
+    again = run(people, "--metric", tmp_path / "fit" / "weights.csv")
+    assert (again[0], "66 pairs of 12 walks by weights" in again[1]) == (0, True), again[2]
     page = (tmp_path / "fit" / "report.html").read_text()
     assert "distance in walker space" in page
     assert page.count("<img") == 2
@@ -187,7 +189,7 @@ def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):
     traits = population.traits.assign(flag=["", "hops", "", "", "", ""])
     Population(population.walkers, traits).save(tmp_path / "flagged.nc")
     code, said, complaint = run(tmp_path / "flagged.nc")
-    assert (code, "of 5 walks" in said, "walker 1: flagged" in complaint) == (0, True, True)
+    assert (code, "of 5 walks" in said, "walker 1: hops" in complaint) == (0, True, True)
     code, said, _ = run(tmp_path / "flagged.nc", "--with-flagged")
     assert (code, "of 6 walks" in said) == (0, True)
 
@@ -203,13 +205,84 @@ def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):
         (["{folder}/person1_first.c3d", "{folder}/nobody.c3d"], "nobody.c3d"),
         (["{people}", "--answers", "{folder}/nothing.csv"], "could not be read as CSV"),
         (["{people}", "--answers", "{folder}/person1_first.c3d"], "nswers"),
-        (["{folder}/a.c3d", "{folder}/b.c3d", "--nearest", "c.c3d"], "about many walks"),
+        (["{folder}/nobody"], "nobody does not exist"),
+        (["{two}", "--nearest", "c.c3d"], "about many walks"),
+        (["{two}", "--trait", "sex"], "--trait is about many walks"),
+        (["{two}", "--clusters", "3"], "--clusters is about many walks"),
+        (["{two}", "--with-flagged"], "--with-flagged is about many walks"),
+        (["{folder}", "--nearest", "c.c3d", "--answers", "a.csv"], "--answers does not go"),
+        (["{folder}", "--nearest", "c.c3d", "-o", "out"], "-o does not go with --nearest"),
+        (["{people}", "--nearest", "c.c3d", "--trait", "sex"], "--trait does not go"),
+        (["{people}", "--answers", "a.csv", "--trait", "sex"], "--trait does not go"),
+        (["{folder}", "--clusters", "0", "-o", "out"], "--clusters 0"),
+        (["{folder}", "--clusters", "9", "-o", "out"], "there are 4 walks"),
+        (["{folder}", "--clusters", "2"], "with -o"),
+        (["{people}", "--unit", "cm"], "--unit is for captures"),
+        (["{people}", "--trait-from-name", "(?P<a>.)"], "for a population give --trait"),
+        (["{people}", "--trait", "weight_kg"], "no classes"),
+        (["{people}", "{folder}/person1_first.c3d"], "--nearest"),
+        (["{two}", "-o", "{people}"], "is a file"),
+        (["{folder}", "--metric", "{folder}/person1_first.csv"], "could not be read as CSV"),
     ],
 )
 def test_what_makes_no_sense_is_said_in_a_sentence(run, folder, people, words, said):
-    code, _, complaint = run(*(word.format(folder=folder, people=people) for word in words))
-    assert code == 2
+    if words[0] == "{two}":
+        words = ["{folder}/person1_first.c3d", "{folder}/person2_first.c3d", *words[1:]]
+    code, printed, complaint = run(*(word.format(folder=folder, people=people) for word in words))
+    assert (code, printed) == (2, "")
     assert said in complaint
+    assert not complaint.endswith((" \n", "\n\n"))
+
+
+def stairs(path: Path) -> Path:
+    """Someone who walks down, which is no walk like the others."""
+    walk = simulate_walk(seed=3, duration_s=6.0, rate_hz=60, markers="skin")
+    down = walk.copy()
+    down.loc[{"axis": "z"}] -= 150 * walk.time
+    return write_mocap(down, path)
+
+
+def test_flagged_captures_are_said_and_left_out_unless_asked_for(run, folder, tmp_path):
+    for path in folder.glob("*_first.c3d"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    stairs(tmp_path / "stairs.c3d")
+    code, said, complaint = run(tmp_path)
+    assert (code, "of 2 walks" in said) == (0, True)
+    assert "stairs.c3d: This is no level walk" in complaint
+    code, said, complaint = run(tmp_path, "--with-flagged")
+    assert (code, "of 3 walks" in said) == (0, True)
+    assert "stairs.c3d: it is flagged: This is no level walk" in complaint
+    code, said, complaint = run(tmp_path / "stairs.c3d", tmp_path / "person1_first.c3d")
+    assert code == 0
+    assert "Mind stairs.c3d: it is flagged: This is no level walk" in complaint
+
+
+def test_a_file_without_a_stride_is_named(run, folder, tmp_path):
+    still = simulate_walk(seed=1, duration_s=3.0, rate_hz=60, markers="skin")
+    still = still.copy(data=np.repeat(still.values[:1], len(still), axis=0))
+    write_mocap(still, tmp_path / "still.c3d")
+    code, _, complaint = run(folder / "person1_first.c3d", tmp_path / "still.c3d")
+    assert code == 2
+    assert "still.c3d" in complaint
+
+
+def test_the_walk_of_a_person_is_no_further_from_itself_than_from_others(run, folder):
+    _, said, _ = run(folder / "person1_first.c3d", folder / "person2_first.c3d")
+    own = re.search(r"First and last strides of one capture differ by ([\d.e-]+) ", said)
+    assert own, said
+    assert float(own[1]) < 0.2 * difference(said)
+
+
+def test_hips_on_the_skin_are_minded(run, tmp_path):
+    names = []
+    for seed in (1, 2):
+        walk = simulate_walk(seed=seed, duration_s=6.0, rate_hz=60)
+        for side, out in (("left", 90), ("right", -90)):
+            walk.loc[{"marker": f"{side}_hip", "axis": "y"}] += out
+        names.append(write_mocap(walk, tmp_path / f"skin{seed}.csv"))
+    code, _, complaint = run(*names, "--unit", "mm")
+    assert code == 0, complaint
+    assert "points on the skin" in complaint
 
 
 @pytest.mark.filterwarnings("ignore::eigenwalker.mocap.UnitGuessed")

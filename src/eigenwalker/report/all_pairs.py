@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from eigenwalker.display.difference_tables import figure_difference_table, figure_map_of_walks
+from eigenwalker.display.difference_tables import (
+    figure_difference_table,
+    figure_map_of_walks,
+    short_names,
+)
 from eigenwalker.folds import Progress
-from eigenwalker.metric.clip_distances import pair_components, pair_table
+from eigenwalker.metric.clip_distances import pair_distances, pair_table
 from eigenwalker.metric.difference_structure import (
     clusters_of_walks,
     map_of_walks,
@@ -18,29 +21,39 @@ from eigenwalker.metric.difference_structure import (
     order_of_walks,
 )
 from eigenwalker.metric.prepared import Clip
-from eigenwalker.metric.published import PUBLISHED
+from eigenwalker.metric.published import GroupMetric
 from eigenwalker.report.compared_walks import Walks
 from eigenwalker.report.content import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.page import write_report
-from eigenwalker.report.two_walks import CITE, SCALE_IS_UNKNOWN
+from eigenwalker.report.two_walks import CITE, SCALE_IS_UNKNOWN, WHERE_POINTS_SIT, in_plain
 
 MOST_ROWS = 60
 MOST_NAMED_POINTS = 30
 TABLE_NAME = "differences.csv"
 
 
-def table_of(walks: Walks, metric: str, *, progress: Progress | None = None) -> pd.DataFrame:
-    """Return the differences of all pairs of walks, by a published metric."""
+def table_of(
+    walks: Walks, metric: GroupMetric, *, progress: Progress | None = None
+) -> pd.DataFrame:
+    """Return the differences of all pairs of walks."""
     if len(walks.clips) < 2:
         raise ValueError(
-            f"All pairs need two walks or more; {len(walks.clips)} could be used. "
-            + " ".join(f"{name}: {why}" for name, why in list(walks.refused.items())[:3])
+            f"All pairs need two walks or more; {len(walks.clips)} could be used. {left_out(walks)}"
         )
     return pair_table(walks.clips, metric=metric, progress=progress)
 
 
+def left_out(walks: Walks) -> str:
+    """Return why some walks do not count, in words; of many, the first few."""
+    flagged = {
+        name: f"flagged: {why} --with-flagged counts it too" for name, why in walks.flagged.items()
+    }
+    few = list({**walks.refused, **flagged}.items())[:3]
+    return " ".join(f"{name}: {why.rstrip('.')}." for name, why in few)
+
+
 def nearest_walks(
-    query: Clip, walks: Walks, metric: str, *, progress: Progress | None = None
+    query: Clip, walks: Walks, metric: GroupMetric, *, progress: Progress | None = None
 ) -> pd.Series:
     """Return the differences of all walks from one, the nearest first.
 
@@ -50,8 +63,8 @@ def nearest_walks(
         A walk.
     walks : Walks
         Among which to look.
-    metric : str
-        Name of a published metric.
+    metric : GroupMetric
+        By which.
     progress : callable, optional
         Called with the number of walks that are done, and of all.
 
@@ -60,12 +73,12 @@ def nearest_walks(
     Series of walks
 
     """
-    chosen = PUBLISHED[metric]
+    if not walks.clips:
+        raise ValueError(f"There is no walk to compare with. {left_out(walks)}")
     distances = {}
     for done, (name, clip) in enumerate(walks.clips.items(), start=1):
-        points = pair_components({"query": query, "other": clip}, metric=chosen).iloc[0]
-        weights = chosen.weights_for([str(point) for point in points.index])
-        distances[name] = float(weights @ points.to_numpy())
+        pair = {"query": query, "other": clip}
+        distances[name] = float(pair_distances(pair, metric=metric).iloc[0])
         if progress is not None:
             progress(done, len(walks.clips))
     return pd.Series(distances, name="distance").sort_values(kind="stable")
@@ -85,7 +98,8 @@ def label_table(table: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame:
     -------
     DataFrame of labels
         ``walks``; mean differences ``within`` the label (NaN of one walk alone) and to
-        ``others``; ``nearest``, the share of its walks whose nearest walk has the same label.
+        ``others``; ``nearest``, the share of its walks whose nearest walk has the same label; and
+        ``by_chance``, what that share would be if labels were dealt out at random.
 
     Examples
     --------
@@ -94,7 +108,7 @@ def label_table(table: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame:
     >>> table.columns = place.index
     >>> found = label_table(table, {"a": "slow", "b": "slow", "c": "fast", "d": "fast"})
     >>> found.loc["slow"].tolist()
-    [2.0, 1.0, 9.0, 1.0]
+    [2.0, 1.0, 9.0, 1.0, 0.3333333333333333]
 
     """
     names = [name for name in table.index if name in labels]
@@ -111,12 +125,28 @@ def label_table(table: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame:
             "within": values[np.ix_(mine, mine)].sum() / (n * (n - 1)) if n > 1 else np.nan,
             "others": values[np.ix_(mine, ~mine)].mean() if n < len(of) else np.nan,
             "nearest": float(np.mean(nearest[mine] == label)),
+            "by_chance": (n - 1) / max(len(of) - 1, 1),
         }
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
+def labels_in_words(found: pd.DataFrame) -> str:
+    """Return a table of labels to be printed, and what its columns are."""
+    table = found.to_string(float_format=lambda number: f"{number:.3g}")
+    return (
+        f"{table}\nwithin: mean difference from walks of the same kind; others: from all others; "
+        "nearest: share of walks whose nearest walk is of their kind; by_chance: that share if "
+        "kinds were dealt out at random."
+    )
+
+
 def write_all_pairs(
-    folder: str | Path, table: pd.DataFrame, walks: Walks, metric: str, *, n_clusters: int = 2
+    folder: str | Path,
+    table: pd.DataFrame,
+    walks: Walks,
+    metric: GroupMetric,
+    *,
+    n_clusters: int = 2,
 ) -> Path:
     """Write a report on all pairs, with ``differences.csv`` beside it, and return its page.
 
@@ -128,10 +158,10 @@ def write_all_pairs(
         Differences, as `table_of` gives them.
     walks : Walks
         Which they are.
-    metric : str
-        Name of the metric.
+    metric : GroupMetric
+        By which they were compared.
     n_clusters : int
-        Clusters to look for.
+        Clusters to look for, as many as there are walks at most.
 
     Returns
     -------
@@ -141,38 +171,34 @@ def write_all_pairs(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     table.to_csv(folder / TABLE_NAME, index_label="walk")
-    names = telling_names([str(name) for name in table.index])
+    names = short_names([str(name) for name in table.index])
     order = order_of_walks(table)
-    clusters = clusters_of_walks(table, min(n_clusters, len(names)))
+    clusters = clusters_of_walks(table, n_clusters)
     sections = [
         Section("All pairs", _pictures(table, names, order, clusters, walks)),
         Section("Each walk", [_each_walk(table, names, order, clusters, walks)]),
     ]
     if walks.labels:
         sections.insert(1, Section("Labels", [_labels(table, walks)]))
-    if walks.refused:
-        refused = [f"{name}: {why}" for name, why in walks.refused.items()]
-        sections.append(Section("Not compared", [Items(refused[:MOST_ROWS])]))
-    sections.append(Section("How this was done", [Text(_method(metric)), Text(CITE)]))
+    for title, said in (
+        ("Not compared", walks.refused),
+        ("Flagged, and left out", walks.flagged),
+        ("To be minded", walks.remarks),
+    ):
+        if said:
+            sections.append(Section(title, [_listed(said)]))
+    sections.append(Section("How this was done", [Items(_method(walks, metric)), Text(CITE)]))
     lead = " ".join(summary(table, metric))
     return write_report(folder, Report(f"{len(names)} walks compared", lead, sections))
 
 
-def telling_names(names: list[str]) -> list[str]:
-    """Return names without what all of them begin with, up to a separator.
-
-    Examples
-    --------
-    >>> telling_names(["walk_sad_1.bvh", "walk_happy_2.bvh"])
-    ['sad_1.bvh', 'happy_2.bvh']
-
-    """
-    shared = os.path.commonprefix(names)  # noqa: RUF071 - letters are what is wanted
-    kept = max((shared.rfind(mark) for mark in "/_- "), default=-1) + 1
-    return [name[kept:] for name in names]
+def _listed(said: dict[str, str]) -> Items:
+    items = [f"{name}: {why}" for name, why in said.items()]
+    more = [f"and {len(items) - MOST_ROWS} more"] if len(items) > MOST_ROWS else []
+    return Items([*items[:MOST_ROWS], *more])
 
 
-def summary(table: pd.DataFrame, metric: str) -> list[str]:
+def summary(table: pd.DataFrame, metric: GroupMetric) -> list[str]:
     """Return what a table says, in sentences."""
     values = table.to_numpy()
     rows, columns = np.triu_indices(len(values), 1)
@@ -183,8 +209,8 @@ def summary(table: pd.DataFrame, metric: str) -> list[str]:
         return f"{table.index[rows[pair]]} and {table.index[columns[pair]]}"
 
     return [
-        f"{len(pairs)} pairs of {len(table)} walks by {metric}: differences of {pairs.min():.3g} "
-        f"to {pairs.max():.3g}, median {np.median(pairs):.3g}.",
+        f"{len(pairs)} pairs of {len(table)} walks by {metric.name}: differences of "
+        f"{pairs.min():.3g} to {pairs.max():.3g}, median {np.median(pairs):.3g}.",
         f"Most alike are {named(least)}; most different {named(most)}.",
     ]
 
@@ -236,7 +262,13 @@ def _each_walk(
         columns.remove("label")
         rows = [[row[0], *row[2:]] for row in rows]
     left = f" (the first {MOST_ROWS} of {len(order)})" if len(order) > MOST_ROWS else ""
-    return Table(f"Walks in that order{left}, and the walk nearest to each", columns, rows)
+    return Table(
+        f"Walks in that order{left}, and the walk nearest to each. A walk belongs to its cluster "
+        "the more, the nearer it is to the cluster's middle than to the other middles (fuzzy "
+        "c-means)",
+        columns,
+        rows,
+    )
 
 
 def _labels(table: pd.DataFrame, walks: Walks) -> Table:
@@ -248,19 +280,35 @@ def _labels(table: pd.DataFrame, walks: Walks) -> Table:
             float(row.within),
             float(row.others),
             f"{100 * row.nearest:.0f} %",
+            f"{100 * row.by_chance:.0f} %",
         ]
         for label, row in found.iterrows()
     ]
     return Table(
         "Mean difference from walks of the same label and of others, and how many have one of the "
-        "same label as the nearest",
-        ["label", "walks", "same label", "others", "nearest is of the label"],
+        "same label as the nearest; by chance: how many would if labels were dealt out at random",
+        ["label", "walks", "same label", "others", "nearest is of the label", "by chance"],
         rows,
     )
 
 
-def _method(metric: str) -> str:
-    return (
-        "Walks were brought in place, looped, registered pair by pair in phase, heading and "
-        f"place, and compared along the path by the metric {metric}. {SCALE_IS_UNKNOWN}"
+def _method(walks: Walks, metric: GroupMetric) -> list[str]:
+    clips = [each.clip for each in walks.clips.values()]
+    bodies = (
+        "All walks are shown on a neutral mannequin of fixed proportions, so that only movements "
+        "differ."
+        if all(clip.attrs.get("retargeted") for clip in clips)
+        else "Each walk has its own body, whose build counts too."
     )
+    every = [set(map(str, clip.marker.values)) for clip in clips]
+    lacking = sorted(set.union(*every) - set.intersection(*every))
+    points = ", ".join(map(in_plain, lacking))
+    said = [f"Left out, as some of the walks lack them: {points}."] if lacking else []
+    return [
+        bodies,
+        "Walks were brought in place, looped, registered pair by pair in phase, heading and "
+        f"place, and compared along the path by the metric {metric.name}.",
+        *said,
+        SCALE_IS_UNKNOWN,
+        WHERE_POINTS_SIT,
+    ]

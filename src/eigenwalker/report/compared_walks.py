@@ -6,21 +6,28 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from eigenwalker.folds import Progress
 from eigenwalker.metric.comparable import comparable_walk
 from eigenwalker.metric.prepared import PreparedClip, prepare
 from eigenwalker.metric.retargeting import retarget
-from eigenwalker.mocap import read_mocap
-from eigenwalker.population import Population
+from eigenwalker.mocap import read_mocap, virtual_markers
+from eigenwalker.population import FLAG, Population, flags_of
+from eigenwalker.quality import assess
 from eigenwalker.report.main_tables import names_of
+from eigenwalker.report.strange_bodies import strangeness
 from eigenwalker.study_table import FILE, listed
 from eigenwalker.walker import Walker
 
 RATE_HZ = 100.0
 """Frames a second at which walkers of a population are played, as the paper's clips were."""
 N_STRIDES = 3
+STRANGE = "strange"
+"""Attribute of a walk that says why it is not itself on the mannequin."""
+MOST_CLASSES = 10
+"""Values of a trait of numbers up to which each is a class."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +42,10 @@ class Walks:
         A class of each walk, such as its style, where one is known.
     refused : dict of str to str
         Why captures could not be used, by name.
+    flagged : dict of str to str
+        What is wrong with walks that are left out for it, by name.
+    remarks : dict of str to str
+        What is to be known of walks that count, by name.
     vectors : dict of str to array
         Walkers of a population as points of its feature space; empty for captures.
 
@@ -43,14 +54,33 @@ class Walks:
     clips: dict[str, PreparedClip]
     labels: dict[str, str] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
+    flagged: dict[str, str] = field(default_factory=dict)
+    remarks: dict[str, str] = field(default_factory=dict)
     vectors: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 def walk_of_capture(
     path: Path, *, mannequin: bool = True, unit: str | None = None, rate_hz: float | None = None
 ) -> xr.DataArray:
-    """Return the steady strides of a capture, ready to be compared (`comparable_walk`)."""
-    return comparable_walk(read_mocap(path, unit=unit, rate_hz=rate_hz), mannequin=mannequin)
+    """Return the steady strides of a capture, ready to be compared (`comparable_walk`).
+
+    Its attributes say what is wrong with the capture (``flag``), and why it is not itself on the
+    mannequin (``strange``); empty if nothing is.
+    """
+    capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
+    own = comparable_walk(capture, mannequin=False)
+    own.attrs[FLAG] = assess(virtual_markers(capture)).flag
+    if not mannequin:
+        return own
+    shown = retarget(own)
+    return shown.assign_attrs({STRANGE: strangeness(own, shown)})
+
+
+def remarks_on(clip: xr.DataArray) -> str:
+    """Return what is to be known of the capture behind a walk, in words; mostly nothing."""
+    flag, strange = clip.attrs.get(FLAG), clip.attrs.get(STRANGE)
+    said = [f"it is flagged: {flag}"] if flag else []
+    return "; ".join([*said, strange] if strange else said)
 
 
 def walk_of_walker(walker: Walker, *, mannequin: bool = True) -> xr.DataArray:
@@ -72,7 +102,7 @@ def walks_of_population(
     Parameters
     ----------
     population : Population
-        Its flagged walkers are named as refused; `Population.trusting_all` counts them too.
+        Its flagged walkers are left out; `Population.trusting_all` counts them too.
     trait : str, optional
         Trait to be the label.
     mannequin : bool
@@ -85,11 +115,13 @@ def walks_of_population(
         raise ValueError(
             f"The population has no trait {trait!r}; it has {list(population.traits.columns)}."
         )
-    names = names_of(population)
-    clips, refused = {}, {}
+    if trait is not None:
+        _refuse_continuous(population.traits[trait])
+    names, flags = names_of(population), flags_of(population.traits)
+    clips, flagged = {}, {}
     for row, (name, walker) in enumerate(zip(names, population.walkers, strict=True)):
         if population.flagged[row]:
-            refused[name] = "flagged; --with-flagged counts it too"
+            flagged[name] = flags[row]
         else:
             clips[name] = prepare(walk_of_walker(walker, mannequin=mannequin))
         if progress is not None:
@@ -99,13 +131,27 @@ def walks_of_population(
         told = population.traits[trait].astype(str)
         labels = {name: label for name, label in zip(names, told, strict=True) if name in clips}
     vectors = {name: row for name, row in zip(names, population.X, strict=True) if name in clips}
-    return Walks(clips, labels, refused, vectors)
+    return Walks(clips, labels, flagged=flagged, vectors=vectors)
+
+
+def _refuse_continuous(values: pd.Series) -> None:
+    """Refuse a trait whose values are no classes, so that walks could be of the same one."""
+    kinds = values.nunique()
+    if pd.api.types.is_bool_dtype(values) or not pd.api.types.is_numeric_dtype(values):
+        return
+    if kinds > MOST_CLASSES or kinds > len(values) / 2:
+        raise ValueError(
+            f"The trait {values.name!r} has {kinds} different numbers in {len(values)} walkers, so "
+            "it has no classes that could be apart; name one that has, or tell it from walks with "
+            "'eigenwalker classify'."
+        )
 
 
 def walks_of_folder(
     folder: Path,
     *,
     trait_from_name: str | None = None,
+    with_flagged: bool = False,
     mannequin: bool = True,
     unit: str | None = None,
     rate_hz: float | None = None,
@@ -119,6 +165,8 @@ def walks_of_folder(
         Where to look.
     trait_from_name : str, optional
         Pattern over names with a named group, which is the label: ``walk_(?P<style>[a-z]+)_``.
+    with_flagged : bool
+        Whether captures count that are flagged (`assess`).
     mannequin, unit, rate_hz
         As in `walk_of_capture`.
     progress : callable, optional
@@ -133,18 +181,22 @@ def walks_of_folder(
     table = listed(folder, None, trait_from_name)
     named = [column for column in table if column != FILE]
     clips: dict[str, PreparedClip] = {}
-    labels, refused = {}, {}
+    labels, refused, flagged, remarks = {}, {}, {}, {}
     for done, row in enumerate(table.to_dict("records"), start=1):
         name = str(row[FILE])
         try:
             walk = walk_of_capture(folder / name, mannequin=mannequin, unit=unit, rate_hz=rate_hz)
-            clips[name] = repeating(walk)
-            labels |= {name: str(row[named[0]])} if named else {}
+            if walk.attrs[FLAG] and not with_flagged:
+                flagged[name] = walk.attrs[FLAG]
+            else:
+                clips[name] = repeating(walk)
+                labels |= {name: str(row[named[0]])} if named else {}
+                remarks |= {name: said} if (said := remarks_on(walk)) else {}
         except (ValueError, OSError) as error:
             refused[name] = str(error)
         if progress is not None:
             progress(done, len(table))
-    return Walks(with_like_rotations(clips), labels, refused)
+    return Walks(with_like_rotations(clips), labels, refused, flagged, remarks)
 
 
 def with_like_rotations(clips: dict[str, PreparedClip]) -> dict[str, PreparedClip]:

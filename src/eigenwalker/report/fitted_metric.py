@@ -22,12 +22,13 @@ from eigenwalker.metric.perceptual import PerceptualMetric
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.report.compared_walks import Walks
 from eigenwalker.report.content import Figure, Items, Report, Section, Table, Text
+from eigenwalker.report.metric_files import WEIGHTS_NAME, write_weights
 from eigenwalker.report.page import write_report
-from eigenwalker.report.two_walks import CITE
+from eigenwalker.report.two_walks import CITE, in_plain
 from eigenwalker.space import WalkerSpace
 
 FITTED = "fitted to these answers"
-WEIGHTS_NAME, PAIRS_NAME = "weights.csv", "pairs.csv"
+PAIRS_NAME = "pairs.csv"
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +148,7 @@ def in_words(found: FittedMetric) -> list[str]:
     """Return what a fit says, in sentences."""
     fitted = found.compared.loc[FITTED]
     most = found.weights.relative.sort_values(ascending=False)
-    parts = [f"{_plain(g)} {share:.2f}" for g, share in most.items() if share >= 0.005]
+    parts = [f"{in_plain(g)} {share:.2f}" for g, share in most.items() if share >= 0.005]
     weighed = ", ".join(parts) if parts else "nothing: no joint group tells anything"
     others = found.compared.drop(index=FITTED).cv_pearson
     said = [
@@ -162,10 +163,6 @@ def in_words(found: FittedMetric) -> list[str]:
     if others.notna().any():
         said.append(f"Best of the others is {others.idxmax()}, r = {others.max():.2f}.")
     return said
-
-
-def _plain(group: object) -> str:
-    return str(group).replace("_", " ")
 
 
 def write_fitted_metric(folder: str | Path, found: FittedMetric) -> Path:
@@ -184,7 +181,7 @@ def write_fitted_metric(folder: str | Path, found: FittedMetric) -> Path:
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    found.weights.to_csv(folder / WEIGHTS_NAME)
+    write_weights(folder / WEIGHTS_NAME, found.weights, found.name)
     found.pairs.to_csv(folder / PAIRS_NAME)
     sections = [
         Section("Weights", [_weights_drawn(found), _weights_table(found)]),
@@ -202,14 +199,14 @@ def _weights_drawn(found: FittedMetric) -> Figure:
         figure_weights(names, table.relative, table.relative_low, table.relative_high),
         "How much each joint group weighs, relative to the others; lines hold 95 of 100 samples of "
         "other observers and walkers.",
-        "; ".join(f"{_plain(group)} {row.relative:.2f}" for group, row in table.iterrows()),
+        "; ".join(f"{in_plain(group)} {row.relative:.2f}" for group, row in table.iterrows()),
     )
 
 
 def _weights_table(found: FittedMetric) -> Table:
     rows = [
         [
-            _plain(group),
+            in_plain(group),
             float(row.weight),
             float(row.relative),
             f"{row.relative_low:.2f} to {row.relative_high:.2f}",
@@ -257,6 +254,9 @@ def _method(found: FittedMetric) -> list[str]:
         "Intervals are of 1000 samples of observers and walkers, drawn with replacement. Joints "
         "that go together, such as sternum and shoulders, can take each other's weight: their sum "
         "is surer than either.",
+        "Pairs that are called unseen are of walkers to whose other pairs no weight was fitted. "
+        "But a trial shows four walkers, so that other pairs' differences come in part from trials "
+        "that showed these walkers too.",
         "The ceiling is the square root of the answers' reliability (split-half, Spearman and "
         "Brown).",
     ]

@@ -2,41 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
-import xarray as xr
 
-from eigenwalker.datasets import load_population
-from eigenwalker.display.difference_maps import (
-    MapPicture,
-    figure_maps,
-    figure_shares,
-    figure_two_walks,
-    picture_of_strides,
-)
-from eigenwalker.folds import Progress
-from eigenwalker.metric.comparison import PLAIN, Comparison, by_metric, share_nearer
+from eigenwalker.display.difference_maps import figure_shares, figure_two_walks
+from eigenwalker.metric.clip_distances import clip_distance
+from eigenwalker.metric.comparison import Comparison
 from eigenwalker.metric.loops import Loop, loop
-from eigenwalker.metric.motion_maps import motion_map
-from eigenwalker.metric.prepared import PreparedClip
 from eigenwalker.metric.published import GroupMetric
-from eigenwalker.metric.transitions import find_transitions
-from eigenwalker.report.compared_walks import Walks, walks_of_population, without_rotations
+from eigenwalker.report.compared_walks import remarks_on
 from eigenwalker.report.content import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.page import write_report
+from eigenwalker.report.simulated_pairs import SimulatedPairs, own_spread
+from eigenwalker.report.two_walks_maps import map_of_loop_and_pair, maps_of_components, passing
 
-SHOWN_S = 4.0
-"""Seconds of either walk on a map: a few strides."""
-MAP_HZ = 60.0
-"""Frames a second of the maps that are drawn."""
-MOST_TRANSITIONS = 8
-_UNITS = {"positions": "mm", "velocities": "mm/s", "angles": "rad"}
 CITE = (
-    "Prazak, M., McDonnell, R., Kavan, L., & O'Sullivan, C. (2010). A perception based metric for "
+    "Pražák, M., McDonnell, R., Kavan, L., & O'Sullivan, C. (2010). A perception based metric for "
     "comparing human locomotion. Computer Animation and Social Agents."
 )
 SCALE_IS_UNKNOWN = (
@@ -47,38 +29,18 @@ SCALE_IS_UNKNOWN = (
 )
 
 
-def reference_pairs(
-    metrics: Sequence[str], *, mannequin: bool = True, progress: Progress | None = None
-) -> pd.DataFrame:
-    """Return the distances of all pairs of the built-in, simulated people by each metric.
-
-    Something to hold a number against: how different people are from each other who all walk at
-    their own pace. They are simulated, so it is no norm.
-
-    Parameters
-    ----------
-    metrics : sequence of str
-        Names of published metrics.
-    mannequin : bool
-        Whether they too are shown on the neutral mannequin.
-    progress : callable, optional
-        Called with the number of metrics that are done, and of all.
-
-    Returns
-    -------
-    DataFrame of pairs by metrics
-
-    """
-    return by_metric(_simulated_people(mannequin).clips, metrics, progress=progress)
-
-
-@cache
-def _simulated_people(mannequin: bool) -> Walks:
-    return walks_of_population(load_population(), mannequin=mannequin)
+WHERE_POINTS_SIT = (
+    "Captures of different marker sets also differ by where their points sit on the body, joint "
+    "angles most of all: compare like with like where you can."
+)
+NO_PERCENTAGE_OF_ANGLES = (
+    "Joint angles get no percentage: they depend on where the points of a capture sit, in the "
+    "joints, as those of simulated people, or on the skin."
+)
 
 
 def write_two_walks(
-    folder: str | Path, found: Comparison, names: tuple[str, str], reference: pd.DataFrame
+    folder: str | Path, found: Comparison, names: tuple[str, str], reference: SimulatedPairs
 ) -> Path:
     """Write a report on two walks and return its page.
 
@@ -90,8 +52,8 @@ def write_two_walks(
         Of walks that repeat.
     names : tuple of str
         What they are called.
-    reference : DataFrame of pairs by metrics
-        Distances of other pairs, as `reference_pairs` gives them.
+    reference : SimulatedPairs
+        By all metrics that the report is to tell.
 
     Returns
     -------
@@ -100,19 +62,19 @@ def write_two_walks(
     """
     sections = [
         Section("How different", _how_different(found, names, reference)),
-        Section("Where", _where(found, names)),
-        Section("Motion maps", [_map_of_loop_and_pair(found, names), _components(found, names)]),
-        Section("From one walk into the other", _passing(found, names)),
+        Section("Where", _where(found)),
+        Section(
+            "Motion maps", [map_of_loop_and_pair(found, names), maps_of_components(found, names)]
+        ),
+        Section("From one walk into the other", passing(found, names)),
         Section("How this was done", [Items(_method(found)), Text(CITE)]),
     ]
-    title = f"{names[0]} and {names[1]}"
-    return write_report(
-        folder, Report(title, " ".join(in_words(found, names, reference)), sections)
-    )
+    lead = " ".join([*in_words(found, names, reference), *remarks_on_both(found, names)])
+    return write_report(folder, Report(f"{names[0]} and {names[1]}", lead, sections))
 
 
 def in_words(
-    found: Comparison, names: tuple[str, str], reference: pd.DataFrame | None = None
+    found: Comparison, names: tuple[str, str], reference: SimulatedPairs | None = None
 ) -> list[str]:
     """Return what a comparison says, in sentences.
 
@@ -121,20 +83,14 @@ def in_words(
     found : Comparison
     names : tuple of str
         What the walks are called.
-    reference : DataFrame of pairs by metrics, optional
-        Distances of other pairs.
+    reference : SimulatedPairs, optional
+        Pairs to hold the number against.
 
     """
-    name = found.metric.name if isinstance(found.metric, GroupMetric) else "distance"
-    number = f"Difference ({name}): {found.distance:.4g}"
-    if reference is not None and name in reference and not _by_rotations(found):
-        nearer = share_nearer(found.distance, reference[name].to_numpy())
-        number += f", more than between {nearer:.0%} of pairs of 40 simulated people".replace(
-            "%", " %"
-        )
     apart = found.groups.mean()
     said = [
-        f"{number}.",
+        f"{_number(found, reference)}.",
+        *_spreads(found, names),
         f"Joints are {apart.positions_mm:.0f} mm apart in the mean of joint groups, their "
         f"velocities {apart.velocities_mm_s:.0f} mm/s, joint angles {apart.angles_deg:.1f} "
         "degrees.",
@@ -142,40 +98,85 @@ def in_words(
     if found.shares.isna().any():
         return [*said, "They do not differ in anything that the metric weighs."]
     most = found.shares.sort_values(ascending=False)
-    parts = [f"{_plain(g)} {100 * share:.0f} %" for g, share in most.items() if share > 0.005]
+    parts = [f"{in_plain(g)} {100 * share:.0f} %" for g, share in most.items() if share > 0.005]
     said.append(f"Of the difference are {', '.join(parts)}.")
     if found.left_out:
-        groups = ", ".join(_plain(group) for group in found.left_out)
+        groups = ", ".join(in_plain(group) for group in found.left_out)
         said.append(f"The metric weighs {groups} too, which the walks do not show.")
     return said
 
 
-def _by_rotations(found: Comparison) -> bool:
-    """Whether the distance is of captured rotations, which the reference has not."""
-    return found.metric.by == "angles" and "rotation" in found.a.clip.coords
+def remarks_on_both(found: Comparison, names: tuple[str, str]) -> list[str]:
+    """Return what is to be known of the two captures, in sentences: flags, and strange bodies."""
+    remarks = [remarks_on(each.clip) for each in (found.a, found.b)]
+    return [
+        f"Mind {name}: {said.rstrip('.')}."
+        for name, said in dict(zip(names, remarks, strict=True)).items()
+        if said
+    ]
 
 
-def _plain(group: object) -> str:
+def in_plain(group: object) -> str:
+    """Return a joint group in words."""
     return str(group).replace("_", " ")
 
 
-def _how_different(
-    found: Comparison, names: tuple[str, str], reference: pd.DataFrame
-) -> list[Block]:
-    pair = without_rotations({"a": found.a, "b": found.b})
-    ours = by_metric(pair, [str(metric) for metric in reference]).iloc[0]
-    rows = [
-        [metric, float(value), f"{100 * share_nearer(value, reference[metric].to_numpy()):.0f} %"]
-        for metric, value in ours.items()
+def _number(found: Comparison, reference: SimulatedPairs | None) -> str:
+    name = found.metric.name if isinstance(found.metric, GroupMetric) else "distance"
+    number = f"Difference ({name}): {found.distance:.4g}"
+    placed = None if reference is None else reference.place(found.a, found.b, name)
+    if reference is None or placed is None:
+        return number
+    by_joints, nearer = placed
+    if abs(by_joints - found.distance) > 0.005 * found.distance:
+        number += f"; without hands and feet {by_joints:.4g}"
+    return (
+        f"{number}, more than between {100 * nearer:.0f} % of pairs of {reference.n_people} "
+        "simulated people"
+    )
+
+
+def _spreads(found: Comparison, names: tuple[str, str]) -> list[str]:
+    """Return how different each walk is from itself."""
+    if not isinstance(found.metric, GroupMetric) or not found.distance > 0:
+        return []
+    spreads = [own_spread(each, found.metric) for each in (found.a, found.b)]
+    told = [
+        f"{spread:.3g} ({name})"
+        for name, spread in zip(names, spreads, strict=True)
+        if np.isfinite(spread)
     ]
+    if not told:
+        return ["Neither has strides enough to tell how much it differs from itself."]
+    known = f"First and last strides of one capture differ by {' and '.join(told)}"
+    if found.distance <= np.nanmax(spreads):
+        return [f"{known}, which is no less: these two cannot be told apart."]
+    return [f"{known}."]
+
+
+def _how_different(
+    found: Comparison, names: tuple[str, str], reference: SimulatedPairs
+) -> list[Block]:
+    rows, differ = [], False
+    for name, metric in reference.metrics.items():
+        distance = clip_distance(found.a, found.b, metric=metric)
+        placed = reference.place(found.a, found.b, name)
+        by_joints, share = (None, None) if placed is None else placed
+        differ |= by_joints is not None and abs(by_joints - distance) > 0.005 * distance
+        rows.append([name, distance, by_joints, None if share is None else f"{100 * share:.0f} %"])
+    columns = ["metric", "distance", "by joints alone", "pairs that differ less"]
+    if not differ:
+        columns.pop(2)
+        rows = [[row[0], row[1], row[3]] for row in rows]
+    alone = " by joints alone, without hands and feet, which those have not" if differ else ""
     table = Table(
         "The nine metrics of the paper's figure 5, and those of Lee and Kovar, each on a scale of "
-        "its own; and the share of pairs of 40 simulated people that differ less. Joint angles are "
-        "from positions here, as those people have no captured rotations",
-        ["metric", "distance", "pairs that differ less"],
+        f"its own; and the share of pairs of {reference.n_people} simulated people that differ "
+        f"less{alone}",
+        columns,
         rows,
     )
-    return [_bodies(found, names), table, Text(SCALE_IS_UNKNOWN)]
+    return [_bodies(found, names), table, Text(NO_PERCENTAGE_OF_ANGLES), Text(SCALE_IS_UNKNOWN)]
 
 
 def _bodies(found: Comparison, names: tuple[str, str]) -> Figure:
@@ -189,10 +190,10 @@ def _bodies(found: Comparison, names: tuple[str, str]) -> Figure:
     )
 
 
-def _where(found: Comparison, names: tuple[str, str]) -> list[Block]:
+def _where(found: Comparison) -> list[Block]:
     groups = found.groups
     rows = [
-        [_plain(group), *map(float, row)]
+        [in_plain(group), *map(float, row)]
         for group, row in zip(groups.index, groups.values, strict=True)
     ]
     table = Table(
@@ -207,120 +208,9 @@ def _where(found: Comparison, names: tuple[str, str]) -> list[Block]:
     drawn = Figure(
         figure_shares(shares),
         "How much each joint group makes of the difference, as the metric weighs it.",
-        "Bars: " + ", ".join(f"{_plain(g)} {100 * share:.0f} %" for g, share in shares.items()),
+        "Bars: " + ", ".join(f"{in_plain(g)} {100 * share:.0f} %" for g, share in shares.items()),
     )
     return [drawn, table]
-
-
-def _map_of_loop_and_pair(found: Comparison, names: tuple[str, str]) -> Figure:
-    """Figure 1: the self map with its period, the map of the pair with the blending line."""
-    clip = found.a.clip
-    looped = loop(clip)
-    return Figure(
-        figure_maps([_self_picture(clip, looped, names[0]), _pair_picture(found, names)]),
-        "Dark where frames are alike. Left: the walk and itself; a period (blue) and the line at "
-        "45 degrees along which two periods are blended into a loop (red). Right: two strides of "
-        "either walk; a period (blue), and the moments that correspond (red).",
-        f"Motion map of {names[0]} with itself, and with {names[1]}.",
-    )
-
-
-def _self_picture(clip: xr.DataArray, looped: Loop, name: str) -> MapPicture:
-    start, period = looped.start_s, looped.period_s
-    shown = _shown(clip, max(SHOWN_S, start - float(clip.time[0]) + 2 * period))
-    cells = motion_map(shown)
-    line = np.array([[start, start + period], [start + period, start + 2 * period]])
-    return MapPicture(
-        cells.values,
-        cells.time_a.values,
-        cells.time_b.values,
-        "the first walk and itself",
-        "mm",
-        path=line,
-        period=(start, start, period, period),
-        names=(name, name),
-    )
-
-
-def _pair_picture(found: Comparison, names: tuple[str, str]) -> MapPicture:
-    registered = found.registration
-    a, b = (registered.map[clock].values for clock in ("time_a", "time_b"))
-    title = "the first walk and the second"
-    return picture_of_strides(registered.map.values, a, b, registered.times, title, names=names)
-
-
-def _components(found: Comparison, names: tuple[str, str]) -> Figure:
-    """Figure 6: the map of each component."""
-    registered = found.registration
-    pictures = []
-    for by, metric in PLAIN.items():
-        cells = motion_map(registered.first, _lain_over(found), metric=metric)
-        values = np.rad2deg(cells.values) if by == "angles" else cells.values
-        pictures.append(
-            MapPicture(
-                values,
-                cells.time_a.values,
-                cells.time_b.values,
-                by,
-                "deg" if by == "angles" else _UNITS[by],
-                names=names,
-            )
-        )
-    return Figure(
-        figure_maps(pictures, n_columns=3),
-        "A stride of either walk, compared by positions, by velocities and by joint angles: each "
-        "has a pattern of its own.",
-        "Three motion maps: positions, velocities, angles.",
-    )
-
-
-def _lain_over(found: Comparison) -> xr.DataArray:
-    """The second walk turned and moved as it was registered on the whole."""
-    registered = found.registration
-    whole = registered.alignment.angles[:1], registered.alignment.shifts[:1]
-    turned = type(registered.alignment)(*whole).apply(registered.second.values)
-    return registered.second.copy(data=turned)
-
-
-def _passing(found: Comparison, names: tuple[str, str]) -> list[Block]:
-    a, b = _shown(found.a.clip, SHOWN_S), _shown(found.b.clip, SHOWN_S)
-    cells = motion_map(a, b, align=True, window_s=1 / 3)
-    passes = find_transitions(a, b)
-    best = passes.head(MOST_TRANSITIONS)
-    marks = best[["time_a", "time_b"]].to_numpy() if len(best) else None
-    picture = MapPicture(
-        cells.values,
-        cells.time_a.values,
-        cells.time_b.values,
-        "in the mean of a third of a second",
-        "mm",
-        marks=marks,
-        names=names,
-    )
-    drawn = Figure(
-        figure_maps([picture]),
-        "Rings mark moments at which one walk can pass into the other and a viewer would hardly "
-        "see it: minima of the map that are no more than what moves in a tenth of a second.",
-        f"Motion map of {names[0]} and {names[1]}, with {len(best)} rings.",
-    )
-    if not len(best):
-        return [drawn, Text("There is no moment at which one could pass into the other unseen.")]
-    rows = [list(map(float, row)) for row in best.to_numpy()]
-    table = Table(
-        f"The best of {len(passes)} transitions in the seconds shown, and how the second walk is "
-        "to be turned and moved",
-        ["from first (s)", "into second (s)", "apart (mm)", "turn (deg)", "x (mm)", "y (mm)"],
-        rows,
-    )
-    return [drawn, table]
-
-
-def _shown(clip: xr.DataArray, length_s: float) -> xr.DataArray:
-    """The first seconds of a clip at the rate of maps."""
-    time = clip.time.values
-    n_frames = int(min(time[-1] - time[0], length_s) * MAP_HZ)
-    clock = time[0] + np.arange(n_frames) / MAP_HZ
-    return clip.drop_vars("rotation", errors="ignore").interp(time=clock)
 
 
 def _method(found: Comparison) -> list[str]:
@@ -330,15 +220,29 @@ def _method(found: Comparison) -> list[str]:
         if found.a.clip.attrs.get("retargeted")
         else "Each walk has its own body, whose build counts too."
     )
-    return [
+    loops = [loop(each.clip) for each in (found.a, found.b)]
+    seams = " and ".join(f"{each.seam_mm:.0f}" for each in loops)
+    said = [
         bodies,
-        "The steady strides are brought in place, two periods blended into a loop, and the loops "
-        "registered in phase, heading and place; a path through their motion map tells which "
-        "moments correspond. The difference is the mean along that path.",
-        f"Seam of the loops: {_seam(found.a):.0f} and {_seam(found.b):.0f} mm before blending.",
-        "Joints that one of the walks lacks are left out.",
+        f"The steady strides are brought in place, {_looped(loops)}, and the loops registered in "
+        "phase, heading and place; a path through their motion map tells which moments "
+        "correspond. The difference is the mean along that path.",
+        f"Seam of the loops: {seams} mm before they were closed.",
+        "Angles are of captured rotations, which both captures have."
+        if all("rotation" in each.clip.coords for each in (found.a, found.b))
+        else "Angles are of positions.",
     ]
+    markers = [set(map(str, each.clip.marker.values)) for each in (found.a, found.b)]
+    if lacking := sorted(markers[0] ^ markers[1]):
+        points = ", ".join(in_plain(name) for name in lacking)
+        said.append(f"Left out, as one of the walks lacks them: {points}.")
+    return [*said, WHERE_POINTS_SIT]
 
 
-def _seam(prepared: PreparedClip) -> float:
-    return loop(prepared.clip).seam_mm
+def _looped(loops: list[Loop]) -> str:
+    """Return in words how strides became loops."""
+    if all(each.n_periods > 1 for each in loops):
+        return "two periods blended into a loop"
+    if any(each.n_periods > 1 for each in loops):
+        return "two periods blended into a loop, or the one stride that there is closed"
+    return "the one stride that there is closed into a loop"
