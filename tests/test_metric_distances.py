@@ -153,6 +153,7 @@ def test_progress_counts_clips_and_pairs():
     assert [done for done, _ in told] == sorted(done for done, _ in told)
 
 
+@pytest.mark.filterwarnings("ignore:All clips are compared from end to end")
 @pytest.mark.parametrize("by", ["positions", "velocities"])
 def test_actions_that_do_not_repeat_are_compared_from_end_to_end(by):
     a, b = some_action(0), some_action(1)
@@ -179,6 +180,22 @@ def test_one_clip_that_does_not_repeat_makes_all_be_compared_from_end_to_end():
     assert table.loc["walk", "action"] > 50
 
 
+def test_it_is_said_when_no_clip_repeats_and_why():
+    with pytest.warns(UserWarning, match=r"'a', 'b'.* do not repeat: .* No strides are compared"):
+        clip_distance(some_action(0), some_action(1))
+
+
+def test_only_that_nothing_repeats_makes_clips_be_compared_from_end_to_end(monkeypatch):
+    """Another refusal is none that may be passed over in silence."""
+
+    def refuse(clip):
+        raise ValueError("The markers are upside down.")
+
+    monkeypatch.setattr("eigenwalker.metric.prepared.loop", refuse)
+    with pytest.raises(ValueError, match="upside down"):
+        clip_distance(some_walk(1), some_walk(2))
+
+
 def test_a_short_gap_is_no_obstacle():
     walk, other = some_walk(1), some_walk(2)
     seen_badly = walk.copy()
@@ -199,6 +216,7 @@ def test_a_long_gap_is_told_with_its_marker():
         clip_distance(walk, some_walk(2))
 
 
+@pytest.mark.filterwarnings("ignore:All clips are compared from end to end")
 @pytest.mark.parametrize(
     ("clips", "told"),
     [

@@ -11,6 +11,11 @@ import xarray as xr
 from eigenwalker.gait.harmonics import share_explained
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
+
+class NoStrideError(ValueError):
+    """Nothing in a clip repeats as strides do, or it is too short for one."""
+
+
 BOUNDS_HZ = (0.3, 2.0)
 """Strides a second that are looked for: from the slowest patient to a sprint."""
 
@@ -146,12 +151,12 @@ def frequency_of_centred(
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")
     lowest = max(bounds_hz[0], _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
     if n_frames < 8 or lowest >= 0.9 * bounds_hz[1]:
-        raise ValueError(
+        raise NoStrideError(
             f"The part that could be used lasts {n_frames / rate_hz:.3g} s, too short for "
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
         )
     if not np.vdot(centred, centred) > n_frames * least**2:
-        raise ValueError("Nothing moves here, so there is no stride frequency.")
+        raise NoStrideError("Nothing moves here, so there is no stride frequency.")
     block = max(1, int(rate_hz / _COARSE_RATE_HZ))
     n_blocks = n_frames // block
     blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.gait.frequency import NoStrideError
 from eigenwalker.gait.gaps import Gap, runs_of
 from eigenwalker.gait.steady import SteadyPart, body_relative, steady_part
 from eigenwalker.gait.turning import (
@@ -108,7 +109,7 @@ def _steady_run(
             parts.append(part._replace(start=start + part.start, stop=start + part.stop))
     parts = [part for part in parts if part.strides(rate_hz) >= FEWEST_STRIDES]
     if not parts:
-        raise ValueError(_no_stride(walk, gaps, complaints))
+        raise NoStrideError(_no_stride(walk, gaps, complaints))
     best = max(parts, key=lambda part: part.strides(rate_hz))
     seen = np.atleast_1d(np.isfinite(positions).any(axis=(1, 2)))
     if within := _gaps_within(best, parts, gaps, rate_hz, seen):

@@ -53,13 +53,14 @@ def compared_pairs(
 
 
 def _tell_of_actions(still: list[str], prepared: Mapping[str, PreparedClip]) -> None:
-    """Warn where clips that repeat are compared like those that do not."""
-    if len(still) < len(prepared):
-        warnings.warn(
-            f"All clips are compared from end to end, as {still[:6]} do not repeat: "
-            f"{prepared[still[0]].complaint} Leave them out to compare strides.",
-            stacklevel=4,
-        )
+    """Warn that not strides are compared, but clips from beginning to end."""
+    rest = len(prepared) - len(still)
+    advice = "Leave them out to compare strides." if rest >= 2 else "No strides are compared."
+    warnings.warn(
+        f"All clips are compared from end to end, as {still[:6]} do not repeat: "
+        f"{prepared[still[0]].complaint} {advice}",
+        stacklevel=4,
+    )
 
 
 class _Steps:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from eigenwalker.gait import in_place
-from eigenwalker.gait.frequency import BOUNDS_HZ
+from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.steady import closes, closing_step
 from eigenwalker.metric.turns_between import between, quaternions_at, vectors_of
 from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
@@ -112,7 +112,8 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
     Raises
     ------
     ValueError
-        If there is less than one period, or nothing repeats.
+        If something is amiss with the clip; its subclass `NoStrideError` if there is less than one
+        period, or nothing repeats.
 
     Examples
     --------
@@ -125,7 +126,7 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
     clip = check_trajectories(clip, complete=already_in_place)
     rate_hz = sampling_rate(clip)
     if clip.sizes["time"] < _FEWEST_FRAMES or rate_hz < _LEAST_RATE_HZ:
-        raise ValueError(
+        raise NoStrideError(
             f"{clip.sizes['time']} frames at {rate_hz:.3g} a second are too few to see a stride; a "
             f"loop needs {_FEWEST_FRAMES} or more at {_LEAST_RATE_HZ:.0f} a second or more."
         )
@@ -136,7 +137,7 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
         return _blended(walk, period, rate_hz)
     if walk.attrs.get("n_strides") == 1 or (len(movement) > 2 and closes(movement)):
         return _closed(walk, rate_hz)
-    raise ValueError(
+    raise NoStrideError(
         f"Nothing repeats in these {len(movement) / rate_hz:.3g} s: no two postures some time "
         f"apart, from {1 / BOUNDS_HZ[1]:.2g} s to half the clip, are alike throughout. A loop "
         "needs two periods of one action."

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from eigenwalker.gait.frequency import NoStrideError
 from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.loops import loop
@@ -72,7 +73,7 @@ def prepare(clip: Clip) -> PreparedClip:
         raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
     try:
         return PreparedClip(clip, common_clock(loop(clip)))
-    except ValueError as error:
+    except NoStrideError as error:
         filled, gaps = fill_short_gaps(clip.values, rate_hz)
         if gaps:
             raise
