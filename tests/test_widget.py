@@ -214,7 +214,7 @@ LIGHT = """() => {
 def test_hand_and_python_move_the_same_walker(people, browser, tmp_path):
     page = opened(browser, show(people, playing=False), tmp_path)
     page.wait_for_function(f"({LIGHT})() > 100")
-    slider = page.get_by_label("sex: from female to male")
+    slider = page.get_by_label("sex: from woman to man")
     slider.press("Home")
     page.wait_for_function("window.saved.alpha?.sex === -6")
     page.evaluate("window.model.set('alpha', { sex: 2.5 })")

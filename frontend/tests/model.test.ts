@@ -235,7 +235,7 @@ describe("words", () => {
     expect(captionOf(model, initialState(model))).toBe("The average walker, from 30 degrees.");
     const state = chosen({ traits: { sex: -3 }, strengths: [1, 2, 1, 1], transforms: { invert: {} } });
     expect(captionOf(model, { ...state, azimuth_deg: 90 })).toBe(
-      "The average walker, 3 SD towards female, sway times 2, from the side, upside down.",
+      "The average walker, 3 SD towards woman, sway times 2, from the side, upside down.",
     );
   });
 

@@ -22,10 +22,10 @@ export function label(element: HTMLElement, cast: readonly Cast[], boxes: readon
   element.replaceChildren(...names);
 }
 
-/** "female tripled" as "women × 3". */
+/** "woman tripled" as "women × 3". */
 function inWords(name: string): string {
   const [first = "", ...others] = name.split(" ");
-  const people = many({ female: "woman", male: "man" }[first] ?? first);
+  const people = many(first);
   if (people.endsWith(" walkers") || /^\d+$/.test(others[0] ?? "")) return name;
   return [people, ...others].join(" ").replace("tripled", "\u00d7 3");
 }

@@ -77,7 +77,7 @@ export class Notices {
     const more = sentences.length - MOST_SENTENCES;
     const said = [...sentences.slice(0, MOST_SENTENCES), ...(more > 0 ? [`And ${more} more of the kind.`] : [])];
     const paragraphs = said.map((sentence) => make("p", {}, sentence));
-    const notice = make("div", { class: kind }, make("div", {}, ...paragraphs), close);
+    const notice = make("div", { class: `${kind} lasting` }, make("div", {}, ...paragraphs), close);
     close.addEventListener("click", () => this.#remove(notice));
     return notice;
   }

@@ -1,16 +1,11 @@
 /** What traits, their poles and walkers are called on the page. */
 
 import type { KnownWalker, Model, Trait } from "../model/model";
+import { ends } from "../model/poles";
 
-const SEXES: Readonly<Record<string, string>> = { female: "woman", male: "man", f: "woman", m: "man" };
+export { ends };
+
 const MANY: Readonly<Record<string, string>> = { woman: "women", man: "men" };
-
-/** The two ends of a trait, as they stand beside a slider. */
-export function ends({ label, negative, positive }: Trait): readonly [string, string] {
-  const names = /^(sex|gender)$/i.test(label) ? SEXES : {};
-  const name = (pole: string): string => names[pole.toLowerCase()] ?? pole;
-  return [name(negative), name(positive)];
-}
 
 /** Those who are at one end of a trait: "women", "heavy walkers". */
 export const many = (end: string): string => MANY[end] ?? `${end} walkers`;

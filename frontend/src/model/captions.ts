@@ -3,6 +3,7 @@
 import { AVERAGE, comparedIn, nameOf } from "./cast";
 import { traitOf } from "./mix";
 import type { Model, Own } from "./model";
+import { ends } from "./poles";
 import { MOST_IN_CROWD, MOST_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
 
 /** Moler's names of the components (M4). */
@@ -36,7 +37,7 @@ function whoIsSeen(model: Model, state: State, own: Own | null): string {
   const [side, crowd] = [Math.min(state.walkers.length, MOST_SIDE_BY_SIDE), Math.min(model.walkers.length, MOST_IN_CROWD)];
   const trait = comparedIn(model, state);
   if (state.scene === "four" && trait) {
-    return `The mean ${trait.negative} and the mean ${trait.positive} walker, and both with their difference tripled`;
+    return `The mean ${ends(trait).join(" and the mean ")}, and both with their difference tripled`;
   }
   if (state.scene === "side") return `${side} walkers at one tempo`;
   if (state.scene === "crowd") return `${crowd} walkers`;
@@ -48,7 +49,7 @@ function changes(model: Model, state: State): string[] {
   const traits = Object.entries(state.traits).flatMap(([name, steps]) => {
     const trait = traitOf(model, name);
     if (!trait || steps === 0) return [];
-    return [`${plain(Math.abs(steps))} SD towards ${steps > 0 ? trait.positive : trait.negative}`];
+    return [`${plain(Math.abs(steps))} SD towards ${ends(trait)[Number(steps > 0)]}`];
   });
   const strengths = state.strengths.flatMap((strength, i) =>
     strength === 1 ? [] : [`${componentName(i)} times ${plain(strength)}`],
@@ -59,7 +60,7 @@ function changes(model: Model, state: State): string[] {
 function biased(model: Model, { bias }: State): string[] {
   const trait = bias ? traitOf(model, bias.trait) : undefined;
   if (!bias || !trait || bias.steps === 0) return [];
-  return [`bias ${plain(Math.abs(bias.steps))} towards ${bias.steps > 0 ? trait.positive : trait.negative}`];
+  return [`bias ${plain(Math.abs(bias.steps))} towards ${ends(trait)[Number(bias.steps > 0)]}`];
 }
 
 function viewed({ azimuth_deg, elevation_deg }: State): string {

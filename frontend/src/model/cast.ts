@@ -3,6 +3,7 @@
 import type { Walker } from "../core/stimulus";
 import { traitOf, vectorOf } from "./mix";
 import type { Model, Numbers, Own, Trait } from "./model";
+import { ends } from "./poles";
 import { MOST_IN_CROWD, MOST_SIDE_BY_SIDE, type SceneName, type State } from "./state";
 import { walkerOf } from "./walker";
 
@@ -59,9 +60,10 @@ function four(model: Model, state: State): Cast[] {
   const trait = comparedIn(model, state);
   if (!trait?.means) return [];
   const { negative, positive } = trait.means;
+  const [low, high] = ends(trait);
   const panels = ([["", 1], ["tripled", 3]] as const).flatMap(([word, times]) => [
-    [`${trait.negative} ${word}`, mean(negative, positive, -times)] as const,
-    [`${trait.positive} ${word}`, mean(negative, positive, times)] as const,
+    [`${low} ${word}`, mean(negative, positive, -times)] as const,
+    [`${high} ${word}`, mean(negative, positive, times)] as const,
   ]);
   return panels.map(([name, vector]) => member(model, name.trim(), alone(model, state, vector)));
 }

@@ -1,6 +1,7 @@
 /** Sliders of the traits below the walker, a button that stops it, and one that puts all back. */
 
 import type { Model, Trait } from "../model/model";
+import { ends } from "../model/poles";
 import { RANGES, type State } from "../model/state";
 
 export interface Controls {
@@ -53,15 +54,17 @@ function button(words: string, pressed: () => void): HTMLButtonElement {
 
 /** From one pole of a trait to the other; a double click puts it in the middle. */
 function slider(
-  { name, negative, positive }: Trait,
+  trait: Trait,
   moved: (alpha: number) => void,
 ): TraitSlider {
+  const { name } = trait;
+  const [left, right] = ends(trait);
   const input = document.createElement("input");
   const [low, high] = RANGES.trait;
   Object.assign(input, { type: "range", min: String(low), max: String(high), step: "0.1", value: "0" });
-  input.setAttribute("aria-label", `${name}: from ${negative} to ${positive}`);
+  input.setAttribute("aria-label", `${name}: from ${left} to ${right}`);
   const number = document.createElement("output");
-  const [from, to] = [negative, positive].map((words) => {
+  const [from, to] = [left, right].map((words) => {
     const end = document.createElement("span");
     end.textContent = words;
     return end;
