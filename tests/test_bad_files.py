@@ -56,6 +56,7 @@ def test_what_is_bad_is_said(bad, tmp_path) -> None:
     assert re.search(bad.said, said), said
     assert len(said) < 2000
     assert said.isprintable()
+    assert not re.search(r"(^|[ (\[=])b['\"]", said)
     assert said.rstrip().endswith(".")
 
 

@@ -202,3 +202,25 @@ def test_no_one_can_change_the_table_by_accident(people) -> None:
 def test_as_many_traits_as_walkers_are_asked_for(people) -> None:
     with pytest.raises(ValueError, match="12 walkers and 11 rows"):
         Population(people.walkers, people.traits.iloc[:11])
+
+
+@pytest.mark.parametrize(
+    ("content", "came"),
+    [
+        (b"\x89HDF\r\n\x1a\n" + bytes(99), "a NetCDF-4 or HDF5 file"),
+        (None, "a NetCDF file that holds no walkers of eigenwalker"),
+        (b"Dear colleague", 'a text that begins with "Dear colleague"'),
+    ],
+)
+def test_what_is_no_population_is_called_what_it_is(tmp_path, content, came):
+    path = tmp_path / "weather.nc"
+    if content is None:
+        xr.Dataset({"t2m": ("time", np.zeros(3))}).to_netcdf(path, engine="scipy")
+    else:
+        path.write_bytes(content)
+    with pytest.raises(UnreadableFile) as refusal:
+        Population.load(path)
+    assert str(refusal.value) == (
+        f"weather.nc: expected a population file, but got {came}; make one with 'eigenwalker fit' "
+        "or Population.save."
+    )

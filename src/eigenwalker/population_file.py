@@ -21,6 +21,7 @@ import xarray as xr
 import eigenwalker
 from eigenwalker.correspondence import Correspondence, Reference
 from eigenwalker.mocap.content import content_of
+from eigenwalker.mocap.kinds import kind_of
 from eigenwalker.mocap.netcdf import dataset_of, looks_like_netcdf
 from eigenwalker.mocap.unreadable import UnreadableFile
 from eigenwalker.trajectories import AXES
@@ -106,11 +107,11 @@ def read_population(path: Path) -> Stored:
     """
     content = content_of(path, expected=_EXPECTED)
     if not looks_like_netcdf(content):
-        came = f"a file that begins with {content[:16]!r}"
-        raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
+        raise UnreadableFile(path.name, _EXPECTED, kind_of(content), _MAKE)
     dataset = dataset_of(content, path.name, expected=_EXPECTED)
-    if str(found := dataset.attrs.get("format")) != FORMAT:
-        raise UnreadableFile(path.name, _EXPECTED, f"NetCDF of format {found!r}", _MAKE)
+    if str(dataset.attrs.get("format")) != FORMAT:
+        came = "a NetCDF file that holds no walkers of eigenwalker"
+        raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
     if str(version := dataset.attrs.get("format_version")) != str(VERSION):
         raise UnreadableFile(
             path.name,

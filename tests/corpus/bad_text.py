@@ -57,7 +57,8 @@ def cut_short() -> list[BadFile]:
     found = []
     for kind in TEXT:
         within = (
-            "cells|numbers|cut short|frames|columns|bones|lines|MOTION|as it is called|name|count"
+            "cells|numbers|cut short|frames|columns|bones|lines|MOTION|as it is called|a capture|"
+            "name|count"
         )
         for share in (0.1, 0.3, 0.5, 0.7, 0.9):
             end = cut(kind, lambda content, share=share: _within_line(content, share))

@@ -55,8 +55,8 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
 
     """
     dataset = dataset_of(content, source, expected=_EXPECTED)
-    if str(found := dataset.attrs.get("format")) != FORMAT:
-        raise UnreadableFile(source, _EXPECTED, f"NetCDF of format {str(found)[:40]!r}", _OPEN)
+    if str(dataset.attrs.get("format")) != FORMAT:
+        raise UnreadableFile(source, _EXPECTED, "a NetCDF file that holds other things", _OPEN)
     if str(version := dataset.attrs.get("format_version")) != str(VERSION):
         raise UnreadableFile(
             source, f"version {VERSION} of the format", f"version {version}", "update eigenwalker"
@@ -97,9 +97,7 @@ def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
             with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
                 return opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
-        raise UnreadableFile(
-            source, expected, f"none, or a damaged one ({_first_line(error)})"
-        ) from error
+        raise UnreadableFile(source, expected, "a NetCDF file that is damaged") from error
 
 
 def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
@@ -121,7 +119,3 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
         rotation = np.asarray(dataset["rotation"].transpose(*DIMS).values, dtype=float)
         walk = walk.assign_coords(rotation=(DIMS, rotation))
     return walk
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).strip().partition("\n")[0]

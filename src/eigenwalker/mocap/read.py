@@ -15,6 +15,7 @@ from eigenwalker.mocap.asf_amc import find_skeleton, looks_like_acclaim, read_as
 from eigenwalker.mocap.bvh import looks_like_bvh, read_bvh
 from eigenwalker.mocap.c3d import looks_like_c3d, read_c3d
 from eigenwalker.mocap.content import beside, content_of
+from eigenwalker.mocap.kinds import kind_of, with_article
 from eigenwalker.mocap.mot import looks_like_mot, read_mot
 from eigenwalker.mocap.netcdf import holds_trajectories, looks_like_netcdf, read_netcdf
 from eigenwalker.mocap.pose_json import holds_poses, looks_like_json, read_pose_json
@@ -139,16 +140,18 @@ def read_mocap(
         raise UnreadableFile(
             path.name, "a capture that says what it is", "a MATLAB file, which does not", _OF_MATLAB
         )
-    by_name = [form.name for form in FORMATS if form.suffix == path.suffix.lower()]
-    formats = ", ".join(dict.fromkeys(form.name for form in FORMATS))
+    of_its_suffix = [form for form in FORMATS if form.suffix == path.suffix.lower()]
+    by_name = [form.name for form in of_its_suffix if form.among_others is None]
     raise UnreadableFile(
         path.name,
-        f"a {' or '.join(by_name)} file, as it is called" if by_name else f"a file of {formats}",
-        f"one that begins with {content[:16]!r}",
+        with_article(f"{' or '.join(by_name)} file, as it is called") if by_name else _CAPTURE,
+        kind_of(content),
         AGAIN if by_name else "export it as one of these",
     )
 
 
+_NAMES = list(dict.fromkeys(form.name for form in FORMATS if form.name != "table"))
+_CAPTURE = f"a capture ({', '.join(_NAMES)} or a table of points)"
 _OF_MATLAB = (
     "read an array of it by read_mat(path, variable, markers=..., rate_hz=...), walkers by "
     "read_walkers_mat(path) or read_mm(path)"

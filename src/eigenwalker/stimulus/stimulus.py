@@ -278,5 +278,6 @@ class Stimulus:
         except UnicodeDecodeError:
             raise UnreadableFile(path.name, "a stimulus in UTF-8", "other bytes") from None
         except ValueError as error:
-            came = str(error).rstrip(".")
+            fault = str(error).rstrip(".").removeprefix("This is no stimulus: ")
+            came = f"a file that is none ({fault})"
             raise UnreadableFile(path.name, "a stimulus", came, "make it anew") from None

@@ -1,0 +1,81 @@
+"""What a file that nobody here reads is instead, in words for whoever owns it."""
+
+from __future__ import annotations
+
+import re
+
+_WORDS = 32
+"""Letters of a text that are quoted."""
+_SIGNATURES = (
+    (rb"\x89HDF\r\n\x1a\n", "a NetCDF-4 or HDF5 file"),
+    (rb"CDF[\x01\x02\x05]", "a NetCDF file"),
+    (rb"MATLAB", "a MATLAB file"),
+    (rb"PK[\x03\x05]", "a ZIP archive, such as a document or a spreadsheet is"),
+    (rb"\x1f\x8b", "a file compressed with gzip"),
+    (rb"BZh|7z\xbc\xaf|\xfd7zXZ|Rar!|\(\xb5/\xfd", "an archive"),
+    (rb"%PDF", "a PDF document"),
+    (rb"\xd0\xcf\x11\xe0", "a document of an older office program"),
+    (rb"\x89PNG|\xff\xd8\xff|GIF8|RIFF....WEBP|II\*\x00|MM\x00\*", "a picture"),
+    (rb"....ftyp|RIFF....AVI |\x1aE\xdf\xa3", "a film"),
+    (rb"RIFF....WAVE|ID3|OggS|fLaC", "a sound"),
+    (rb"\x7fELF|MZ", "a program"),
+    (rb"Kaydara FBX", "an FBX file"),
+    (rb"SQLite format 3", "an SQLite database"),
+    (rb"\s*<(?:!doctype html|html)", "a page of HTML"),
+    (rb"\s*<\?xml", "a file of XML"),
+)
+
+
+def kind_of(content: bytes) -> str:
+    """Return what a file seems to be, as the end of a sentence.
+
+    Parameters
+    ----------
+    content : bytes
+        Its beginning, or all of it.
+
+    Returns
+    -------
+    str
+        The kind of file by its first bytes, what a text begins with, or that it is neither.
+
+    Examples
+    --------
+    >>> kind_of(b"%PDF-1.7"), kind_of(b"Dear colleague")
+    ('a PDF document', 'a text that begins with "Dear colleague"')
+    >>> kind_of(bytes(range(256)))
+    'a file of no kind that is known here'
+
+    """
+    beginning = content[:1000]
+    for signature, kind in _SIGNATURES:
+        if re.match(signature, beginning, re.DOTALL | re.IGNORECASE):
+            return kind
+    words = " ".join(_text(beginning).split())
+    if not words or not words.isprintable():
+        return "a file of no kind that is known here"
+    quoted = words if len(words) <= _WORDS else f"{words[:_WORDS].rstrip()} ..."
+    return f'a text that begins with "{quoted}"'
+
+
+def _text(beginning: bytes) -> str:
+    """The letters of a beginning, or nothing where it is no text; its last letter may be cut."""
+    wide = beginning[:2] in (b"\xff\xfe", b"\xfe\xff")
+    for end in range(len(beginning), max(len(beginning) - 4, 0), -1):
+        try:
+            return beginning[:end].decode("utf-16" if wide else "utf-8-sig")
+        except UnicodeDecodeError:
+            continue
+    return ""
+
+
+def with_article(name: str) -> str:
+    """Return a name with "a" or "an" before it.
+
+    Examples
+    --------
+    >>> with_article("ASF/AMC file"), with_article("BVH file")
+    ('an ASF/AMC file', 'a BVH file')
+
+    """
+    return f"{'an' if name[:1].upper() in 'AEIOU' else 'a'} {name}"
