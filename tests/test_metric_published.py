@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eigenwalker.metric import published
 from eigenwalker.metric.groups import BONES
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.skeleton import JOINTS
@@ -12,6 +13,42 @@ FIGURE_5 = [
     for by in ("angles", "positions", "velocities")
     for shape in ("squared", "absolute", "sigmoid")
 ]
+
+
+PRINTED = """
+angles squared         23.335 0.508  659.272 0.000 0.000 0.006 0.000   -   0.669 0.325   -
+angles absolute        18.448 0.324   19.537 0.041 0.003 0.061 0.000   -   0.622 0.273   -
+angles sigmoid         18.004 0.312   20.016 0.039 0.008 0.076 0.000   -   0.614 0.263   -
+positions squared      17.117 0.290  206.509 0.062 0.000 0.551 0.181 0.000 0.000 0.050 0.156
+positions absolute     13.423 0.069    9.909 0.020 0.000 0.362 0.429 0.000 0.000 0.000 0.189
+positions sigmoid      13.264 0.059   10.375 0.015 0.000 0.344 0.455 0.000 0.000 0.000 0.184
+velocities squared     25.779 0.431 1914.283 0.000 0.000 0.000 0.000 0.605 0.000 0.298 0.098
+velocities absolute    22.039 0.193   36.885 0.000 0.000 0.000 0.000 0.551 0.000 0.298 0.151
+velocities sigmoid     21.993 0.189   36.532 0.000 0.000 0.000 0.000 0.564 0.000 0.306 0.157
+"""
+"""Figure 5 of the paper: difference, constant, normalisation constant, and the weights of head,
+clavicle, upper arm, forearm, hand, thigh, calf and toe. ("Euclid" is squared, "manh" absolute.)"""
+COLUMNS = ("head", "clavicle", "upper_arm", "forearm", "hand", "thigh", "calf", "toe")
+
+
+@pytest.mark.parametrize("line", PRINTED.strip().splitlines())
+def test_each_row_is_that_of_the_paper(line):
+    by, shape, *numbers = line.split()
+    difference, constant, normalisation, *weights = (
+        0.0 if number == "-" else float(number) for number in numbers
+    )
+    metric = PUBLISHED[f"{by}-{shape}"]
+    assert (metric.by, metric.shape) == (by, shape)
+    assert metric.group_weights == dict(zip(COLUMNS, weights, strict=True))
+    printed = published.FIGURE_5[by, shape]
+    assert printed[:3] == (difference, constant, normalisation)
+
+
+def test_groups_weigh_the_same_in_the_manner_of_kovar():
+    names = [*JOINTS.markers, "left_toe", "right_toe"]
+    weights = dict(zip(names, PUBLISHED["kovar"].weights_for(names), strict=True))
+    assert weights["head"] == 2 * weights["left_elbow"] == weights["sternum"] == 1 / 8
+    assert weights["pelvis"] == weights["left_ankle"] == 0
 
 
 @pytest.mark.parametrize("name", FIGURE_5)
