@@ -6,7 +6,7 @@ import { type BuildEnvironmentOptions, defineConfig, type Plugin } from "vite";
 
 const inFolder = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
-/** Puts scripts and styles of a page into the page. */
+/** Puts styles and scripts of a page into the page: scripts last, so that it is painted before they are read. */
 function insidePage(): Plugin {
   return {
     name: "inside-page",
@@ -22,11 +22,16 @@ function insidePage(): Plugin {
       };
       for (const page of Object.values(bundle)) {
         if (page.type !== "asset" || !page.fileName.endsWith(".html")) continue;
-        page.source = String(page.source)
-          .replace(/<script type="module"[^>]*src="([^"]+)"[^>]*><\/script>/g, (_, link: string) =>
-            `<script type="module">${content(link).replaceAll("</script", "<\\/script")}</script>`)
+        let scripts = "";
+        const read = String(page.source)
+          .replace(/\s*<script type="module"[^>]*src="([^"]+)"[^>]*><\/script>/g, (_, link: string) => {
+            scripts += `<script type="module">${content(link).replaceAll("</script", "<\\/script")}</script>\n  `;
+            return "";
+          })
           .replace(/<link rel="stylesheet"[^>]*href="([^"]+)"[^>]*>/g, (_, link: string) =>
             `<style>${content(link)}</style>`);
+        const end = read.lastIndexOf("</body>");
+        page.source = `${read.slice(0, end)}  ${scripts}${read.slice(end)}`;
       }
       for (const name of used) delete bundle[name];
     },

@@ -159,7 +159,12 @@ def test_captures_sent_together_become_a_population(client, tmp_path):
     answer = client.post("/api/population", params={"files": names}, content=content).json()
     assert answer["model"]["n_walkers"] == 4
     assert [trait["name"] for trait in answer["model"]["traits"]] == ["sex"]
+    assert (answer["model"]["title"], answer["model"]["source"]) == (
+        "Captures 0.c3d, 1.c3d and 2 more",
+        "people.nc",
+    )
     assert answer["told"][0].startswith("bad.c3d: refused.")
+    assert answer["told"][-1].endswith("eigenwalker fit FOLDER -o people.nc")
 
 
 @pytest.mark.parametrize(("route", "name"), [("capture", "task.json"), ("population", "people.nc")])
@@ -230,6 +235,18 @@ def test_films_that_cannot_be_made_are_refused(client, people):
         answer = client.post(f"/api/film?{query}", content=content)
         assert answer.status_code == 422
         assert said in answer.json()["detail"]
+
+
+def test_films_of_more_dots_than_can_be_computed_are_refused_before_they_are(client, people):
+    masks = {"kind": "linear", "number": 5000, "box_mm": [2000, 2000], "speed_mm_s": 500}
+    shown = ew.make_stimulus(people.walkers[0], duration_s=1)
+    for seed in range(64):
+        shown = shown.then("mask", **masks, seed=seed)
+    answer = client.post("/api/film?format=mp4", content=shown.to_json())
+    assert answer.status_code == 422
+    assert answer.json()["detail"].startswith(
+        "A film of 1 s with 320975 dots to compute at 60 Hz is too long here; up to 0.21 s are made"
+    )
 
 
 def test_more_than_it_takes_is_cut_off(client, monkeypatch):

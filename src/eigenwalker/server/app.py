@@ -25,6 +25,8 @@ from eigenwalker.server.upload import TooLarge, kept, listed, parted
 FILMS = {"mp4": "video/mp4", "webm": "video/webm", "gif": "image/gif"}
 MOST_PIXELS = 2e9
 """Of all frames of a film: a minute at 60 Hz of 700 x 700."""
+MOST_DOTS = 4_000_000
+"""Computed for all frames of a film: a minute at 60 Hz of 1000."""
 MOST_STIMULUS = 64_000_000
 MOST_POPULATIONS = 20
 _SERVED = "served"
@@ -146,7 +148,8 @@ async def make_film(request: Request, format: str = Query(...)) -> Response:
         folder = Path(bench)
         sent = child_side.sent_to(folder)
         await kept(request.stream(), sent / "stimulus.json", MOST_STIMULUS)
-        asked = {"files": ["stimulus.json"], "format": format, "most_pixels": MOST_PIXELS}
+        asked = {"files": ["stimulus.json"], "format": format}
+        asked |= {"most_pixels": MOST_PIXELS, "most_dots": MOST_DOTS}
         answer = await workshop.done(tasks.FILM, folder, asked)
         film = (folder / answer["file"]).read_bytes()
     return Response(film, media_type=FILMS[format])

@@ -125,9 +125,26 @@ def study(folder: Path, asked: Asked) -> Asked:
     if found.population is None:
         raise ValueError(f"None of {len(found.files)} captures could be used. {' '.join(told[:5])}")
     told.append(
-        "This population is kept until the server ends; eigenwalker fit writes it to a file."
+        "This population is kept until the server ends; for Python, write it to a file first: "
+        f"eigenwalker fit FOLDER -o {PEOPLE}"
     )
-    return {"model": _model(found.population, folder, "Your captures"), "told": told}
+    used = [str(name) for name in found.population.traits["file"]]
+    return {"model": _model(found.population, folder, _named(used)), "told": told}
+
+
+def _named(files: list[str]) -> str:
+    """What a population is called that was made of captures.
+
+    Examples
+    --------
+    >>> _named(["ada.c3d", "ben.c3d"]), _named([f"{number}.c3d" for number in range(9)])
+    ('Captures ada.c3d and ben.c3d', 'Captures 0.c3d, 1.c3d and 7 more')
+
+    """
+    first, rest = files[:2], len(files) - 2
+    if rest > 0:
+        return f"Captures {', '.join(first)} and {rest} more"
+    return f"{'Captures' if rest == 0 else 'Capture'} {' and '.join(first)}"
 
 
 def _traits_table(captures: Path) -> Path | None:
@@ -149,20 +166,28 @@ def _model(people: Any, folder: Path, title: str) -> Asked:
 def film(folder: Path, asked: Asked) -> Asked:
     """A film of a stimulus."""
     from eigenwalker.stimulus import Stimulus
+    from eigenwalker.stimulus.content import dots_computed
     from eigenwalker.stimulus.write import write_stimulus
 
     shown = Stimulus.load(sent_to(folder) / asked["files"][0])
-    display, timing = shown.display, shown.timing
-    pixels = display.width_px * display.height_px * timing.duration_s * timing.rate_hz
-    if pixels > asked["most_pixels"]:
-        fits = asked["most_pixels"] / (pixels / timing.duration_s)
-        raise ValueError(
-            f"A film of {timing.duration_s:g} s with {display.width_px} x {display.height_px} "
-            f"pixels at {timing.rate_hz:g} Hz is too long here; up to {fits:.0f} s are made. "
-            "Longer ones are written by write_stimulus in Python."
-        )
+    display = shown.display
+    pixels = f"{display.width_px} x {display.height_px} pixels"
+    _check_length(shown, display.width_px * display.height_px, pixels, asked["most_pixels"])
+    dots = dots_computed(shown.content)
+    _check_length(shown, dots, f"{dots} dots to compute", asked["most_dots"])
     path = write_stimulus(shown, folder / f"film.{asked['format']}")
     return {"file": path.name}
+
+
+def _check_length(shown: Any, each: int, of_what: str, most: float) -> None:
+    """Refuse films of more than so much in all their frames, before any is drawn."""
+    seconds, rate_hz = shown.timing.duration_s, shown.timing.rate_hz
+    if each * seconds * rate_hz > most:
+        raise ValueError(
+            f"A film of {seconds:g} s with {of_what} at {rate_hz:g} Hz is too long here; up to "
+            f"{most / (each * rate_hz):.2g} s are made. Longer ones are written by write_stimulus "
+            "in Python."
+        )
 
 
 TASKS: dict[str, Callable[[Path, Asked], Asked]] = {

@@ -263,8 +263,16 @@ def _check_walker(walker: dict[str, Any], where: str, amiss: list[str]) -> None:
         )
 
 
-def _check_chain(content: dict[str, Any], amiss: list[str]) -> None:
-    """Follow the dots through the chain: transforms must name dots that are there."""
+def dots_computed(content: dict[str, Any]) -> int:
+    """Return how many dots have to be computed for one moment of a stimulus that is checked."""
+    return _check_chain(content, [])
+
+
+def _check_chain(content: dict[str, Any], amiss: list[str]) -> int:
+    """Follow the dots through the chain, where transforms must name dots that are there.
+
+    Returns how many have to be computed for one moment.
+    """
     figures = content["figures"]
     dots = [list((f["walker"] or f["trajectories"])["markers"]) for f in figures]
     segments = [len(figure["segments"]) for figure in figures]
@@ -274,7 +282,7 @@ def _check_chain(content: dict[str, Any], amiss: list[str]) -> None:
         chosen = range(len(figures)) if step["figures"] is None else step["figures"]
         if max(chosen) >= len(figures):
             amiss.append(f"{where}: there are only {len(figures)} figures, counted from 0")
-            return
+            return 0
         if TRANSFORMS[step["name"]].adds and len(chosen) > 1:
             amiss.append(f"{where}: name one figure, as in figures: [0]")
         for figure in chosen:
@@ -297,6 +305,7 @@ def _check_chain(content: dict[str, Any], amiss: list[str]) -> None:
             f"its chain computes {work} dots for one moment, and no more than {MOST_WORK} are "
             "shown in time; use fewer dots or fewer transforms that give each dot a clock"
         )
+    return work
 
 
 def _step_faults(step: dict[str, Any], where: str, dots: list[str], n_segments: int) -> list[str]:
