@@ -148,13 +148,22 @@ def test_clips_of_different_frame_rates_are_registered():
 
 
 def test_a_slope_limit_keeps_clips_moving():
-    first, played = warped_pair()
-    flat = first.copy()
-    flat[40:80] = flat[40]
-    steps = np.diff(register(flat, played, slope_limit=2).path, axis=0)
-    still = steps[:, 1] == 0
-    assert max(len(run) for run in np.split(still, np.flatnonzero(np.diff(still)) + 1)) > 0
-    check_path(register(flat, played, slope_limit=2).path, len(first), len(played), 2)
+    """One clip halts for 0.6 s, in which without a limit the other stands still."""
+    first, _ = warped_pair()
+    frames = np.r_[0:41, np.full(36, 40), 41 : len(first)]
+    halting = first.isel(time=frames).assign_coords(time=np.arange(len(frames)) / 60)
+    free = register(first, halting, slope_limit=None).path
+    assert longest_stand(free) > 20
+    limited = register(first, halting, slope_limit=2).path
+    check_path(limited, len(first), len(halting), 2)
+    assert longest_stand(limited) == 2
+
+
+def longest_stand(path):
+    """Most steps in a row in which the first clip stands still."""
+    still = np.diff(path[:, 0]) == 0
+    runs = np.split(still, np.flatnonzero(np.diff(still)) + 1)
+    return max(len(run) for run in runs if run[0])
 
 
 def test_walks_are_registered_whatever_their_phase_frequency_heading_and_place():
@@ -250,6 +259,34 @@ def test_transitions_to_another_walk_are_where_both_have_the_same_phase():
     assert good.any()
     assert np.abs(apart[good]).max() < 0.08
     np.testing.assert_allclose(found.angle_deg[good], -30, atol=12)
+
+
+@pytest.mark.parametrize("window_s", [0.1, 1 / 3])
+def test_transitions_are_half_a_window_from_each_other_and_from_the_ends(window_s):
+    walk = simulate_walk(
+        seed=1, frequency_hz=0.9, duration_s=4, rate_hz=50, variability=1.0, noise_mm=2.0
+    )
+    found = find_transitions(walk, window_s=window_s, threshold=np.inf)
+    half_s = round(window_s * 50 / 2) / 50
+    moments = found[["time_a", "time_b"]].to_numpy()
+    assert len(moments) > 10
+    assert moments.min() >= half_s - 1e-9
+    assert moments.max() <= walk.time.values[-1] - half_s + 1e-9
+    apart = np.abs(moments[:, None] - moments).max(axis=2)
+    assert apart[np.triu_indices(len(moments), 1)].min() >= half_s - 1e-9
+    assert np.abs(np.diff(moments, axis=1)).min() >= window_s - 1e-9
+
+
+def test_the_threshold_left_out_is_what_moves_in_a_tenth_of_a_second():
+    """Of a clip that moves on at one speed this is that speed times a tenth of a second."""
+    time, rng = np.arange(0, 3, 0.02), np.random.default_rng(0)
+    places = rng.normal(size=(1, 3, 3)) * 300
+    lifted = places + time[:, None, None] * np.array([0, 0, 500.0])  # up: nothing aligns that
+    clip = trajectories_at(time, lifted, ["a", "b", "c"])
+    found = find_transitions(clip, clip + np.array([0, 0, 1.0]) * 49, window_s=0.1)
+    assert found.distance.max() < 50
+    higher = find_transitions(clip, clip + np.array([0, 0, 2000.0]), window_s=0.1)
+    assert higher.empty
 
 
 def test_where_nothing_is_alike_there_is_no_transition():

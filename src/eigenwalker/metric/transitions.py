@@ -31,7 +31,9 @@ def find_transitions(
     """Return the moments at which one clip can pass into another.
 
     The transitions of Kovar, Gleicher & Pighin (2002): local minima of the motion map, each pair of
-    frames aligned in heading and place and averaged over a window, that lie below a threshold.
+    frames aligned in heading and place and averaged over a window, that lie below a threshold. Of
+    minima that are less than half a window from each other in both clips the best is taken. Half a
+    window at the beginning and end of the clips is left out, as one could not blend there.
     Bodies of different build are apart at every moment: bring both to one mannequin first.
 
     Parameters
@@ -79,11 +81,9 @@ def find_transitions(
         cells = np.where(_far_apart(len(cells), window_s * rate_hz), cells, np.inf)
     if threshold is None:
         threshold = float(np.mean([_unseen(clip, metric, window_s) for clip in (a, other)]))
-    lowest = (cells == minimum_filter(cells, size=3, mode="nearest")) & (cells <= threshold)
-    frames = np.argwhere(lowest & np.isfinite(cells))
-    frames = frames[np.argsort(cells[tuple(frames.T)], kind="stable")]
-    positions = common_positions(a, other)
     half = round(window_s * rate_hz / 2)
+    frames = _lowest_apart(cells, threshold, half)
+    positions = common_positions(a, other)
     rows = [_moves(*positions, i, j, half) for i, j in frames.tolist()]
     moves = np.reshape(rows, (len(rows), 3))
     return pd.DataFrame(
@@ -96,6 +96,22 @@ def find_transitions(
             "shift_y_mm": moves[:, 2],
         }
     )
+
+
+def _lowest_apart(cells: np.ndarray, threshold: float, half: int) -> np.ndarray:
+    """Return local minima, the lowest first, none of them within half a window of a lower one."""
+    n, m = cells.shape
+    inside = np.full(cells.shape, np.inf)
+    inner = slice(half, max(n - half, 0)), slice(half, max(m - half, 0))
+    inside[inner] = np.where(np.isfinite(cells[inner]), cells[inner], np.inf)
+    lowest = (cells == minimum_filter(cells, size=3, mode="nearest")) & (inside <= threshold)
+    frames = np.argwhere(lowest & np.isfinite(inside))
+    frames = frames[np.argsort(cells[tuple(frames.T)], kind="stable")]
+    kept: list[np.ndarray] = []
+    for frame in frames:
+        if all(np.abs(frame - other).max() >= max(half, 1) for other in kept):
+            kept.append(frame)
+    return np.reshape(kept, (len(kept), 2)).astype(int)
 
 
 def _far_apart(n_frames: int, least: float) -> np.ndarray:
