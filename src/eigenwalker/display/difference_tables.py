@@ -15,7 +15,7 @@ MOST_NAMED = 45
 """Walks up to which each gets its name; more would stand over each other."""
 _LONGEST = 15
 _INKS = (BLUE, RED, "#009988", "#AA4499", GREY, "#DDAA33", "#882255", INK)
-_MARKS = "o^sDvP*X>"
+_MARKS = "o^sDvPX>*"
 MOST_CLASSES = len(_INKS) * len(_MARKS)
 """Classes that have a colour and a mark of their own."""
 
@@ -134,19 +134,21 @@ def figure_map_of_walks(
 def short_names(names: Sequence[str]) -> list[str]:
     """Return names that fit beside a picture, different ones as long as the names are different.
 
-    What all begin and end with is left out, up to a separator; what is still long is told by its
-    beginning and its end, and by a number where these do not tell names apart.
+    Of long ones, what all begin and end with is left out, up to a separator; what is still long is
+    told by its beginning and its end, and by a number where these do not tell names apart.
 
     Examples
     --------
-    >>> short_names(["walk_sad_1.bvh", "walk_happy_2.bvh"])
-    ['sad_1', 'happy_2']
+    >>> short_names(["dataset-2_walk_sad_001.bvh", "dataset-2_walk_happy_002.bvh"])
+    ['sad_001', 'happy_002']
     >>> short_names(["dataset-2_walk_normal_001.bvh"])
     ['datase…rmal_001']
 
     """
     names = [str(name) for name in names]
-    stems = _without_shared([name.rpartition(".")[0] or name for name in names])
+    stems = [name.rpartition(".")[0] or name for name in names]
+    if max(map(len, stems), default=0) > _LONGEST:
+        stems = _without_shared(stems)
     if len(set(stems)) < len(set(names)):
         stems = names
     for longest in range(_LONGEST, 2 * _LONGEST):
