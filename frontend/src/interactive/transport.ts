@@ -21,6 +21,11 @@ const VIEWS: readonly Option<number>[] = [
   { value: 30, label: "30\u00b0" },
   { value: 90, label: "Side", hint: "90 degrees" },
 ];
+/**
+ * The slider itself follows the walk so seldom: what is seen of it are layers that move without being
+ * painted, and to paint the slider costs as much as to paint the walker.
+ */
+const VALUED_MS = 500;
 /** How many steps the stride has for who scrubs. */
 const FINE = 200;
 
@@ -53,9 +58,16 @@ export function transport(session: Session): Transport {
   let before: Pick<State, "playing" | "cycle"> = session.state;
   scrub.addEventListener("pointerdown", () => (before = session.state));
   scrub.addEventListener("pointercancel", () => session.change({ playing: before.playing, cycle: before.cycle }));
+  const run = make("div", { class: "run", "aria-hidden": "true" }, make("i"), make("b"));
+  let valued = -Infinity;
   const tick = (cycle: number): void => {
+    const [fill, knob] = run.children as unknown as [HTMLElement, HTMLElement];
+    fill.style.transform = `translateX(${100 * (cycle - 1)}%)`;
+    knob.style.transform = `translateX(${100 * cycle}%)`;
+    const time = performance.now();
+    if (session.state.playing && time - valued < VALUED_MS) return;
+    valued = time;
     scrub.value = String(cycle);
-    scrub.style.setProperty("--now", String(cycle));
   };
   const tempo = slider({
     label: "Speed", min: RANGES.tempo[0], max: RANGES.tempo[1], step: 0.05, usual: 1,
@@ -68,7 +80,7 @@ export function transport(session: Session): Transport {
   return {
     element: make("div", { class: "tools" },
       play.element,
-      make("div", { class: "time" }, scrub),
+      make("div", { class: "time" }, scrub, run),
       tempo.element,
       views.element,
       styles.element,
