@@ -46,6 +46,25 @@ def test_everything_chosen_makes_the_walker(people):
     assert not widget.walker.p[0].any()
 
 
+@pytest.mark.parametrize(
+    ("chosen", "said"),
+    [
+        ({"alpha": {"sex": 99}}, "sex is 99; give a number from -6 to 6"),
+        ({"alpha": {"sex": -6.01}}, "sex is -6.01; give"),
+        ({"bias": {"trait": "sex", "steps": 4}}, "The bias towards sex is 4; give .* -3 to 3"),
+        ({"eigenwalkers": [0, 7]}, "Eigenwalker 2 is 7; give .* -6 to 6"),
+        ({"strengths": [3]}, "The strength of component 1 is 3; give .* -2 to 2"),
+    ],
+)
+def test_numbers_beyond_the_sliders_are_refused(people, chosen, said):
+    widget = show(people)
+    before = widget.vector
+    (name, value), *_ = chosen.items()
+    with pytest.raises(traitlets.TraitError, match=said):
+        setattr(widget, name, value)
+    np.testing.assert_array_equal(widget.vector, before)
+
+
 def test_ones_own_walker_moves_along_traits_of_a_population(people):
     other = people.walkers[9]
     widget = show(other, population=people.drop([9]), alpha={"sex": -1})

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from eigenwalker.page.interactive import MANNEQUIN, built
-from eigenwalker.page.mixing import mixed_vector, mixed_walker
+from eigenwalker.page.mixing import check_ranges, mixed_vector, mixed_walker
 from eigenwalker.page.model import page_model, walker_model
 from eigenwalker.population import Population
 from eigenwalker.stimulus import Stimulus, make_stimulus
@@ -93,19 +93,19 @@ class WalkerWidget(anywidget.AnyWidget):
     Attributes
     ----------
     alpha : dict of str to float
-        Standard deviations along each trait (A12). (``traits`` is what the widget's own library
-        calls its attributes.)
+        Standard deviations along each trait (A12), from -6 to 6. (``traits`` is what the
+        widget's own library calls its attributes.)
     kind, part : str
         As `trait_axis` takes them.
     start : "average", "own" or int
         Who is changed: the average walker, one's own, or a walker of the population by its number
         among those that the page holds.
     bias : dict or None
-        ``{"trait": "sex", "steps": 1}``: steps of half the difference of two classes.
+        ``{"trait": "sex", "steps": 1}``: steps of half the difference of two classes, from -3 to 3.
     strengths : list of float
-        Of each component: stride, sway, hop, bounce; 1 is as it is.
+        Of each component: stride, sway, hop, bounce; 1 is as it is; from -2 to 2.
     eigenwalkers : list of float
-        Standard deviations along each.
+        Standard deviations along each, from -6 to 6.
     tempo : float
         How many times as fast it is played.
     azimuth_deg, elevation_deg, perspective
@@ -159,7 +159,9 @@ class WalkerWidget(anywidget.AnyWidget):
         name = proposal["trait"].name
         if self._model is not None:
             try:
-                mixed_vector(self._model, self._state() | self._named(name, proposal["value"]))
+                state = self._state() | self._named(name, proposal["value"])
+                check_ranges(state)
+                mixed_vector(self._model, state)
             except (ValueError, TypeError, KeyError) as error:
                 raise traitlets.TraitError(str(error)) from None
         return proposal["value"]

@@ -97,6 +97,52 @@ def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarr
     return vector
 
 
+RANGES = {"traits": 6.0, "bias": 3.0, "eigenwalkers": 6.0, "strengths": 2.0}
+"""How far the page's sliders go, either way."""
+
+
+def check_ranges(state: Mapping[str, Any]) -> None:
+    """Refuse a state that the page cannot show.
+
+    Parameters
+    ----------
+    state : mapping
+        As `mixed_vector` takes it.
+
+    Raises
+    ------
+    ValueError
+        If a number is beyond the page's sliders.
+
+    Examples
+    --------
+    >>> check_ranges({"traits": {"sex": 6}})
+    >>> check_ranges({"traits": {"sex": 99}})
+    Traceback (most recent call last):
+    ...
+    ValueError: sex is 99; give a number from -6 to 6, as far as the sliders go.
+
+    """
+    bias = state.get("bias")
+    given = {
+        "traits": dict(state.get("traits", {})),
+        "bias": {f"The bias towards {bias['trait']}": bias["steps"]} if bias else {},
+        "eigenwalkers": _numbered("Eigenwalker", state.get("eigenwalkers", ())),
+        "strengths": _numbered("The strength of component", state.get("strengths", ())),
+    }
+    for kind, most in RANGES.items():
+        for name, value in given[kind].items():
+            if abs(value) > most:
+                raise ValueError(
+                    f"{name} is {value:g}; give a number from {-most:g} to {most:g}, as far as "
+                    "the sliders go."
+                )
+
+
+def _numbered(what: str, values: Any) -> dict[str, float]:
+    return {f"{what} {number}": value for number, value in enumerate(values, start=1)}
+
+
 def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
     start = state.get("from", "average")
     if start == "average":
