@@ -6,7 +6,8 @@ import { choice } from "../src/interactive/choice";
 import { make } from "../src/interactive/element";
 import { nearest, towards } from "../src/interactive/nearby";
 import { Notices } from "../src/interactive/notices";
-import { bundles, openFiles } from "../src/interactive/opening";
+import { peopleIn, warnings } from "../src/interactive/about";
+import { bundles, callIt, openFiles } from "../src/interactive/opening";
 import { ownOf } from "../src/interactive/own";
 import { axesOf } from "../src/interactive/axis";
 import { howPlausible, reachOf } from "../src/interactive/plausible";
@@ -223,5 +224,48 @@ describe("plausibility", () => {
     for (const { vector } of model.walkers) {
       expect(howPlausible(reach, placeOf(model, vector))).toMatch(/^Plausible/);
     }
+  });
+});
+
+describe("notices", () => {
+  it("are two at most: what is new of a kind takes the place of what was", () => {
+    const notices = new Notices();
+    notices.trouble("One.");
+    notices.trouble("Two.", "And a half.");
+    notices.told(["Three."]);
+    notices.news("Four.");
+    const said = [...notices.element.querySelectorAll(".notice")].map(({ textContent }) => textContent);
+    expect(said).toEqual(["Two.And a half.", "Four."]);
+  });
+
+  it("of work that goes on come back after others, and end with it", () => {
+    const notices = new Notices();
+    const done = notices.busy("Reading.");
+    notices.told(["Saved."]);
+    expect(notices.element.textContent).toBe("Saved.");
+    notices.element.querySelector("button")!.click();
+    expect(notices.element.textContent).toBe("Reading.");
+    done();
+    expect(notices.element.textContent).toBe("");
+  });
+});
+
+describe("captures that were made to a population", () => {
+  it("are named by their folder, else one by one", () => {
+    const files = ["a.c3d", "b.c3d", "c.c3d", "d.c3d"].map((name) => new File([""], name));
+    expect(callIt(files, "walks")).toBe("walks/");
+    expect(callIt(files)).toBe("a.c3d, b.c3d and 2 more");
+    expect(callIt(files.slice(0, 3))).toBe("a.c3d, b.c3d, c.c3d");
+    expect(callIt(files.slice(0, 1), "walks")).toBe("a.c3d");
+  });
+
+  it("are said in place of a file that is not there, and that they are few", () => {
+    const model = { ...goldenModel(), n_walkers: 3, traits: [], source: "people.nc", captures: "walks/" };
+    expect(peopleIn(model)).toMatch(/^3 .*walkers of walks\/$/);
+    expect(warnings(model)).toEqual([
+      expect.stringMatching(/^3 walkers are few/),
+      expect.stringMatching(/^No trait/),
+    ]);
+    expect(warnings(goldenModel()).length).toBe(goldenModel().n_walkers < 10 ? 1 : 0);
   });
 });
