@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenwalker as ew
+from eigenwalker.gait.frequency import NoStrideError
 from eigenwalker.metric.cycles import CYCLE_FRAMES, common_clock
 from eigenwalker.metric.frame_metrics import FrameMetric
 from eigenwalker.metric.loops import loop, period_of
@@ -122,6 +123,23 @@ def test_what_does_not_repeat_is_refused(values, told):
     clip = label_trajectories(values, markers=["a", "b", "c"], rate_hz=100)
     with pytest.raises(ValueError, match=told):
         loop(clip, already_in_place=True)
+
+
+@pytest.mark.parametrize("noise_mm", [0.0, 0.01])
+def test_a_still_clip_is_no_loop(noise_mm):
+    still = 500 + noise_mm * np.random.default_rng(0).uniform(size=(600, 3, 3))
+    clip = label_trajectories(still, markers=["a", "b", "c"], rate_hz=50)
+    with pytest.raises(NoStrideError, match="Nothing repeats"):
+        loop(clip, already_in_place=True)
+
+
+def test_a_point_that_stands_in_the_room_does_not_hide_the_stride():
+    """Such as the root of a BVH, from which the walker walks away."""
+    walk = simulate_walk(seed=3, route=Route(heading_deg=40), duration_s=8, rate_hz=60, truth=False)
+    values = np.concatenate([walk.values, np.zeros((len(walk), 1, 3))], axis=1)
+    names = [*walk.marker.values.tolist(), "joint_Root"]
+    found = loop(label_trajectories(values, markers=names, rate_hz=60))
+    assert found.period_s == pytest.approx(loop(walk).period_s, rel=0.01)
 
 
 @settings(max_examples=40, deadline=None)

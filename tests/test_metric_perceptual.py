@@ -83,7 +83,8 @@ def test_planted_weights_are_found_from_as_many_answers_as_the_paper_had(tempera
         fitted = bootstrap_weights(X, chosen, shown, pairs=PAIRS, n_samples=200)
         intervals = fitted.intervals([*range(8)])
         within += [(intervals.relative_low <= planted) & (planted <= intervals.relative_high)]
-    assert np.mean(within) >= 0.95  # intervals of 95 per cent
+        assert (intervals.relative_high - intervals.relative_low).mean() < 0.2
+    assert np.mean(within) >= 0.95  # intervals of 95 per cent, and wider than need be
 
 
 @pytest.fixture(scope="module")
@@ -243,6 +244,19 @@ def test_the_metric_observers_use_predicts_unseen_walkers_better_than_others():
     assert compared.cv_pearson.idxmax() == "fitted"
     assert compared.cv_pearson["noise"] < 0.2
     assert compared.cv_rms["fitted"] > compared.rms["fitted"]
+
+
+def test_unseen_pairs_are_predicted_by_weights_to_which_their_walkers_did_not_contribute():
+    X, chosen, shown = study(14)
+    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    unseen = np.empty(len(y))
+    for row, pair in enumerate(PAIRS):
+        others = [index for index, other in enumerate(PAIRS) if not set(pair) & set(other)]
+        unseen[row] = PerceptualMetric().fit(X[others], y[others]).predict(X[row : row + 1])[0]
+    compared = compare_metrics({"fitted": X}, y, PAIRS).loc["fitted"]
+    assert compared.cv_rms == pytest.approx(np.sqrt(np.mean((y - unseen) ** 2)))
+    assert compared.cv_pearson == pytest.approx(np.corrcoef(y, unseen)[0, 1])
+    assert compared.cv_pearson < compared.pearson
 
 
 def test_no_metric_is_above_the_noise_ceiling_and_the_true_one_is_near():

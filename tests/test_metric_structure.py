@@ -44,6 +44,14 @@ def test_memberships_are_shares_and_the_highest_is_the_cluster_s():
     assert np.mean(shares.argmax(axis=1) == found) > 0.9
 
 
+def test_memberships_go_with_one_over_the_squared_distance():
+    values, found = table(apart=2.0), KIND
+    middles = [values[each == KIND].mean(axis=0) for each in (0, 1)]
+    for row, shares in zip(values, memberships(values, found), strict=True):
+        away = [np.linalg.norm(row - middle) for middle in middles]
+        assert shares[0] / shares[1] == pytest.approx((away[1] / away[0]) ** 2)
+
+
 def test_map_of_points_in_a_plane_keeps_their_distances():
     places = np.random.default_rng(1).normal(size=(12, 2)) * [3, 1]
     apart = squareform(pdist(places))

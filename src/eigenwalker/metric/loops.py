@@ -27,6 +27,8 @@ SHALLOW = 0.02
 """Share by which a minimum may be higher whatever the lowest one is."""
 
 
+_STILL_MM = 0.1
+"""Way below which nothing moves."""
 _FEWEST_FRAMES = 8
 _LEAST_RATE_HZ = 8.0
 """Below these not even the harmonics of a slow stride show."""
@@ -131,17 +133,25 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
             f"loop needs {_FEWEST_FRAMES} or more at {_LEAST_RATE_HZ:.0f} a second or more."
         )
     walk = clip if already_in_place or _comes_from_in_place(clip) else in_place(clip)
-    movement = walk.values.reshape(walk.sizes["time"], -1)
-    period = period_of(movement, rate_hz)
+    movement = walk.values[:, _moving(clip.sel(marker=walk.marker.values).values)]
+    movement = movement.reshape(walk.sizes["time"], -1)
+    period = period_of(movement, rate_hz) if movement.size else None
     if period is not None:
         return _blended(walk, period, rate_hz)
-    if walk.attrs.get("n_strides") == 1 or (len(movement) > 2 and closes(movement)):
+    once = walk.attrs.get("n_strides") == 1 or (len(movement) > 2 and closes(movement))
+    if once and movement.size:
         return _closed(walk, rate_hz)
     raise NoStrideError(
         f"Nothing repeats in these {len(movement) / rate_hz:.3g} s: no two postures some time "
         f"apart, from {1 / BOUNDS_HZ[1]:.2g} s to half the clip, are alike throughout. A loop "
         "needs two periods of one action."
     )
+
+
+def _moving(values: np.ndarray) -> np.ndarray:
+    """Return which markers move at all; others would tell of the way of who walks by."""
+    away = np.abs(values - np.nan_to_num(values[:1]))
+    return np.nan_to_num(away).max(axis=(0, 2)) > _STILL_MM
 
 
 def _comes_from_in_place(clip: xr.DataArray) -> bool:

@@ -189,7 +189,7 @@ def register(
     """
     a, b = at_one_rate(a, b)
     cells = motion_map(a, b, metric=metric, window_s=window_s, align=align)
-    unseen = [np.isnan(clip.values).any(axis=2).all(axis=1).any() for clip in (a, b)]
+    unseen = [(~np.isfinite(clip.values.sum(axis=2))).all(axis=-1).any() for clip in (a, b)]
     if any(unseen) or cells.isnull().any():
         raise ValueError(
             "Samples are missing in some frames, so no path leads through their map; fill gaps "
