@@ -245,7 +245,7 @@ def _answers(path: Path, metric: GroupMetric) -> pd.DataFrame:
     try:
         table = pd.read_csv(path, dtype=str)
     except (ValueError, OSError) as error:
-        why = str(error).strip()
+        why = str(getattr(error, "strerror", None) or error).strip()
         raise ValueError(f"The answers {path} could not be read as CSV: {why}") from error
     if lacking := [name for name in ("observer", *SHOWN, *CHOSEN) if name not in table]:
         raise ValueError(

@@ -44,12 +44,15 @@ def table_of(
 
 
 def left_out(walks: Walks) -> str:
-    """Return why some walks do not count, in words; of many, the first few."""
-    flagged = {
-        name: f"flagged: {why} --with-flagged counts it too" for name, why in walks.flagged.items()
-    }
-    few = list({**walks.refused, **flagged}.items())[:3]
-    return " ".join(f"{name}: {why.rstrip('.')}." for name, why in few)
+    """Return why some walks do not count, in words; of many refused, the first few."""
+    few = list(walks.refused.items())[:3]
+    said = [f"{name}: {why.strip().rstrip('.')}." for name, why in few]
+    if walks.flagged:
+        name, why = next(iter(walks.flagged.items()))
+        first = why.partition(". ")[0].rstrip(".")
+        said.append(f"{len(walks.flagged)} flagged, such as {name}: {first}.")
+        said.append("With --with-flagged they count too.")
+    return " ".join(said)
 
 
 def nearest_walks(

@@ -79,7 +79,7 @@ def walk_of_capture(
 def remarks_on(clip: xr.DataArray) -> str:
     """Return what is to be known of the capture behind a walk, in words; mostly nothing."""
     flag, strange = clip.attrs.get(FLAG), clip.attrs.get(STRANGE)
-    said = [f"it is flagged: {flag}"] if flag else []
+    said = [f"it is flagged: {flag.rstrip('.')}"] if flag else []
     return "; ".join([*said, strange] if strange else said)
 
 

@@ -61,9 +61,8 @@ def _fitted(path: Path) -> GroupMetric:
     try:
         table = pd.read_csv(path)
     except (ValueError, OSError) as error:
-        raise ValueError(
-            f"The metric {path} could not be read as CSV: {str(error).strip()}"
-        ) from error
+        why = str(getattr(error, "strerror", None) or error).strip()
+        raise ValueError(f"The metric {path} could not be read as CSV: {why}") from error
     if lacking := [column for column in _COLUMNS if column not in table]:
         raise ValueError(
             f"{path} holds no fitted metric: it lacks the columns {lacking}; expected the "
