@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from sklearn.model_selection import cross_val_predict
 
 from eigenwalker.display.fitted_weights import figure_predictions, figure_weights
 from eigenwalker.folds import Progress
-from eigenwalker.metric.answers import PairCounts, count_pairs
+from eigenwalker.metric.answers import PairCounts, as_name, count_pairs
 from eigenwalker.metric.comparison import by_metric
 from eigenwalker.metric.fit_quality import compare_metrics, leave_walkers_out
 from eigenwalker.metric.group_tables import group_table
@@ -88,28 +89,34 @@ def fit_answers(
     Raises
     ------
     ValueError
-        If answers name walks that are not there, or pairs were never shown.
+        If answers name walks that are not there, or no pair was shown. Pairs that were never shown
+        together are left out, with a warning.
 
     """
     names = list(walks.clips)
     counts = count_pairs(_named_as(answers, names), walkers=names)
     y = counts.differences.to_numpy()
-    if np.isnan(y).any():
-        first, second = counts.pairs[int(np.isnan(y).argmax())]
-        raise ValueError(
-            f"{np.isnan(y).sum()} of {len(y)} pairs were never shown together, such as {first} and "
-            f"{second}; compare only walks that were."
+    kept = np.isfinite(y)
+    if not kept.any():
+        raise ValueError("No two of these walks were shown together in an answered trial.")
+    if not kept.all():
+        first, second = counts.pairs[int(kept.argmin())]
+        warnings.warn(
+            f"{(~kept).sum()} of {len(y)} pairs were never shown together, such as {first} and "
+            f"{second}; they are left out of the fit.",
+            stacklevel=2,
         )
-    X = group_table(walks.clips, metric, progress=progress)
-    pairs = counts.pairs.tolist()
+    X = group_table(walks.clips, metric, progress=progress)[kept]
+    y, pairs = y[kept], counts.pairs[kept].tolist()
+    chosen, shown = counts.chosen[:, kept], counts.shown[:, kept]
     model = PerceptualMetric().fit(X, y)
-    sampled = bootstrap_weights(X, counts.chosen, counts.shown, pairs=pairs)
-    published = by_metric(walks.clips, list(PUBLISHED))
+    sampled = bootstrap_weights(X, chosen, shown, pairs=pairs)
+    published = by_metric(walks.clips, list(PUBLISHED))[kept]
     others = {f"{name}, as published": published[name] for name in PUBLISHED}
     tables: dict[str, ArrayLike] = {FITTED: X, **others}
     if walks.vectors:
         vectors = np.stack([walks.vectors[name] for name in names])
-        tables["distance in walker space"] = pdist(WalkerSpace().fit_transform(vectors))
+        tables["distance in walker space"] = pdist(WalkerSpace().fit_transform(vectors))[kept]
     weights = pd.DataFrame(
         {"weight": model.weights_, "relative": model.relative_weights_}, index=X.columns
     )
@@ -121,15 +128,15 @@ def fit_answers(
         weights=weights.join(sampled.intervals(X.columns)).rename_axis("group"),
         pairs=pd.DataFrame(
             {
-                "shown": counts.shown.sum(axis=0),
+                "shown": shown.sum(axis=0),
                 "difference": y,
                 "predicted": model.predict(X),
                 "unseen": unseen,
             },
-            index=counts.pairs,
+            index=counts.pairs[kept],
         ),
         compared=compare_metrics(tables, y, pairs),
-        reliability=split_half(counts.chosen, counts.shown),
+        reliability=split_half(chosen, shown),
     )
 
 
@@ -140,7 +147,7 @@ def _named_as(answers: pd.DataFrame, names: list[str]) -> pd.DataFrame:
     full |= {name.removeprefix("walker "): name for name in names}
     full |= {name: name for name in names}
     columns = [c for c in ("a", "b", "c", "d", "chosen_1", "chosen_2") if c in answers]
-    renamed = answers[columns].map(lambda said: full.get(str(said), said))
+    renamed = answers[columns].map(lambda said: full.get(as_name(said), said))
     return answers.assign(**{str(column): renamed[column] for column in columns})
 
 
