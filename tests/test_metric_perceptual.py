@@ -24,6 +24,8 @@ from eigenwalker.metric.perceptual import PerceptualMetric
 from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.metric.retargeting import retarget
+from eigenwalker.report.compared_walks import Walks
+from eigenwalker.report.fitted_metric import fit_answers
 
 N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
 PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
@@ -413,3 +415,15 @@ def test_order_of_trials_and_of_walkers_in_them_does_not_matter():
 def test_answers_that_cannot_be_are_refused(change, said):
     with pytest.raises(ValueError, match=said):
         count_pairs(change(trials(5)))
+
+
+def test_pairs_that_were_never_shown_together_are_left_out_of_the_fit_and_it_is_said(mannequins):
+    clips = dict(itertools.islice(mannequins.items(), 6))
+    renamed = {f"w{i}": clip for i, clip in enumerate(clips.values())}
+    answers = trials(80)
+    together = (answers[[*"abcd"]].isin(["w0", "w1"])).sum(axis=1) == 2
+    with pytest.warns(UserWarning, match="1 of 15 pairs were never shown together, such as w0"):
+        found = fit_answers(Walks(renamed), answers[~together], "positions-absolute")
+    assert len(found.pairs) == 14
+    assert ("w0", "w1") not in found.pairs.index
+    assert np.isfinite(found.pairs).all(axis=None)
