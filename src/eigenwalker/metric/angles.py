@@ -233,5 +233,7 @@ def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") 
     dot = np.einsum("...i,...i", np.asarray(a, dtype=float), np.asarray(b, dtype=float))
     if kind == "as_printed":
         return dot
-    near = np.minimum(np.abs(dot), 1.0)
-    return 2 * np.arccos(near) if kind == "angle" else 1 - near
+    if kind == "one_minus_dot":
+        return 1 - np.minimum(np.abs(dot), 1.0)
+    apart, together = (np.linalg.norm(np.subtract(a, s * np.asarray(b)), axis=-1) for s in (1, -1))
+    return 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
