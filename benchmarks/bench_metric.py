@@ -101,6 +101,9 @@ def paths() -> None:
         )
 
 
+BAND_IN_FLOAT32 = "pair_table, phase and heading too, a band of the map in float32"
+
+
 def mean_along(cost: np.ndarray, path: np.ndarray) -> float:
     return float(cost[path[:, 0], path[:, 1]].mean())
 
@@ -130,10 +133,10 @@ def all_pairs() -> None:
     ways = {
         "cdist and librosa": peer,
         "point_map and least_cost_path, one thread": same_task,
-        "pair_table, also phase and heading": lambda: pair_table(prepared),
+        BAND_IN_FLOAT32: lambda: pair_table(prepared),
     }
     title = f"All {len(pairs)} pairs of {N_CLIPS} strides of {len(cycles[0])} frames"
-    print_table(title, seconds(ways, rounds=9), aims={"pair_table, also phase and heading": 8})
+    print_table(title, seconds(ways, rounds=9), aims={BAND_IN_FLOAT32: 8})
     print_table(f"{title}, processor time", processor_seconds(ways), aims={})
     ways = {"in_place": lambda: [ew.in_place(walk) for walk in walks.values()]}
     ways["prepare: in_place, loop, common clock"] = lambda: [prepare(w) for w in walks.values()]
