@@ -92,7 +92,7 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
         )
     given = answers[columns].notna().to_numpy()
     kept = given[:, -2:].all(axis=1)
-    answered, lines = answers.loc[kept], 2 + np.flatnonzero(kept)
+    answered, lines = pd.DataFrame(answers[kept]), 2 + np.flatnonzero(kept)
     _refuse_empty(given[kept], columns, lines)
     shown, chosen = (_names_in(answered, names) for names in (SHOWN, CHOSEN))
     names = sorted(set(shown.ravel())) if walkers is None else [as_name(each) for each in walkers]
