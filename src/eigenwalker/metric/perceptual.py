@@ -143,7 +143,7 @@ def non_negative_fit(
     counts = np.ones(len(y)) if sample_weight is None else sample_weight
     middle, level = np.zeros(X.shape[1]), 0.0
     if fit_constant:
-        middle, level = np.average(X, axis=0, weights=counts), np.average(y, weights=counts)
+        middle, level = counts @ X / counts.sum(), counts @ y / counts.sum()
     root = np.sqrt(counts)
     centred = root[:, None] * (X - middle)
     size = np.linalg.norm(centred, axis=0)
