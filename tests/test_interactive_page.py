@@ -272,12 +272,12 @@ def test_an_address_tells_all_controls_where_they_stand(visit):
     assert there.page.get_by_role("slider", name="Happy").input_value() == "3"
     assert there.page.get_by_role("radio", name="Side", exact=True).is_checked()
     there.open("Body or motion")
-    assert there.page.get_by_role("radio", name="Motion only").is_checked()
-    assert there.page.get_by_role("radio", name="Differs most").is_checked()
+    playwright.expect(there.page.get_by_role("radio", name="Motion only")).to_be_checked()
+    playwright.expect(there.page.get_by_role("radio", name="Differs most")).to_be_checked()
     there.open("Stride, sway, hop, bounce")
-    assert there.page.get_by_role("slider", name="Bounce").input_value() == "-1"
+    playwright.expect(there.page.get_by_role("slider", name="Bounce")).to_have_value("-1")
     there.open("Look")
-    assert there.page.get_by_role("switch", name="Upside down").is_checked()
+    playwright.expect(there.page.get_by_role("switch", name="Upside down")).to_be_checked()
 
 
 def test_a_hostile_address_is_passed_over(visit):

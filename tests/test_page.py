@@ -72,6 +72,7 @@ def coloured(stimulus: Stimulus, time_s: float, folder: Path, *options: str) -> 
         stand_alone_page(stimulus),
         folder,
         f"--screenshot={picture}",
+        "--virtual-time-budget=4000",  # until what is loaded on demand is there
         *options,
         at=f"t={time_s}&bare",
     )
