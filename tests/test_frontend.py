@@ -56,4 +56,6 @@ def test_the_lock_file_names_no_registry():
     lock = FRONTEND / "package-lock.json"
     if not lock.exists():
         pytest.skip("the browser's side is not here")
-    assert "://registry" not in lock.read_text(encoding="utf-8")
+    text = lock.read_text(encoding="utf-8")
+    assert "://registry" not in text
+    assert '"resolved"' not in text
