@@ -29,6 +29,10 @@ BAND = CYCLE_FRAMES // 12
 """Frames by which one stride may be ahead of the other in passing. When a foot lifts differs
 between people by less than half of that."""
 
+_LEADS = 4 * BAND + 8
+"""Frames ahead for which distances are at hand, of which a path needs `4 * BAND + 1`: whole vectors
+of numbers are quicker than a few less."""
+
 _PAIRS = 16
 """Pairs that one thread takes at a time."""
 
@@ -158,8 +162,8 @@ def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
     positions: (cycle, frame, point, axis); spectra: (cycle, harmonic, point, axis), complex.
     """
     n_frames, n_points = positions.shape[1], positions.shape[2]
-    columns = np.empty((n_points, 3, n_frames + 4 * band + 1), positions.dtype)
-    cost = np.empty((n_frames, 4 * band + 1), positions.dtype)
+    columns = np.empty((n_points, 3, n_frames + _LEADS), positions.dtype)
+    cost = np.empty((n_frames, _LEADS), positions.dtype)
     for p in range(len(pairs)):
         first, second = pairs[p, 0], pairs[p, 1]
         shift, angle = _on_the_whole(spectra[first], spectra[second], n_frames)

@@ -11,12 +11,13 @@ import numpy as np
 By = Literal["positions", "velocities", "angles"]
 Shape = Literal["absolute", "squared", "sigmoid", "power"]
 
-_SHAPES: dict[Shape, Callable[[np.ndarray, float], np.ndarray]] = {
+SHAPES: dict[Shape, Callable[[np.ndarray, float], np.ndarray]] = {
     "absolute": lambda d, _: d,
     "squared": lambda d, _: d * d,
     "sigmoid": lambda d, scale: d / (d + scale),
     "power": lambda d, exponent: d**exponent,
 }
+"""F of P9, given distances and the one number that the shape takes."""
 
 
 class ComparesFrames(Protocol):
@@ -138,4 +139,4 @@ def shape_parameter(metric: ComparesFrames) -> float:
 
 def shaped(metric: ComparesFrames, distances: np.ndarray) -> np.ndarray:
     """Return F of distances, elementwise (P9)."""
-    return _SHAPES[metric.shape](distances, shape_parameter(metric))
+    return SHAPES[metric.shape](distances, shape_parameter(metric))

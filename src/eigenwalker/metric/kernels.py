@@ -14,36 +14,84 @@ from eigenwalker.metric.frame_metrics import Shape
 
 compiled = numba.njit(nogil=True, cache=True, error_model="numpy", fastmath={"contract", "nsz"})
 
+_HALF, _ONE, _TINY = np.float32(0.5), np.float32(1.0), np.float32(1e-18)
+
 SHAPE_CODES: dict[Shape, int] = {"absolute": 0, "squared": 1, "sigmoid": 2, "power": 3}
+
+
+@compiled
+def square_root(square):
+    """Return the root of a number from 0 to 1e37, exactly 0 for 0.
+
+    A guess in single precision and one step of Newton's from there: as exact as the machine's own
+    root, which takes longer.
+    """
+    guess = np.sqrt(np.float32(square))
+    root = np.float64(guess)
+    return root + (square - root * root) * np.float64(_HALF / (guess + _TINY))
+
+
+@compiled
+def _quotient(above, below):
+    """Return above / below, both from 0 to 1e37, in the manner of `square_root`."""
+    inverse = np.float64(_ONE / np.float32(below))
+    return above * (inverse * (2.0 - below * inverse))
 
 
 @compiled
 def rows_of_map(rows, columns, weights, code, parameter, first, result):
     """Fill rows of a map from a first column on.
 
-    rows: (frame, point, part); columns: (point, part, other frame); result: (frame, other frame).
+    rows: (frame, point, 3); columns: (point, 3, other frame); result: (frame, other frame).
     """
     n_columns = columns.shape[2] - first
-    distances = np.empty(n_columns, result.dtype)
+    distances = np.empty(n_columns)
     for i in range(rows.shape[0]):
         row = result[i, first:]
         row[:] = 0.0
         for k in range(rows.shape[1]):
-            if rows.shape[2] == 4:
-                _angles(rows[i, k], columns[k], first, distances)
-                _add_shaped(distances, weights[k], code, parameter, row)
-                continue
             x, y, z, weight = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2], weights[k]
             xs, ys, zs = columns[k, 0, first:], columns[k, 1, first:], columns[k, 2, first:]
             if code == 0:  # the usual shape in one pass
                 for j in range(n_columns):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    row[j] += weight * np.sqrt(dx * dx + dy * dy + dz * dz)
+                    row[j] += weight * square_root(dx * dx + dy * dy + dz * dz)
             else:
                 for j in range(n_columns):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
+                    distances[j] = square_root(dx * dx + dy * dy + dz * dz)
                 _add_shaped(distances, weight, code, parameter, row)
+
+
+@compiled
+def squares_of_point(rows, columns, first, result):
+    """Fill rows with squared distances of one point from a first column on.
+
+    rows: (frame, 3); columns: (3, other frame); result: (frame, other frame).
+    """
+    xs, ys, zs = columns[0, first:], columns[1, first:], columns[2, first:]
+    for i in range(rows.shape[0]):
+        row = result[i, first:]
+        x, y, z = rows[i, 0], rows[i, 1], rows[i, 2]
+        for j in range(row.size):
+            dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+            row[j] = dx * dx + dy * dy + dz * dz
+
+
+@compiled
+def turns_of_point(rows, columns, first, result):
+    """Fill rows with squared tangents of a quarter of the angle between orientations of one point.
+
+    rows: (frame, 4), quaternions; columns: (4, other frame); result: (frame, other frame).
+    """
+    ws, xs, ys, zs = columns[0, first:], columns[1, first:], columns[2, first:], columns[3, first:]
+    for i in range(rows.shape[0]):
+        row = result[i, first:]
+        w, x, y, z = rows[i, 0], rows[i, 1], rows[i, 2], rows[i, 3]
+        for j in range(row.size):
+            apart = (w - ws[j]) ** 2 + (x - xs[j]) ** 2 + (y - ys[j]) ** 2 + (z - zs[j]) ** 2
+            together = (w + ws[j]) ** 2 + (x + xs[j]) ** 2 + (y + ys[j]) ** 2 + (z + zs[j]) ** 2
+            row[j] = min(apart, together) / max(apart, together)
 
 
 @compiled
@@ -65,25 +113,8 @@ def rows_of_aligned_map(rows, columns, weights, code, parameter, turns, result):
                 dx = x - (cos[j] * xs[j] - sin[j] * ys[j] + along[j])
                 dy = y - (sin[j] * xs[j] + cos[j] * ys[j] + aside[j])
                 dz = z - zs[j]
-                distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
+                distances[j] = square_root(dx * dx + dy * dy + dz * dz)
             _add_shaped(distances, weights[k], code, parameter, row)
-
-
-@compiled
-def _angles(turn, columns, first, distances):
-    for j in range(distances.size):
-        apart, together = 0.0, 0.0
-        for part in range(4):
-            other = columns[part, first + j]
-            apart += (turn[part] - other) ** 2
-            together += (turn[part] + other) ** 2
-        distances[j] = angle_between(apart, together)
-
-
-@compiled
-def angle_between(apart, together):
-    """Return 2 acos(abs(q.q')) from the squares of q - q' and q + q', exactly 0 for equal ones."""
-    return 4 * np.arctan2(np.sqrt(min(apart, together)), np.sqrt(max(apart, together)))
 
 
 @compiled
@@ -96,7 +127,7 @@ def _add_shaped(distances, weight, code, parameter, row):
             row[j] += weight * distances[j] * distances[j]
     elif code == 2:
         for j in range(row.size):
-            row[j] += weight * distances[j] / (distances[j] + parameter)
+            row[j] += weight * _quotient(distances[j], distances[j] + parameter)
     else:
         for j in range(row.size):
             row[j] += weight * distances[j] ** parameter
@@ -109,17 +140,30 @@ def mean_along_path(path, a, b, code, parameter, result):
     path: (step, 2); a, b: (frame, point, part); result: (point,).
     """
     result[:] = 0.0
-    n_points, n_parts = a.shape[1], a.shape[2]
-    distances = np.empty(n_points)
+    distances = np.empty(result.size)
     for step in range(path.shape[0]):
-        places, others = a[path[step, 0]], b[path[step, 1]]
-        for k in range(n_points):
-            apart, together = 0.0, 0.0
-            for part in range(n_parts):
-                apart += (places[k, part] - others[k, part]) ** 2
-                together += (places[k, part] + others[k, part]) ** 2
-            distances[k] = np.sqrt(apart) if n_parts == 3 else angle_between(apart, together)
+        here, there = a[path[step, 0]], b[path[step, 1]]
+        for k in range(distances.size):
+            if a.shape[2] == 4:
+                distances[k] = _angle_between(here[k], there[k])
+            else:
+                dx, dy, dz = (
+                    here[k, 0] - there[k, 0],
+                    here[k, 1] - there[k, 1],
+                    here[k, 2] - there[k, 2],
+                )
+                distances[k] = np.sqrt(dx * dx + dy * dy + dz * dz)
         _add_shaped(distances, 1.0 / path.shape[0], code, parameter, result)
+
+
+@compiled
+def _angle_between(quaternion, other):
+    """Return 2 acos(abs(q.q')) from the squares of q - q' and q + q', exactly 0 for equal ones."""
+    apart, together = 0.0, 0.0
+    for part in range(4):
+        apart += (quaternion[part] - other[part]) ** 2
+        together += (quaternion[part] + other[part]) ** 2
+    return 4 * np.arctan2(np.sqrt(min(apart, together)), np.sqrt(max(apart, together)))
 
 
 @compiled

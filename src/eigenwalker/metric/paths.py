@@ -52,7 +52,7 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
         return _warped(cost)
     if slope_limit < 1:
         raise ValueError(f"slope_limit={slope_limit}; give 1 or more, or None for no limit.")
-    path = limited_path(cost, slope_limit, max(n, m))
+    path = limited_path(cost, min(slope_limit, max(n, m)))
     if not len(path):
         raise ValueError(
             f"With slope_limit={slope_limit} no path joins {n} frames with {m}: one clip would "
@@ -101,68 +101,14 @@ def _warped(cost):
 
 
 @compiled
-def limited_path(cost, limit, band):
-    """Path with slope limits, no further than `band` frames from the diagonal; empty if none.
-
-    A cell is reached by a diagonal step, after which up to `limit` frames of one clip may pass.
-    """
+def limited_path(cost, limit):
+    """Path with slope limits through a whole map; empty if there is none."""
     n, m = cost.shape
-    total = np.full((n, m), np.inf)
-    run = np.zeros((n, m), np.int8)
-    along = 0.0
-    for j in range(min(limit + 1, m)):
-        along += cost[0, j]
-        total[0, j] = along
-    along = 0.0
-    for i in range(min(limit + 1, n)):
-        along += cost[i, 0]
-        total[i, 0] = along
-    for i in range(1, n):
-        for j in range(max(1, i - band), min(m, i + band + 1)):
-            best, chosen = total[i - 1, j - 1], 0
-            passed = 0.0
-            for s in range(1, min(limit, j - 1) + 1):
-                passed += cost[i, j - s]
-                if total[i - 1, j - 1 - s] + passed < best:
-                    best, chosen = total[i - 1, j - 1 - s] + passed, s
-            passed = 0.0
-            for s in range(1, min(limit, i - 1) + 1):
-                passed += cost[i - s, j]
-                if total[i - 1 - s, j - 1] + passed < best:
-                    best, chosen = total[i - 1 - s, j - 1] + passed, -s
-            total[i, j] = best + cost[i, j]
-            run[i, j] = chosen
-    if total[n - 1, m - 1] == np.inf:
-        return np.empty((0, 2), np.int64)
-    return _traced(run)
-
-
-@compiled
-def _traced(run):
-    n, m = run.shape
-    path = np.empty((n + m, 2), np.int64)
-    i, j, at = n - 1, m - 1, n + m
-    while True:
-        s = 0 if i == 0 or j == 0 else run[i, j]
-        for _ in range(abs(s)):
-            at -= 1
-            path[at, 0], path[at, 1] = i, j
-            if s > 0:
-                j -= 1
-            else:
-                i -= 1
-        at -= 1
-        path[at, 0], path[at, 1] = i, j
-        if i == 0 and j == 0:
-            break
-        if i > 0 and j > 0:
-            i -= 1
-            j -= 1
-        elif i > 0:
-            i -= 1
-        else:
-            j -= 1
-    return path[at:].copy()
+    margin = limit + 1
+    cells = np.full((margin + n, margin + m), np.inf, cost.dtype)
+    cells[margin:, margin:] = cost
+    row = margin + m
+    return _path_between(cells.ravel(), margin * row + margin, n, row, m, row + 1, m - 1, limit)
 
 
 @compiled
@@ -178,12 +124,12 @@ def closed_path(cost, shift, limit, band):
     about the line in which each path keeps. The number of frames divides by 4.
     """
     n = cost.shape[0]
-    coarse = limited_path(_unrolled(cost, 0, 2 * band, band // 2, 2), limit, band // 2)
+    coarse = _path_near_line(cost, 0, 2 * band, band // 2, 2, limit)
     middle = 0
     while coarse[middle, 0] < n // 4:
         middle += 1
     begin, lead = n // 2, 2 * (coarse[middle, 1] - coarse[middle, 0])
-    path = limited_path(_unrolled(cost, begin, 2 * band + lead, band, 1), limit, band)[:-1]
+    path = _path_near_line(cost, begin, 2 * band + lead, band, 1, limit)[:-1]
     for step in range(len(path)):
         path[step, 0] = (path[step, 0] + begin) % n
         path[step, 1] = (path[step, 1] + begin + shift + lead) % n
@@ -191,13 +137,83 @@ def closed_path(cost, shift, limit, band):
 
 
 @compiled
-def _unrolled(cost, begin, lead, band, every):
-    """Map of two cycles, of every n-th frame from one on to the same again, within a band."""
-    n = cost.shape[0]
-    size = n // every + 1
-    piece = np.full((size, size), np.inf)
-    for i in range(size):
-        row = cost[(begin + i * every) % n]
-        for j in range(max(0, i - band), min(size, i + band + 1)):
-            piece[i, j] = row[lead + (j - i) * every]
-    return piece
+def _path_near_line(cost, begin, lead, band, every, limit):
+    """Path from one frame of two cycles, of which every n-th is taken, on to the same one again."""
+    n_frames, width = cost.shape[0], 2 * band + 1
+    n_rows, length = n_frames // every + 1, (width + 7) // 8 * 8  # whole vectors of numbers
+    margin, row = limit + 1, 2 * limit + length
+    cells = np.full((margin + n_rows, row), np.inf, cost.dtype)
+    for i in range(n_rows):
+        leads = cost[(begin + i * every) % n_frames]
+        for x in range(max(0, band - i), min(width, band + n_rows - i)):
+            cells[margin + i, limit + x] = leads[lead + (x - band) * every]
+    return _path_between(
+        cells.ravel(), margin * row + limit, n_rows, row, length, row, n_rows - 1, limit, band
+    )
+
+
+@compiled
+def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0):
+    """Path from the first frames of two clips to the last, through cells that lie in one line.
+
+    A cell is reached by a diagonal step, after which up to `limit` frames of one clip may pass.
+    All that it can be reached from stands in rows before, so each row is summed up at once.
+
+    cost: cells of a map in one line, with a margin of infinite ones; begin: where the first row
+    begins; n_rows, row, length: how many rows there are, how far apart, how many cells in each;
+    across: how far a step of both clips leads; last: frame of the second clip at which the path
+    ends; first: which cell of the first row the path begins with.
+    """
+    total = np.full(len(cost), np.inf, cost.dtype)
+    start = begin + first - across
+    total[start] = 0.0
+    passed, climbed = np.empty(length, cost.dtype), np.empty(length, cost.dtype)
+    for at in range(begin, begin + n_rows * row, row):
+        best = total[at : at + length]
+        best[:] = total[at - across : at - across + length]
+        passed[:] = 0.0
+        climbed[:] = 0.0
+        for s in range(1, limit + 1):
+            beside, source = cost[at - s :], total[at - across - s :]
+            below, deeper = cost[at - s * across + s :], total[at - (s + 1) * across + s :]
+            for x in range(length):
+                passed[x] += beside[x]
+                climbed[x] += below[x]
+                best[x] = min(best[x], min(source[x] + passed[x], deeper[x] + climbed[x]))
+        best += cost[at : at + length]
+    i, j = n_rows - 1, last
+    end = start + n_rows * across + (j - i)
+    if total[end] == np.inf:
+        return np.empty((0, 2), np.int64)
+    path = np.empty((2 * (i + j + 2), 2), np.int64)
+    step, at = len(path), end
+    while at != start:
+        s = _frames_passed(cost, total, at, across, limit)
+        for _ in range(abs(s)):
+            step -= 1
+            path[step, 0], path[step, 1] = i, j
+            if s > 0:
+                j -= 1
+            else:
+                i -= 1
+        step -= 1
+        path[step, 0], path[step, 1] = i, j
+        i -= 1
+        j -= 1
+        at -= across + s if s > 0 else across - s * (across - 1)
+    return path[step:].copy()
+
+
+@compiled
+def _frames_passed(cost, total, at, across, limit):
+    """Frames of the second clip that pass before a cell, below 0 those of the first."""
+    best, chosen = total[at - across], 0
+    passed, climbed = 0.0, 0.0
+    for s in range(1, limit + 1):
+        passed += cost[at - s]
+        climbed += cost[at - s * across + s]
+        if total[at - across - s] + passed < best:
+            best, chosen = total[at - across - s] + passed, s
+        if total[at - (s + 1) * across + s] + climbed < best:
+            best, chosen = total[at - (s + 1) * across + s] + climbed, -s
+    return chosen

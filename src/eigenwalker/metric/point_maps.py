@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenwalker.metric.frame_metrics import Shape
-from eigenwalker.metric.kernels import SHAPE_CODES, rows_of_map
+from eigenwalker.metric.frame_metrics import SHAPES, Shape
+from eigenwalker.metric.kernels import (
+    SHAPE_CODES,
+    rows_of_map,
+    squares_of_point,
+    turns_of_point,
+)
 from eigenwalker.metric.threads import in_threads
 
 _ROWS = 32
@@ -93,16 +98,20 @@ def _filled(
 ) -> np.ndarray:
     """Fill a map by blocks of rows; of a clip with itself half of them, which is mirrored."""
     rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
-    fill_rows = _powers if shape == "power" else rows_of_map
+    by_point = shape == "power" or a.shape[2] == 4
     half = a is b
     result = np.empty((len(a), len(b)))
 
     def fill(start: int) -> None:
         block = slice(start, start + _ROWS)
         first = start if half else 0
-        fill_rows(
-            rows[block], columns, weights, SHAPE_CODES[shape], parameter, first, result[block]
-        )
+        if by_point:
+            _fill_point_by_point(
+                rows[block], columns, weights, shape, parameter, first, result[block]
+            )
+        else:
+            code = SHAPE_CODES[shape]
+            rows_of_map(rows[block], columns, weights, code, parameter, first, result[block])
         if half:
             result[start + _ROWS :, block] = result[block, start + _ROWS :].T
 
@@ -110,22 +119,26 @@ def _filled(
     return result
 
 
-def _powers(
+def _fill_point_by_point(
     rows: np.ndarray,
     columns: np.ndarray,
     weights: np.ndarray,
-    _code: int,
-    exponent: float,
+    shape: Shape,
+    parameter: float,
     first: int,
     result: np.ndarray,
 ) -> None:
-    """Fill rows of a map with shape "power": numpy knows a faster power than numba does."""
-    result[:, first:] = 0
-    one, distances = np.ones(1), np.zeros_like(result)
+    """Fill rows of a map by functions that numpy has in a faster form than numba: powers, angles."""
+    fill_point = squares_of_point if rows.shape[2] == 3 else turns_of_point
+    distances = np.empty_like(result)
+    filled, total = distances[:, first:], result[:, first:]
+    total[:] = 0
     for k, weight in enumerate(weights):
-        point = slice(k, k + 1)
-        rows_of_map(rows[:, point].copy(), columns[point], one, 0, 1.0, first, distances)
-        result[:, first:] += weight * distances[:, first:] ** exponent
+        fill_point(rows[:, k], columns[k], first, distances)
+        if rows.shape[2] == 3:
+            total += weight * filled ** (parameter / 2)
+        else:
+            total += weight * SHAPES[shape](4 * np.arctan(np.sqrt(filled)), parameter)
 
 
 def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:

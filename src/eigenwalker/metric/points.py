@@ -65,7 +65,8 @@ def told_alike(clips: Sequence[xr.DataArray]) -> list[xr.DataArray]:
     What positions tell of a joint's turn is not what was captured of it, so angles are compared
     of one kind only.
     """
-    if all("rotation" in clip.coords for clip in clips):
+    told = ["rotation" in clip.coords for clip in clips]
+    if all(told) or not any(told):
         return list(clips)
     return [clip.drop_vars("rotation", errors="ignore") for clip in clips]
 
