@@ -181,7 +181,12 @@ def test_weights_are_fitted_to_answers_and_reported(run, tmp_path):
     assert (again[0], "66 pairs of 12 walks by weights" in again[1]) == (0, True), again[2]
     page = (tmp_path / "fit" / "report.html").read_text()
     assert "distance in walker space" in page
-    assert page.count("<img") == 2
+    assert page.count("<img") == 3
+    by_choices = pd.read_csv(tmp_path / "fit" / "weights-by-choices.csv", index_col="group")
+    assert np.corrcoef(by_choices.relative, planted[by_choices.index])[0, 1] > 0.95
+    assert f"forearm {by_choices.relative.forearm:.2f}" in said
+    again = run(people, "--metric", tmp_path / "fit" / "weights-by-choices.csv")
+    assert (again[0], "by weights-by-choices" in again[1]) == (0, True), again[2]
 
 
 def test_flagged_walkers_are_left_out_unless_asked_for(run, people, tmp_path):

@@ -118,7 +118,12 @@ def test_many_classes_all_look_different():
 
 
 def test_weights_and_predictions_are_those_given():
-    axes = figure_weights(["a", "b"], [0.7, 0.3], [0.5, 0.0], [0.8, 0.5]).axes[0]
-    np.testing.assert_allclose(axes.lines[0].get_xdata(), [0.7, 0.3])
+    fits = {
+        "choices": ([0.7, 0.3], [0.5, 0.0], [0.8, 0.5]),
+        "differences": ([0.6, 0.4], [0.4, 0.2], [0.9, 0.6]),
+    }
+    axes = figure_weights(["a", "b"], fits).axes[0]
+    for drawn, (weights, _, _) in zip(axes.lines, fits.values(), strict=False):
+        np.testing.assert_allclose(drawn.get_xdata(), weights)
     points = figure_predictions([0.5, 0.9], [0.6, 0.8]).axes[0].lines[1]
     np.testing.assert_allclose(points.get_xydata(), [[0.5, 0.6], [0.9, 0.8]])

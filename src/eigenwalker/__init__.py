@@ -29,6 +29,7 @@ _HOME = {
     "Route": "simulation",
     "Skeleton": "skeleton",
     "Stimulus": "stimulus",
+    "Trials": "metric.answers",
     "UnitGuessed": "mocap",
     "UnreadableFile": "mocap",
     "Walker": "walker",
@@ -36,12 +37,14 @@ _HOME = {
     "WalkerWidget": "widget",
     "angle_between": "metric.angles",
     "assess": "quality",
+    "bootstrap_choices": "metric.choices",
     "bootstrap_weights": "metric.observers",
     "classify": "classification",
     "clip_components": "metric.clip_distances",
     "clip_distance": "metric.clip_distances",
     "clusters_of_walks": "metric.difference_structure",
     "comparable_walk": "metric.comparable",
+    "compare_by_choices": "metric.choices",
     "compare_metrics": "metric.fit_quality",
     "compare_walks": "metric.comparison",
     "contrast": "contrasts",
@@ -50,6 +53,7 @@ _HOME = {
     "decompose_pca": "decomposition",
     "direction": "caricature",
     "draw_people": "simulation",
+    "expected_differences": "metric.choices",
     "fetch_captures": "downloads",
     "figure_curves": "display.curves",
     "figure_eigenpostures": "display.eigenpostures",
@@ -62,6 +66,7 @@ _HOME = {
     "figure_variance": "display.components",
     "figure_walkers": "display.bodies",
     "find_transitions": "metric.transitions",
+    "fit_choices": "metric.choices",
     "fit_folder": "study",
     "fit_from_random_starts": "metric.outer_search",
     "from_movement": "interchange",
@@ -102,6 +107,7 @@ _HOME = {
     "read_mat": "mocap.mat",
     "read_mm": "walker_files",
     "read_mocap": "mocap",
+    "read_trials": "metric.answers",
     "read_walkers_mat": "walker_files",
     "register": "metric.registration",
     "register_by_spline": "metric.spline_warps",
@@ -125,6 +131,7 @@ _HOME = {
     "true_direction": "simulation",
     "true_events": "simulation",
     "truth_of": "simulation",
+    "unseen_differences": "metric.choices",
     "virtual_markers": "mocap",
     "walker_from_file": "attempts",
     "walker_from_mm": "walker_tables",
@@ -184,7 +191,14 @@ if TYPE_CHECKING:
     from eigenwalker.mending import mend as mend
     from eigenwalker.metric.angles import angle_between as angle_between
     from eigenwalker.metric.angles import joint_quaternions as joint_quaternions
+    from eigenwalker.metric.answers import Trials as Trials
     from eigenwalker.metric.answers import count_pairs as count_pairs
+    from eigenwalker.metric.answers import read_trials as read_trials
+    from eigenwalker.metric.choices import bootstrap_choices as bootstrap_choices
+    from eigenwalker.metric.choices import compare_by_choices as compare_by_choices
+    from eigenwalker.metric.choices import expected_differences as expected_differences
+    from eigenwalker.metric.choices import fit_choices as fit_choices
+    from eigenwalker.metric.choices import unseen_differences as unseen_differences
     from eigenwalker.metric.clip_distances import clip_components as clip_components
     from eigenwalker.metric.clip_distances import clip_distance as clip_distance
     from eigenwalker.metric.clip_distances import pair_components as pair_components

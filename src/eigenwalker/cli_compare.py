@@ -47,7 +47,7 @@ def compare(
         str,
         typer.Option(
             help="positions-, angles- or velocities- with sigmoid, absolute or squared; lee; "
-            "kovar; or the weights.csv of a fit to answers."
+            "kovar; or a file of weights that a fit to answers wrote."
         ),
     ] = "positions-sigmoid",
     own_bodies: Annotated[
@@ -255,12 +255,17 @@ def _answers(path: Path, metric: GroupMetric) -> pd.DataFrame:
 
 
 def _fit(walks: Walks, answers: pd.DataFrame, output: Path | None, metric: GroupMetric) -> None:
-    from eigenwalker.report.fitted_metric import fit_answers, in_words, write_fitted_metric
+    from eigenwalker.report.fitted_metric import (
+        fit_answers,
+        in_words,
+        weights_side_by_side,
+        write_fitted_metric,
+    )
 
-    with _bar("Comparing all pairs") as progress:
+    with _bar("Fitting to answers") as progress:
         found = fit_answers(walks, answers, metric.name, progress=progress)
     print("\n".join(in_words(found)))
-    print(found.weights.to_string(float_format=lambda x: f"{x:.3g}"))
+    print(weights_side_by_side(found).to_string(float_format=lambda x: f"{x:.2f}"))
     if output is not None:
         print(f"Report: {write_fitted_metric(output, found)}")
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.display.style import BLUE, GREY, INK, PALE, new_figure, panels
+from eigenwalker.display.style import BLUE, GREY, INK, PALE, RED, SMALL, new_figure, panels
 
 
 def figure_weights(
-    names: Sequence[str], weights: ArrayLike, low: ArrayLike, high: ArrayLike
+    names: Sequence[str], fits: Mapping[str, tuple[ArrayLike, ArrayLike, ArrayLike]]
 ) -> Figure:
     """Return the relative weight of each joint group with its interval, as figure 5 lists them.
 
@@ -20,8 +20,9 @@ def figure_weights(
     ----------
     names : sequence of str
         Joint groups.
-    weights, low, high : array of shape (group,)
-        Relative weights and the ends of their intervals.
+    fits : mapping of str to three arrays of shape (group,)
+        One or two fits by what they were fitted to: relative weights and the ends of their
+        intervals.
 
     Returns
     -------
@@ -29,23 +30,32 @@ def figure_weights(
 
     Examples
     --------
-    >>> figure = figure_weights(["forearm", "toe"], [0.8, 0.2], [0.6, 0.0], [0.9, 0.4])
+    >>> fits = {"shares": ([0.8, 0.2], [0.6, 0.0], [0.9, 0.4])}
+    >>> figure = figure_weights(["forearm", "toe"], fits)
     >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
     ['forearm', 'toe']
 
     """
-    weights, low, high = (np.asarray(each, dtype=float) for each in (weights, low, high))
-    figure = new_figure(4.0, 0.6 + 0.22 * len(names))
+    several = len(fits) > 1
+    figure = new_figure(4.0, 0.6 + (0.3 if several else 0.22) * len(names) + 0.2 * several)
     axes = panels(figure, 1, 1)[0][0]
     places = np.arange(len(names))
-    axes.hlines(places, low, high, color=BLUE, lw=1.6)
-    axes.plot(weights, places, "o", color=BLUE, ms=4.5)
+    least = 0.0
+    for count, ((name, (weights, low, high)), color) in enumerate(
+        zip(fits.items(), (BLUE, RED), strict=False)
+    ):
+        at = places + (count - (len(fits) - 1) / 2) * 0.3
+        axes.hlines(at, low, high, color=color, lw=1.6)
+        axes.plot(weights, at, "os"[count], color=color, ms=4.5, label=name)
+        least = min(least, np.min(low))
     axes.axvline(0, color=PALE, lw=0.6, zorder=0)
     axes.set_yticks(places, [name.replace("_", " ") for name in names])
     axes.tick_params(axis="y", length=0)
     axes.invert_yaxis()
-    axes.set_xlim(left=min(0.0, low.min()) - 0.02)
+    axes.set_xlim(left=least - 0.02)
     axes.set_xlabel("Relative weight, with 95 % interval")
+    if several:
+        figure.legend(loc="outside upper center", ncols=2, fontsize=SMALL, frameon=False)
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Which pairs observers chose as the most similar, counted (P5, P6)."""
+"""Which pairs observers chose as the most similar, trial by trial and counted (P5, P6)."""
 
 from __future__ import annotations
 
@@ -48,14 +48,115 @@ class PairCounts:
         return pd.Series(shares, index=self.pairs, name="difference")
 
 
-def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[object] | None = None) -> PairCounts:
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """Which pairs each answered trial showed, and which of them was chosen.
+
+    Parameters
+    ----------
+    pairs : MultiIndex
+        The two walkers of each pair, as in `PairCounts`.
+    observers : tuple
+        Their names.
+    observer : array of int of shape (trial,)
+        Whose trial it was, as a number in `observers`.
+    shown : array of int of shape (trial, 6)
+        The pairs of the four walkers shown, as rows of `pairs`. Other experiments may show more
+        pairs or fewer.
+    chosen : array of int of shape (trial,)
+        Which of those shown was chosen, from 0.
+
+    """
+
+    pairs: pd.MultiIndex
+    observers: tuple
+    observer: np.ndarray
+    shown: np.ndarray
+    chosen: np.ndarray
+
+    def __repr__(self) -> str:
+        return (
+            f"Trials({len(self.chosen)} of {len(self.observers)} observers, "
+            f"{len(self.pairs)} pairs)"
+        )
+
+    @property
+    def chosen_pairs(self) -> np.ndarray:
+        """The pair chosen in each trial, as a row of `pairs`."""
+        return self.shown[np.arange(len(self.shown)), self.chosen]
+
+
+def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = None) -> Trials:
+    """Return answers trial by trial, checked.
+
+    Parameters
+    ----------
+    answers, walkers
+        As for `count_pairs`.
+
+    Returns
+    -------
+    Trials
+
+    Raises
+    ------
+    ValueError
+        As `count_pairs` does.
+
+    Examples
+    --------
+    >>> answers = pd.DataFrame(
+    ...     [["Eva", "w1", "w2", "w3", "w4", "w2", "w4"]],
+    ...     columns=["observer", "a", "b", "c", "d", "chosen_1", "chosen_2"],
+    ... )
+    >>> trials = read_trials(answers)
+    >>> trials.pairs[trials.chosen_pairs].tolist()
+    [('w2', 'w4')]
+
+    """
+    columns = ["observer", *SHOWN, *CHOSEN]
+    if missing := [name for name in columns if name not in answers]:
+        raise ValueError(
+            f"Answers need the columns {columns}; {missing} are missing from {list(answers)}."
+        )
+    given = answers[columns].notna().to_numpy()
+    kept = given[:, -2:].all(axis=1)
+    answered, lines = pd.DataFrame(answers[kept]), 2 + np.flatnonzero(kept)
+    _refuse_empty(given[kept], columns, lines)
+    shown, chosen = (_names_in(answered, names) for names in (SHOWN, CHOSEN))
+    names = sorted(set(shown.ravel().tolist()))
+    if walkers is not None:
+        names = [as_name(each) for each in walkers]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"Each walker is to be named once; {twice[:20]} come more than once.")
+    _check_trials(shown, chosen, lines, set(names))
+    number = {name: index for index, name in enumerate(names)}
+    seen, picked = (np.vectorize(number.__getitem__)(table) for table in (shown, chosen))
+    observers, who = np.unique(_names_in(answered, ["observer"])[:, 0], return_inverse=True)
+    rows, columns = np.triu_indices(len(names), 1)
+    place = np.zeros((len(names), len(names)), dtype=int)
+    place[rows, columns] = place[columns, rows] = np.arange(len(rows))
+    six = np.stack([place[seen[:, i], seen[:, j]] for i, j in combinations(range(4), 2)], axis=1)
+    return Trials(
+        pairs=pd.MultiIndex.from_tuples(combinations(names, 2), names=["first", "second"]),
+        observers=tuple(observers.tolist()),
+        observer=who,
+        shown=six,
+        chosen=(six == place[picked[:, 0], picked[:, 1]][:, None]).argmax(axis=1),
+    )
+
+
+def count_pairs(
+    answers: pd.DataFrame | Trials, *, walkers: Sequence[object] | None = None
+) -> PairCounts:
     """Return how often each observer was shown each pair, and chose it as the most similar.
 
     Parameters
     ----------
     answers : DataFrame
         One row a trial: ``observer``; the four walkers shown, ``a`` to ``d``; and the two chosen,
-        ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not count (A34).
+        ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not count (A34). Or
+        `Trials`, which have been read.
     walkers : sequence of str, optional
         All walkers in the order of pairs wanted, such as that of a `group_table`; left out, those
         that were shown, sorted. Numbers may stand for names.
@@ -85,32 +186,11 @@ def count_pairs(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     (np.float64(0.0), np.float64(1.0))
 
     """
-    columns = ["observer", *SHOWN, *CHOSEN]
-    if missing := [name for name in columns if name not in answers]:
-        raise ValueError(
-            f"Answers need the columns {columns}; {missing} are missing from {list(answers)}."
-        )
-    given = answers[columns].notna().to_numpy()
-    kept = given[:, -2:].all(axis=1)
-    answered, lines = pd.DataFrame(answers[kept]), 2 + np.flatnonzero(kept)
-    _refuse_empty(given[kept], columns, lines)
-    shown, chosen = (_names_in(answered, names) for names in (SHOWN, CHOSEN))
-    names = sorted(set(shown.ravel())) if walkers is None else [as_name(each) for each in walkers]
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise ValueError(f"Each walker is to be named once; {twice[:20]} come more than once.")
-    _check_trials(shown, chosen, lines, set(names))
-    number = {name: index for index, name in enumerate(names)}
-    seen, picked = (np.vectorize(number.__getitem__)(table) for table in (shown, chosen))
-    observers, who = np.unique(_names_in(answered, ["observer"])[:, 0], return_inverse=True)
-    rows, columns = np.triu_indices(len(names), 1)
-    place = np.zeros((len(names), len(names)), dtype=int)
-    place[rows, columns] = place[columns, rows] = np.arange(len(rows))
-    counts = np.zeros((2, len(observers), len(rows)))
-    for first, second in combinations(range(4), 2):
-        np.add.at(counts[0], (who, place[seen[:, first], seen[:, second]]), 1)
-    np.add.at(counts[1], (who, place[picked[:, 0], picked[:, 1]]), 1)
-    pairs = pd.MultiIndex.from_tuples(combinations(names, 2), names=["first", "second"])
-    return PairCounts(pairs, tuple(observers.tolist()), chosen=counts[1], shown=counts[0])
+    trials = answers if isinstance(answers, Trials) else read_trials(answers, walkers=walkers)
+    counts = np.zeros((2, len(trials.observers), len(trials.pairs)))
+    np.add.at(counts[0], (trials.observer[:, None], trials.shown), 1)
+    np.add.at(counts[1], (trials.observer, trials.chosen_pairs), 1)
+    return PairCounts(trials.pairs, trials.observers, chosen=counts[1], shown=counts[0])
 
 
 def as_name(said: object) -> str:

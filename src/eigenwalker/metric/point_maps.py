@@ -128,7 +128,7 @@ def _fill_point_by_point(
     first: int,
     result: np.ndarray,
 ) -> None:
-    """Fill rows of a map by functions that numpy has in a faster form than numba: powers, angles."""
+    """Fill rows of a map by powers or arc tangents, of which numpy has a faster form."""
     fill_point = squares_of_point if rows.shape[2] == 3 else turns_of_point
     distances = np.empty_like(result)
     filled, total = distances[:, first:], result[:, first:]

@@ -8,28 +8,34 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 from scipy.spatial.distance import pdist
 from sklearn.model_selection import cross_val_predict
 
 from eigenwalker.display.fitted_weights import figure_predictions, figure_weights
 from eigenwalker.folds import Progress
-from eigenwalker.metric.answers import PairCounts, as_name, count_pairs
+from eigenwalker.metric.answers import PairCounts, as_name, count_pairs, read_trials
+from eigenwalker.metric.choices import (
+    bootstrap_choices,
+    compare_by_choices,
+    expected_differences,
+    fit_choices,
+    unseen_differences,
+)
 from eigenwalker.metric.comparison import by_metric
 from eigenwalker.metric.fit_quality import compare_metrics, leave_walkers_out
 from eigenwalker.metric.group_tables import group_table
-from eigenwalker.metric.observers import Reliability, bootstrap_weights, split_half
+from eigenwalker.metric.observers import Bootstrap, Reliability, bootstrap_weights, split_half
 from eigenwalker.metric.perceptual import PerceptualMetric
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.report.compared_walks import Walks
 from eigenwalker.report.content import Figure, Items, Report, Section, Table, Text
-from eigenwalker.report.metric_files import WEIGHTS_NAME, write_weights
+from eigenwalker.report.metric_files import BY_CHOICES_NAME, WEIGHTS_NAME, write_weights
 from eigenwalker.report.page import write_report
 from eigenwalker.report.two_walks import CITE, in_plain
 from eigenwalker.space import WalkerSpace
 
 FITTED = "fitted to these answers"
-PAIRS_NAME = "pairs.csv"
+PAIRS_NAME, COMPARED_NAME = "pairs.csv", "metrics.csv"
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,13 +50,15 @@ class FittedMetric:
         Fitted.
     counts : PairCounts
         The answers.
-    weights : DataFrame of groups
-        ``weight``, ``relative`` and the columns of `Bootstrap.intervals`.
+    weights, by_choices : DataFrame of groups
+        Weights fitted to shares and to choices: ``weight``, ``relative`` and the columns of
+        `Bootstrap.intervals`.
     pairs : DataFrame of pairs
         ``shown``, ``difference``, ``predicted``, and ``unseen``: predicted by weights to which
-        neither walker of the pair had contributed.
+        neither walker of the pair had contributed; ``expected`` and ``expected_unseen``, the same
+        by weights fitted to choices.
     compared : DataFrame of metrics
-        As `compare_metrics` gives it.
+        As `compare_metrics` gives it, and ``choices_`` before the columns of `compare_by_choices`.
     reliability : Reliability
         Of the answers.
 
@@ -60,6 +68,7 @@ class FittedMetric:
     model: PerceptualMetric
     counts: PairCounts
     weights: pd.DataFrame
+    by_choices: pd.DataFrame
     pairs: pd.DataFrame
     compared: pd.DataFrame
     reliability: Reliability
@@ -84,7 +93,7 @@ def fit_answers(
     metric : str
         Name of the published metric whose component and function F to take.
     progress : callable, optional
-        Called with the number of clips and pairs that are done, and of all.
+        Called with what is done and what there is to do: pairs, then samples, then metrics.
 
     Raises
     ------
@@ -94,11 +103,10 @@ def fit_answers(
 
     """
     names = list(walks.clips)
-    counts = count_pairs(_named_as(answers, names), walkers=names)
+    trials = read_trials(_named_as(answers, names), walkers=names)
+    counts = count_pairs(trials)
     y = counts.differences.to_numpy()
     kept = np.isfinite(y)
-    if not kept.any():
-        raise ValueError("No two of these walks were shown together in an answered trial.")
     if not kept.all():
         first, second = counts.pairs[int(kept.argmin())]
         warnings.warn(
@@ -106,38 +114,51 @@ def fit_answers(
             f"{second}; they are left out of the fit.",
             stacklevel=2,
         )
-    X = group_table(walks.clips, metric, progress=progress)[kept]
-    y, pairs = y[kept], counts.pairs[kept].tolist()
-    chosen, shown = counts.chosen[:, kept], counts.shown[:, kept]
-    model = PerceptualMetric().fit(X, y)
-    sampled = bootstrap_weights(X, chosen, shown, pairs=pairs)
-    published = by_metric(walks.clips, list(PUBLISHED))[kept]
-    others = {f"{name}, as published": published[name] for name in PUBLISHED}
-    tables: dict[str, ArrayLike] = {FITTED: X, **others}
+    table = group_table(walks.clips, metric, progress=progress)
+    published = by_metric(walks.clips, list(PUBLISHED))
+    others = {f"{name}, as published": published[name].to_numpy() for name in PUBLISHED}
+    tables = {FITTED: table.to_numpy(), **others}
     if walks.vectors:
         vectors = np.stack([walks.vectors[name] for name in names])
-        tables["distance in walker space"] = pdist(WalkerSpace().fit_transform(vectors))[kept]
-    weights = pd.DataFrame(
-        {"weight": model.weights_, "relative": model.relative_weights_}, index=X.columns
-    )
-    unseen = cross_val_predict(PerceptualMetric(), X, y, cv=leave_walkers_out(pairs))
+        tables["distance in walker space"] = pdist(WalkerSpace().fit_transform(vectors))
+    X, y, pairs = table[kept], y[kept], counts.pairs[kept].tolist()
+    chosen, shown = counts.chosen[:, kept], counts.shown[:, kept]
+    model = PerceptualMetric().fit(X, y)
+    to_choices = fit_choices(table, trials)
+    by_shares = compare_metrics({name: each[kept] for name, each in tables.items()}, y, pairs)
     return FittedMetric(
         name=metric,
         model=model,
         counts=counts,
-        weights=weights.join(sampled.intervals(X.columns)).rename_axis("group"),
+        weights=_with_intervals(
+            list(X.columns), model.weights_, bootstrap_weights(X, chosen, shown, pairs=pairs)
+        ),
+        by_choices=_with_intervals(
+            list(X.columns), to_choices.weights, bootstrap_choices(table, trials, progress=progress)
+        ),
         pairs=pd.DataFrame(
             {
                 "shown": shown.sum(axis=0),
                 "difference": y,
                 "predicted": model.predict(X),
-                "unseen": unseen,
+                "unseen": cross_val_predict(PerceptualMetric(), X, y, cv=leave_walkers_out(pairs)),
+                "expected": expected_differences(table @ to_choices.weights, trials)[kept],
+                "expected_unseen": unseen_differences(table, trials)[kept],
             },
             index=counts.pairs[kept],
         ),
-        compared=compare_metrics(tables, y, pairs),
+        compared=by_shares.join(
+            compare_by_choices(tables, trials, progress=progress).add_prefix("choices_")
+        ),
         reliability=split_half(chosen, shown),
     )
+
+
+def _with_intervals(groups: list[str], weights: np.ndarray, sampled: Bootstrap) -> pd.DataFrame:
+    total = weights.sum()
+    relative = weights / total if total > 0 else weights
+    table = pd.DataFrame({"weight": weights, "relative": relative}, index=groups)
+    return table.join(sampled.intervals(groups)).rename_axis("group")
 
 
 def _named_as(answers: pd.DataFrame, names: list[str]) -> pd.DataFrame:
@@ -154,22 +175,37 @@ def _named_as(answers: pd.DataFrame, names: list[str]) -> pd.DataFrame:
 def in_words(found: FittedMetric) -> list[str]:
     """Return what a fit says, in sentences."""
     fitted = found.compared.loc[FITTED]
-    most = found.weights.relative.sort_values(ascending=False)
-    parts = [f"{in_plain(g)} {share:.2f}" for g, share in most.items() if share >= 0.005]
-    weighed = ", ".join(parts) if parts else "nothing: no joint group tells anything"
-    others = found.compared.drop(index=FITTED).cv_pearson
+    others = found.compared.drop(index=FITTED)
     said = [
         f"{len(found.counts.observers)} observers, {found.counts.chosen.sum():.0f} answers, "
         f"{len(found.pairs)} pairs. Halves of the observers agree with r = "
         f"{found.reliability.halves:.2f}; no metric can be expected above "
         f"{found.reliability.ceiling:.2f}.",
-        f"Relative weights: {weighed}. Constant {found.model.constant_:.2f}.",
-        f"It predicts these pairs with r = {fitted.pearson:.2f}, pairs of walkers it has not seen "
-        f"with r = {fitted.cv_pearson:.2f}.",
+        f"Fitted to the choices, relative weights are: {_shares_in_words(found.by_choices)}. They "
+        f"foretell the differences of these pairs with r = {fitted.choices_pearson:.2f}, of pairs "
+        f"of walkers they have not seen with r = {fitted.choices_cv_pearson:.2f}.",
+        f"Fitted to the differences, as in the paper: {_shares_in_words(found.weights)}, constant "
+        f"{found.model.constant_:.2f}; r = {fitted.pearson:.2f}, unseen {fitted.cv_pearson:.2f}.",
     ]
-    if others.notna().any():
-        said.append(f"Best of the others is {others.idxmax()}, r = {others.max():.2f}.")
+    best = others[["choices_cv_pearson", "cv_pearson"]].max(axis=1)
+    if best.notna().any():
+        said.append(f"Best of the others is {best.idxmax()}, r = {best.max():.2f} unseen.")
     return said
+
+
+def weights_side_by_side(found: FittedMetric) -> pd.DataFrame:
+    """Return relative weights and their intervals, fitted to choices and to differences."""
+    columns = {"relative": "weight", "relative_low": "low", "relative_high": "high"}
+    sides = {"choices": found.by_choices, "differences": found.weights}
+    return pd.concat(
+        {name: each[list(columns)].rename(columns=columns) for name, each in sides.items()}, axis=1
+    )
+
+
+def _shares_in_words(weights: pd.DataFrame) -> str:
+    most = weights.relative.sort_values(ascending=False)
+    parts = [f"{in_plain(group)} {share:.2f}" for group, share in most.items() if share >= 0.005]
+    return ", ".join(parts) if parts else "none, as no joint group tells anything"
 
 
 def write_fitted_metric(folder: str | Path, found: FittedMetric) -> Path:
@@ -189,10 +225,19 @@ def write_fitted_metric(folder: str | Path, found: FittedMetric) -> Path:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     write_weights(folder / WEIGHTS_NAME, found.weights, found.name)
+    write_weights(folder / BY_CHOICES_NAME, found.by_choices, found.name)
     found.pairs.to_csv(folder / PAIRS_NAME)
+    found.compared.to_csv(folder / COMPARED_NAME)
     sections = [
-        Section("Weights", [_weights_drawn(found), _weights_table(found)]),
-        Section("Predictions", [_predictions(found), _compared(found)]),
+        Section(
+            "Weights",
+            [
+                _weights_drawn(found),
+                _weights_table("choices", found.name, found.by_choices),
+                _weights_table("differences", found.name, found.weights),
+            ],
+        ),
+        Section("Predictions", [*_predictions(found), *_compared(found)]),
         Section("How this was done", [Items(_method(found)), Text(CITE)]),
     ]
     lead = " ".join(in_words(found))
@@ -200,17 +245,23 @@ def write_fitted_metric(folder: str | Path, found: FittedMetric) -> Path:
 
 
 def _weights_drawn(found: FittedMetric) -> Figure:
-    table = found.weights
-    names = [str(group) for group in table.index]
+    names = [str(group) for group in found.weights.index]
+    fits = {"fitted to choices": found.by_choices, "fitted to differences": found.weights}
     return Figure(
-        figure_weights(names, table.relative, table.relative_low, table.relative_high),
-        "How much each joint group weighs, relative to the others; lines hold 95 of 100 samples of "
-        "other observers and walkers.",
-        "; ".join(f"{in_plain(group)} {row.relative:.2f}" for group, row in table.iterrows()),
+        figure_weights(
+            names,
+            {
+                name: (each.relative, each.relative_low, each.relative_high)
+                for name, each in fits.items()
+            },
+        ),
+        "How much each joint group weighs, relative to the others; lines hold 95 of 100 samples, "
+        "of other observers for choices, of other observers and walkers for differences.",
+        "; ".join(f"{name}: {_shares_in_words(each)}" for name, each in fits.items()),
     )
 
 
-def _weights_table(found: FittedMetric) -> Table:
+def _weights_table(what: str, name: str, weights: pd.DataFrame) -> Table:
     rows = [
         [
             in_plain(group),
@@ -219,51 +270,84 @@ def _weights_table(found: FittedMetric) -> Table:
             f"{row.relative_low:.2f} to {row.relative_high:.2f}",
             f"{100 * row.share_zero:.0f} %",
         ]
-        for group, row in found.weights.iterrows()
+        for group, row in weights.iterrows()
     ]
     columns = ["joint group", "weight", "relative", "95 % interval", "samples in which it is 0"]
-    return Table(f"Weights of {found.name}, fitted", columns, rows)
+    return Table(f"Weights of {name}, fitted to {what}", columns, rows)
 
 
-def _predictions(found: FittedMetric) -> Figure:
-    return Figure(
-        figure_predictions(found.pairs.difference, found.pairs.unseen),
-        "Each pair as observers saw it, and as weights predict it that were fitted without its two "
-        "walkers.",
-        f"{len(found.pairs)} points about a diagonal.",
-    )
-
-
-def _compared(found: FittedMetric) -> Table:
-    ordered = found.compared.sort_values("cv_pearson", ascending=False)
-    rows = [
-        [
-            str(name),
-            int(row.n_weights),
-            *map(float, row[["rss", "pearson", "cv_pearson", "cv_rms"]]),
-        ]
-        for name, row in ordered.iterrows()
+def _predictions(found: FittedMetric) -> list[Figure]:
+    return [
+        Figure(
+            figure_predictions(found.pairs.difference[known], predicted[known]),
+            f"Each pair as observers saw it, and as weights fitted to {what} predict it that know "
+            "neither of its two walkers.",
+            f"{int(known.sum())} points about a diagonal.",
+        )
+        for what, predicted in (
+            ("choices", found.pairs.expected_unseen),
+            ("differences", found.pairs.unseen),
+        )
+        if (known := predicted.notna()).any()
     ]
-    return Table(
-        "Metrics compared, each with the constant and the factor or weights that fit best; the "
-        "last two columns are of pairs neither of whose walkers was fitted to",
-        ["metric", "weights", "sum of squares", "r", "r, unseen", "error, unseen"],
-        rows,
-    )
+
+
+def _compared(found: FittedMetric) -> list[Table]:
+    return [
+        _compared_by(
+            found.compared,
+            f"Metrics compared, each with the {what}; unseen are pairs neither of whose walkers "
+            "was fitted to",
+            columns,
+        )
+        for what, columns in (
+            (
+                "factor or weights that fit the choices best",
+                {
+                    "choices_n_weights": "weights",
+                    "choices_bits": "bits above guessing",
+                    "choices_pearson": "r",
+                    "choices_cv_pearson": "r, unseen",
+                },
+            ),
+            (
+                "constant and the factor or weights that fit the differences best",
+                {
+                    "n_weights": "weights",
+                    "rss": "sum of squares",
+                    "pearson": "r",
+                    "cv_pearson": "r, unseen",
+                    "cv_rms": "error, unseen",
+                },
+            ),
+        )
+    ]
+
+
+def _compared_by(compared: pd.DataFrame, title: str, columns: dict[str, str]) -> Table:
+    order = next(column for column in columns if column.endswith("cv_pearson"))
+    rows = [
+        [str(name), int(row.iloc[0]), *map(float, row.iloc[1:])]
+        for name, row in compared.sort_values(order, ascending=False)[list(columns)].iterrows()
+    ]
+    return Table(title, ["metric", *columns.values()], rows)
 
 
 def _method(found: FittedMetric) -> list[str]:
     return [
         "The perceived difference of a pair is the share of times it was shown and not chosen as "
         "the most similar.",
-        f"Component and function are those of {found.name}; weights, none below 0, and a free "
-        "constant are the least squares, which is one solution for certain.",
-        "Intervals are of 1000 samples of observers and walkers, drawn with replacement. Joints "
-        "that go together, such as sternum and shoulders, can take each other's weight: their sum "
-        "is surer than either.",
-        "Pairs that are called unseen are of walkers to whose other pairs no weight was fitted. "
-        "But a trial shows four walkers, so that other pairs' differences come in part from trials "
-        "that showed these walkers too.",
+        f"Component and function are those of {found.name}; no weight is below 0.",
+        "Fitted to choices, weights make the pairs chosen most likely, if a pair's odds against "
+        "another shown beside it fall as e to the power of their distances' difference. This "
+        "likelihood has one maximum. Intervals are of 1000 samples of observers.",
+        "Fitted to differences, as in the paper, weights and a free constant are the least "
+        "squares, of which there is one. Shares of choices level off where walks differ much, and "
+        "no sum of distances does; weights of groups that go together then get mixed up. "
+        "Intervals are of 1000 samples of observers and walkers.",
+        "Unseen are pairs of walkers to whose other pairs no weight was fitted. For choices none "
+        "of the trials counted that showed one of the two. For differences other pairs' shares "
+        "come in part from such trials.",
         "The ceiling is the square root of the answers' reliability (split-half, Spearman and "
         "Brown).",
     ]

@@ -8,7 +8,7 @@ import pandas as pd
 
 from eigenwalker.metric.published import PUBLISHED, GroupMetric
 
-WEIGHTS_NAME = "weights.csv"
+WEIGHTS_NAME, BY_CHOICES_NAME = "weights.csv", "weights-by-choices.csv"
 _COLUMNS = ("group", "weight", "metric")
 
 
