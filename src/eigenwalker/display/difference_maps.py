@@ -30,6 +30,10 @@ from eigenwalker.display.style import (
 from eigenwalker.skeleton import Skeleton
 
 
+STEEPEST = 1.6
+"""How tall a map may make its row of the figure, for its width."""
+
+
 @dataclass(frozen=True)
 class MapPicture:
     """A motion map and what to draw on it.
@@ -140,13 +144,23 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
     """
     n_columns = min(n_columns, len(pictures))
     n_rows = -(-len(pictures) // n_columns)
-    figure = new_figure(0.3 + 2.7 * n_columns, 0.2 + 2.75 * n_rows)
-    grid = [axes for row in panels(figure, n_rows, n_columns) for axes in row]
+    wide = 2.7 if n_columns < 3 else 2.2
+    rows = [pictures[start : start + n_columns] for start in range(0, len(pictures), n_columns)]
+    tall = [0.75 + (wide - 0.8) * min(max(map(_slope, row)), STEEPEST) for row in rows]
+    figure = new_figure(0.3 + wide * n_columns, sum(tall))
+    laid_out = panels(figure, n_rows, n_columns, height_ratios=tall)
+    grid = [axes for row in laid_out for axes in row]
     for axes, picture in zip(grid, pictures, strict=False):
         _draw_map(figure, axes, picture)
     for axes in grid[len(pictures) :]:
         axes.remove()
     return figure
+
+
+def _slope(picture: MapPicture) -> float:
+    """Return how tall a map is for its width, as seconds are as long either way."""
+    spans = [np.ptp(times) + 1e-9 for times in (picture.times_a, picture.times_b)]
+    return float(spans[0] / spans[1])
 
 
 def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
@@ -171,7 +185,7 @@ def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
         axes.set_ylim(a[0] - half_a, a[-1] + half_a)
     if picture.marks is not None:
         axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
-    scale = figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
+    scale = figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0, 0.05, 1)))
     scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
     scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
     scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says

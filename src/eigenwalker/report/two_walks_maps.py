@@ -109,8 +109,8 @@ def passing(found: Comparison, names: tuple[str, str]) -> list[Block]:
         return [drawn, Text("There is no moment at which one could pass into the other unseen.")]
     rows = [list(map(float, row)) for row in best.to_numpy()]
     table = Table(
-        f"{_of_all(len(best), len(passes))} in the seconds shown, and how the second "
-        "walk is to be turned and moved",
+        f"In the seconds shown: {_of_all(len(best), len(passes))}, and how the second walk is to be "
+        "turned and moved",
         ["from first (s)", "into second (s)", "apart (mm)", "turn (deg)", "x (mm)", "y (mm)"],
         rows,
     )
@@ -118,11 +118,9 @@ def passing(found: Comparison, names: tuple[str, str]) -> list[Block]:
 
 
 def _of_all(n_drawn: int, n_found: int) -> str:
-    return (
-        f"The best {n_drawn} of {n_found} transitions"
-        if n_drawn < n_found
-        else f"All {n_found} transitions"
-    )
+    if n_drawn < n_found:
+        return f"the best {n_drawn} of {n_found} transitions"
+    return "one transition" if n_found == 1 else f"all {n_found} transitions"
 
 
 def _map_of_passes(
@@ -141,7 +139,7 @@ def _map_of_passes(
     rings = (
         "Rings mark moments at which one walk can pass into the other and a viewer would hardly "
         "see it: minima of the map that are no more than what moves in a tenth of a second. "
-        f"{_of_all(len(best), n_found)} are drawn."
+        f"Drawn: {_of_all(len(best), n_found)}."
         if len(best)
         else "Dark where one walk is like the other on the whole."
     )
