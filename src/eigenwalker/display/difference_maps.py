@@ -29,7 +29,6 @@ from eigenwalker.display.style import (
 )
 from eigenwalker.skeleton import Skeleton
 
-
 STEEPEST = 1.6
 """How tall a map may make its row of the figure, for its width."""
 

@@ -275,9 +275,10 @@ def compare_by_choices(
     Returns
     -------
     DataFrame
-        Rows are metrics; columns ``n_weights`` (that are not 0); ``bits``, how much likelier than guessing a choice is in the
-        mean, as a power of 2; ``pearson``, the correlation of the differences that are expected
-        with those observed; and ``cv_pearson``, the same of `unseen_differences`.
+        Rows are metrics; columns ``n_weights`` (that are not 0); ``bits``, how much likelier than
+        by guessing a choice is in the mean, as a power of 2; ``pearson``, the correlation of the
+        differences that are expected with those observed; and ``cv_pearson``, the same of
+        `unseen_differences`.
 
     """
     counted = count_pairs(trials)

@@ -109,8 +109,8 @@ def passing(found: Comparison, names: tuple[str, str]) -> list[Block]:
         return [drawn, Text("There is no moment at which one could pass into the other unseen.")]
     rows = [list(map(float, row)) for row in best.to_numpy()]
     table = Table(
-        f"In the seconds shown: {_of_all(len(best), len(passes))}, and how the second walk is to be "
-        "turned and moved",
+        f"In the seconds shown: {_of_all(len(best), len(passes))}, and how the second walk is to "
+        "be turned and moved",
         ["from first (s)", "into second (s)", "apart (mm)", "turn (deg)", "x (mm)", "y (mm)"],
         rows,
     )
