@@ -15,7 +15,7 @@ from eigenwalker.metric.alignment import align_windows
 from eigenwalker.metric.frame_metrics import FrameMetric, shaped
 from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.motion_maps import motion_map, motion_maps
-from eigenwalker.metric.point_maps import point_distances, point_map
+from eigenwalker.metric.point_maps import EXACT, point_distances, point_map
 from eigenwalker.simulation import simulate_walk
 from eigenwalker.trajectories import label_trajectories
 
@@ -53,6 +53,28 @@ def test_maps_are_those_of_cdist(metric, sizes):
     found = point_map(a, b, weights, shape=metric.shape, parameter=metric.scale or 0.3)
     expected = by_cdist(a, b, metric, weights)
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-6)
+
+
+@BY_SHAPE
+def test_large_maps_are_off_by_less_than_a_millionth_of_how_far_points_move(metric):
+    rng = np.random.default_rng(1)
+    a, b = (rng.normal(size=(n, 5, 3)) * 100 + 1e4 for n in (1100, 900))
+    assert 5 * len(a) * len(b) > EXACT
+    weights = np.full(5, 0.2)
+    found = point_map(a, b, weights, shape=metric.shape, parameter=metric.scale or 0.3)
+    np.testing.assert_allclose(found, by_cdist(a, b, metric, weights), rtol=2e-6)
+    own = point_map(a, a, weights, shape=metric.shape, parameter=metric.scale or 0.3)
+    assert np.diagonal(own).max() == 0
+    np.testing.assert_array_equal(own, own.T)
+
+
+def test_large_maps_of_orientations_are_exact_to_a_millionth_of_a_radian():
+    rng = np.random.default_rng(2)
+    a, b = (Rotation.random(n, rng=rng).as_quat()[:, None] for n in (2100, 2000))
+    assert len(a) * len(b) > EXACT
+    found = point_map(a, b, np.ones(1), shape="absolute")
+    expected = 2 * np.arccos(np.minimum(np.abs(a[:, 0] @ b[:, 0].T), 1))
+    np.testing.assert_allclose(found, expected, atol=2e-6)
 
 
 @BY_SHAPE

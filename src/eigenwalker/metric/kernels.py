@@ -14,64 +14,48 @@ from eigenwalker.metric.frame_metrics import Shape
 
 compiled = numba.njit(nogil=True, cache=True, error_model="numpy", fastmath={"contract", "nsz"})
 
-_HALF, _ONE, _TINY = np.float32(0.5), np.float32(1.0), np.float32(1e-18)
-
 SHAPE_CODES: dict[Shape, int] = {"absolute": 0, "squared": 1, "sigmoid": 2, "power": 3}
 
 
 @compiled
-def square_root(square):
-    """Return the root of a number from 0 to 1e37, exactly 0 for 0.
-
-    A guess in single precision and one step of Newton's from there: as exact as the machine's own
-    root, which takes longer.
-    """
-    guess = np.sqrt(np.float32(square))
-    root = np.float64(guess)
-    return root + (square - root * root) * np.float64(_HALF / (guess + _TINY))
-
-
-@compiled
-def _quotient(above, below):
-    """Return above / below, both from 0 to 1e37, in the manner of `square_root`."""
-    inverse = np.float64(_ONE / np.float32(below))
-    return above * (inverse * (2.0 - below * inverse))
-
-
-@compiled
 def rows_of_map(rows, columns, weights, code, parameter, first, result):
-    """Fill rows of a map from a first column on.
+    """Fill rows of a map from a first column on, by any shape but the power.
 
-    rows: (frame, point, 3); columns: (point, 3, other frame); result: (frame, other frame).
+    rows: (frame, point, 3); columns: (point, 3, other frame); weights: (point,); parameter: (1,);
+    all of one precision, in which it is computed; result: (frame, other frame).
     """
-    n_columns = columns.shape[2] - first
-    distances = np.empty(n_columns)
+    row = np.empty(columns.shape[2] - first, rows.dtype)
+    scale = parameter[0]
     for i in range(rows.shape[0]):
-        row = result[i, first:]
         row[:] = 0.0
         for k in range(rows.shape[1]):
             x, y, z, weight = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2], weights[k]
             xs, ys, zs = columns[k, 0, first:], columns[k, 1, first:], columns[k, 2, first:]
-            if code == 0:  # the usual shape in one pass
-                for j in range(n_columns):
+            if code == 0:
+                for j in range(row.size):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    row[j] += weight * square_root(dx * dx + dy * dy + dz * dz)
+                    row[j] += weight * np.sqrt(dx * dx + dy * dy + dz * dz)
+            elif code == 1:
+                for j in range(row.size):
+                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+                    row[j] += weight * (dx * dx + dy * dy + dz * dz)
             else:
-                for j in range(n_columns):
+                for j in range(row.size):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    distances[j] = square_root(dx * dx + dy * dy + dz * dz)
-                _add_shaped(distances, weight, code, parameter, row)
+                    distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+                    row[j] += weight * (distance / (distance + scale))
+        result[i, first:] = row
 
 
 @compiled
-def squares_of_point(rows, columns, first, result):
-    """Fill rows with squared distances of one point from a first column on.
+def squares_of_point(rows, columns, result):
+    """Fill in squared distances of one point.
 
     rows: (frame, 3); columns: (3, other frame); result: (frame, other frame).
     """
-    xs, ys, zs = columns[0, first:], columns[1, first:], columns[2, first:]
+    xs, ys, zs = columns[0], columns[1], columns[2]
     for i in range(rows.shape[0]):
-        row = result[i, first:]
+        row = result[i]
         x, y, z = rows[i, 0], rows[i, 1], rows[i, 2]
         for j in range(row.size):
             dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
@@ -79,18 +63,20 @@ def squares_of_point(rows, columns, first, result):
 
 
 @compiled
-def turns_of_point(rows, columns, first, result):
-    """Fill rows with squared tangents of a quarter of the angle between orientations of one point.
+def turns_of_point(rows, columns, result):
+    """Fill in squared tangents of a quarter of the angle between orientations of one point.
 
     rows: (frame, 4), quaternions; columns: (4, other frame); result: (frame, other frame).
     """
-    ws, xs, ys, zs = columns[0, first:], columns[1, first:], columns[2, first:], columns[3, first:]
+    ws, xs, ys, zs = columns[0], columns[1], columns[2], columns[3]
     for i in range(rows.shape[0]):
-        row = result[i, first:]
+        row = result[i]
         w, x, y, z = rows[i, 0], rows[i, 1], rows[i, 2], rows[i, 3]
         for j in range(row.size):
-            apart = (w - ws[j]) ** 2 + (x - xs[j]) ** 2 + (y - ys[j]) ** 2 + (z - zs[j]) ** 2
-            together = (w + ws[j]) ** 2 + (x + xs[j]) ** 2 + (y + ys[j]) ** 2 + (z + zs[j]) ** 2
+            dw, dx, dy, dz = w - ws[j], x - xs[j], y - ys[j], z - zs[j]
+            sw, sx, sy, sz = w + ws[j], x + xs[j], y + ys[j], z + zs[j]
+            apart = dw * dw + dx * dx + dy * dy + dz * dz
+            together = sw * sw + sx * sx + sy * sy + sz * sz
             row[j] = min(apart, together) / max(apart, together)
 
 
@@ -113,7 +99,7 @@ def rows_of_aligned_map(rows, columns, weights, code, parameter, turns, result):
                 dx = x - (cos[j] * xs[j] - sin[j] * ys[j] + along[j])
                 dy = y - (sin[j] * xs[j] + cos[j] * ys[j] + aside[j])
                 dz = z - zs[j]
-                distances[j] = square_root(dx * dx + dy * dy + dz * dz)
+                distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
             _add_shaped(distances, weights[k], code, parameter, row)
 
 
@@ -127,7 +113,7 @@ def _add_shaped(distances, weight, code, parameter, row):
             row[j] += weight * distances[j] * distances[j]
     elif code == 2:
         for j in range(row.size):
-            row[j] += weight * _quotient(distances[j], distances[j] + parameter)
+            row[j] += weight * distances[j] / (distances[j] + parameter)
     else:
         for j in range(row.size):
             row[j] += weight * distances[j] ** parameter

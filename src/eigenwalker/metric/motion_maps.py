@@ -68,7 +68,8 @@ def motion_map(
     -------
     DataArray of shape (time_a, time_b)
         In the unit of F(d). A point that is missing in either frame is left out and the others
-        weigh more; a cell is NaN where all are missing.
+        weigh more; a cell is NaN where all are missing. Of more than `EXACT` distances, such as
+        520 x 520 frames of 15 joints, a map is exact to six digits only.
 
     Raises
     ------

@@ -2,7 +2,8 @@
 
 Plain dynamic time warping, and the same with slope limits: no more than so many frames of one clip
 in a row while the other stands still (Kovar & Gleicher 2003, section 3.1). Both sum the cells that
-they pass; the distance of two clips is the mean of these cells (P4).
+they pass, so that a way round has to be worth its length; the distance of two clips is the mean of
+these cells (P4).
 """
 
 from __future__ import annotations
@@ -13,6 +14,10 @@ from eigenwalker.metric.kernels import compiled
 
 SLOPE_LIMIT = 3
 """Frames in a row that one clip may stand still: warps from a quarter to four times the speed."""
+
+SLACK = 1e-5
+"""Share of a map's largest cell below which no clip stands still for a gain: where frames hardly
+differ, both go on."""
 
 
 def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.ndarray:
@@ -167,6 +172,7 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
     total = np.full(len(cost), np.inf, cost.dtype)
     start = begin + first - across
     total[start] = 0.0
+    slack = cost.dtype.type(SLACK) * _largest(cost)
     passed, climbed = np.empty(length, cost.dtype), np.empty(length, cost.dtype)
     for at in range(begin, begin + n_rows * row, row):
         best = total[at : at + length]
@@ -177,8 +183,8 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
             beside, source = cost[at - s :], total[at - across - s :]
             below, deeper = cost[at - s * across + s :], total[at - (s + 1) * across + s :]
             for x in range(length):
-                passed[x] += beside[x]
-                climbed[x] += below[x]
+                passed[x] += beside[x] + slack
+                climbed[x] += below[x] + slack
                 best[x] = min(best[x], min(source[x] + passed[x], deeper[x] + climbed[x]))
         best += cost[at : at + length]
     i, j = n_rows - 1, last
@@ -188,7 +194,7 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
     path = np.empty((2 * (i + j + 2), 2), np.int64)
     step, at = len(path), end
     while at != start:
-        s = _frames_passed(cost, total, at, across, limit)
+        s = _frames_passed(cost, total, at, across, limit, slack)
         for _ in range(abs(s)):
             step -= 1
             path[step, 0], path[step, 1] = i, j
@@ -205,13 +211,23 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
 
 
 @compiled
-def _frames_passed(cost, total, at, across, limit):
+def _largest(cost):
+    """Return the largest cell that is finite."""
+    largest = cost.dtype.type(0)
+    for cell in cost:
+        if cell > largest and cell < np.inf:
+            largest = cell
+    return largest
+
+
+@compiled
+def _frames_passed(cost, total, at, across, limit, slack):
     """Frames of the second clip that pass before a cell, below 0 those of the first."""
     best, chosen = total[at - across], 0
     passed, climbed = 0.0, 0.0
     for s in range(1, limit + 1):
-        passed += cost[at - s]
-        climbed += cost[at - s * across + s]
+        passed += cost[at - s] + slack
+        climbed += cost[at - s * across + s] + slack
         if total[at - across - s] + passed < best:
             best, chosen = total[at - across - s] + passed, s
         if total[at - (s + 1) * across + s] + climbed < best:

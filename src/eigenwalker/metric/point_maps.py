@@ -16,6 +16,11 @@ from eigenwalker.metric.threads import in_threads
 _ROWS = 32
 """Rows that one thread takes at a time."""
 
+EXACT = 4_000_000
+"""Distances up to which a map is computed in double precision. Larger ones are in single, about the
+middle of each point, and off by less than a millionth of how far points move: in a third of the
+time."""
+
 _FEW = 200_000
 """Distances below which a second thread costs more than it brings."""
 
@@ -88,6 +93,8 @@ def _map_with_gaps(
     weight = (seen_a * weights) @ seen_b.T.astype(float)
     for k, w in enumerate(weights):
         rows, columns = np.flatnonzero(seen_a[:, k]), np.flatnonzero(seen_b[:, k])
+        if not rows.size or not columns.size:
+            continue
         part = _filled(a[rows, k : k + 1], b[columns, k : k + 1], np.array([w]), shape, parameter)
         total[np.ix_(rows, columns)] += part
     return np.divide(total, weight, out=np.full_like(total, np.nan), where=weight > 1e-12)
@@ -97,48 +104,48 @@ def _filled(
     a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
 ) -> np.ndarray:
     """Fill a map by blocks of rows; of a clip with itself half of them, which is mirrored."""
-    rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
+    result = np.empty((len(a), len(b)))
+    n_distances = result.size * len(weights)
+    precision = np.float32 if n_distances > EXACT else np.float64
+    middle = 0.0 if a.shape[2] == 4 else b.mean(axis=0, keepdims=True)
+    rows = np.ascontiguousarray(a - middle, dtype=precision)
+    columns = np.ascontiguousarray((b - middle).transpose(1, 2, 0), dtype=precision)
+    weights, number = weights.astype(precision), np.array([parameter], dtype=precision)
     by_point = shape == "power" or a.shape[2] == 4
     half = a is b
-    result = np.empty((len(a), len(b)))
 
     def fill(start: int) -> None:
         block = slice(start, start + _ROWS)
         first = start if half else 0
         if by_point:
-            _fill_point_by_point(
-                rows[block], columns, weights, shape, parameter, first, result[block]
-            )
+            cells = _point_by_point(rows[block], columns[:, :, first:], weights, shape, parameter)
+            result[block, first:] = cells
         else:
             code = SHAPE_CODES[shape]
-            rows_of_map(rows[block], columns, weights, code, parameter, first, result[block])
+            rows_of_map(rows[block], columns, weights, code, number, first, result[block])
         if half:
             result[start + _ROWS :, block] = result[block, start + _ROWS :].T
 
-    in_threads(fill, range(0, len(a), _ROWS), few=result.size * len(weights) < _FEW)
+    in_threads(fill, range(0, len(a), _ROWS), few=n_distances < _FEW)
     return result
 
 
-def _fill_point_by_point(
-    rows: np.ndarray,
-    columns: np.ndarray,
-    weights: np.ndarray,
-    shape: Shape,
-    parameter: float,
-    first: int,
-    result: np.ndarray,
-) -> None:
-    """Fill rows of a map by powers or arc tangents, of which numpy has a faster form."""
-    fill_point = squares_of_point if rows.shape[2] == 3 else turns_of_point
-    distances = np.empty_like(result)
-    filled, total = distances[:, first:], result[:, first:]
-    total[:] = 0
+def _point_by_point(
+    rows: np.ndarray, columns: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
+) -> np.ndarray:
+    """Return rows of a map by powers or arc tangents, of which numpy has a faster form."""
+    total = np.zeros((len(rows), columns.shape[2]), dtype=rows.dtype)
+    cells = np.empty_like(total)
     for k, weight in enumerate(weights):
-        fill_point(rows[:, k], columns[k], first, distances)
         if rows.shape[2] == 3:
-            total += weight * filled ** (parameter / 2)
+            squares_of_point(rows[:, k], columns[k], cells)
+            np.power(cells, cells.dtype.type(parameter / 2), out=cells)
+            total += weight * cells
         else:
-            total += weight * SHAPES[shape](4 * np.arctan(np.sqrt(filled)), parameter)
+            turns_of_point(rows[:, k], columns[k], cells)
+            np.arctan(np.sqrt(cells, out=cells), out=cells)
+            total += weight * SHAPES[shape](4 * cells, parameter)
+    return total
 
 
 def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
