@@ -182,12 +182,12 @@ def _lay_out(positions, angle, columns):
     n_frames = positions.shape[0]
     cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
     for k in range(positions.shape[1]):
-        for i in range(columns.shape[2]):
-            frame = i % n_frames
-            x, y = positions[frame, k, 0], positions[frame, k, 1]
+        for i in range(n_frames):
+            x, y = positions[i, k, 0], positions[i, k, 1]
             columns[k, 0, i] = cos * x - sin * y
             columns[k, 1, i] = sin * x + cos * y
-            columns[k, 2, i] = positions[frame, k, 2]
+            columns[k, 2, i] = positions[i, k, 2]
+    columns[:, :, n_frames:] = columns[:, :, : columns.shape[2] - n_frames]
 
 
 @compiled

@@ -21,7 +21,7 @@ EXACT = 4_000_000
 middle of each point, and off by less than a millionth of how far points move: in a third of the
 time."""
 
-_FEW = 200_000
+_FEW = 1_000_000
 """Distances below which a second thread costs more than it brings."""
 
 
