@@ -310,3 +310,19 @@ def test_styles_are_nearer_to_themselves(run, captures, tmp_path):
     rows = re.findall(r"^(\w+) +3 +([\d.]+) +([\d.]+)", said, flags=re.MULTILINE)
     assert [style for style, *_ in rows] == ["active", "feminine", "normal"]
     assert all(float(within) < float(others) for _, within, others in rows)
+
+
+def test_a_unit_is_for_files_that_name_none(run, folder, tmp_path):
+    first, second = folder / "person1_first.c3d", folder / "person2_first.c3d"
+    plain = run(first, second)
+    told = run(first, second, "--unit", "m", "--rate", "30")
+    assert told[0] == 0
+    assert told[1] == plain[1]
+
+
+def test_a_report_is_a_folder(run, folder, tmp_path):
+    two = folder / "person1_first.c3d", folder / "person2_first.c3d"
+    code, _, complaint = run(*two, "-o", tmp_path / "picture.png")
+    assert code != 0
+    assert "name a folder" in complaint
+    assert not (tmp_path / "picture.png").exists()

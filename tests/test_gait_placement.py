@@ -296,3 +296,20 @@ def test_the_steady_strides_of_acted_styles_are_found(captures):
     found = [r2(in_place(virtual_markers(read_mocap(file)))) for file in files]
     assert np.median(found) >= 0.96
     assert min(found) > 0.88
+
+
+def test_a_point_that_stays_in_the_room_is_no_part_of_the_body():
+    walk = simulate_walk(seed=4, duration_s=5.0, truth=False)
+    capture = walking_through_a_room(walk, heading_deg=30.0)
+    origin = (0 * capture.isel(marker=[0])).assign_coords(marker=["origin"])
+    found = in_place(xr.concat([origin, capture], "marker", combine_attrs="override"))
+    expected = in_place(capture)
+    assert found.attrs["still_points"] == "origin"
+    assert found.attrs["speed_mm_s"] == pytest.approx(expected.attrs["speed_mm_s"])
+    np.testing.assert_allclose(found.sel(marker=expected.marker), expected)
+
+
+def test_a_joint_that_stays_where_the_body_stays_is_kept():
+    walk = simulate_walk(seed=4, duration_s=5.0, truth=False)
+    about = plain(walk - walk.sel(marker="pelvis"))
+    assert "pelvis" in in_place(about).marker

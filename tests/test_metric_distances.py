@@ -5,6 +5,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -22,7 +23,7 @@ from eigenwalker.metric.clip_distances import (
 )
 from eigenwalker.metric.frame_metrics import FrameMetric
 from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.metric.registration import register
+from eigenwalker.metric.registration import register, register_walks
 from eigenwalker.simulation import Route, simulate_walk
 from eigenwalker.trajectories import label_trajectories
 
@@ -290,3 +291,55 @@ def test_captured_rotations_count_only_where_both_walks_have_them():
     assert clip_distance(turning, other, metric=metric) == pytest.approx(expected, rel=1e-9)
     both = other.assign_coords(rotation=(other.dims, chance.normal(size=other.shape)))
     assert clip_distance(turning, both, metric=metric) > 1.5 * expected
+
+
+def test_points_that_only_one_clip_has_do_not_matter():
+    walk, other = some_walk(1), some_walk(2)
+    stray = (walk.isel(marker=[0]) * 0 + [0, 0, -700]).assign_coords(marker=["output"])
+    more = xr.concat([walk, stray], "marker", combine_attrs="override")
+    assert clip_distance(more, other) == clip_distance(walk, other)
+
+
+def test_it_is_said_if_bodies_share_few_names():
+    walk = some_walk(1)
+    names = [
+        f"joint {name}" if number > 3 else name for number, name in enumerate(ew.JOINTS.markers)
+    ]
+    with pytest.warns(UserWarning, match="Only 4 points .* of 15 and 15"):
+        clip_distance(walk, some_walk(2).assign_coords(marker=names))
+
+
+def test_walkers_are_compared_by_the_walks_they_make():
+    people = ew.load_population()
+    walkers = people.walkers[:3]
+    table = pair_table(walkers)
+    assert table.index.tolist() == ["0", "1", "2"]
+    walks = [w.trajectories(np.arange(0, 3 * w.period_s, 0.01)) for w in walkers]
+    assert table.loc["0", "2"] == pytest.approx(clip_distance(walks[0], walks[2]))
+    assert clip_distance(walkers[0], walks[0]) == pytest.approx(0, abs=1e-9)
+
+
+def test_walks_are_registered_alike_whichever_comes_first():
+    walk, other = some_walk(1), some_walk(2)
+    there, back = register_walks(walk, other), register_walks(other, walk)
+    np.testing.assert_array_equal(there.path, back.path[:, ::-1])
+    assert there.cost == back.cost
+
+
+@pytest.mark.filterwarnings("ignore:All clips are compared from end to end")
+@pytest.mark.parametrize(("degrees", "way"), [(0, (300.0, 0.0)), (30, (0.0, 0.0)), (200, (50, 9))])
+def test_an_action_elsewhere_in_the_room_is_the_same_action(degrees, way):
+    time = np.arange(0, 1.5, 1 / 120)
+    risen = np.clip((time - 0.4) / 0.6, 0, 1) ** 2
+    places = ([0, 0, 1000], [20, 100, 500], [0, -100, 80])
+    ways = ([600, 0, 300], [500, 10, 320], [700, 0, 250])
+    values = np.stack([np.add(p, risen[:, None] * w) for p, w in zip(places, ways, strict=True)], 1)
+    jump = label_trajectories(values, markers=["pelvis", "left_knee", "left_ankle"], rate_hz=120)
+    assert clip_distance(jump, elsewhere(jump, degrees, way)) < 1e-9
+
+
+def test_noise_makes_little_of_velocities():
+    walk = some_walk(1, rate_hz=120)
+    noise = np.random.default_rng(0).normal(size=walk.shape)
+    between = clip_distance(walk, some_walk(2, rate_hz=120), metric=FrameMetric("velocities"))
+    assert clip_distance(walk, walk + noise, metric=FrameMetric("velocities")) < 0.15 * between

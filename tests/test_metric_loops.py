@@ -187,3 +187,43 @@ def test_a_walk_in_place_gives_the_loop_of_its_capture():
     np.testing.assert_allclose(loop(walk).cycle, loop(capture).cycle)
     less = walk.isel(time=slice(20, None))
     assert loop(less).period_s == pytest.approx(loop(walk).period_s, rel=0.005)
+
+
+@pytest.mark.parametrize("share", [0.8, 0.85, 0.9])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_less_than_a_stride_is_no_loop_wherever_it_begins(seed, share):
+    walk = simulate_walk(seed=seed, truth=False)
+    n_frames = 120 / walk.attrs["frequency_hz"]
+    for start in range(0, 140, 20):
+        piece = walk.isel(time=slice(start, start + round(share * n_frames)))
+        try:
+            found = loop(piece)
+        except NoStrideError:
+            continue
+        assert found.seam_mm > 20  # and it says so
+
+
+def test_clips_that_do_not_repeat_are_told_so_in_words():
+    time = np.arange(0, 1.5, 1 / 120)
+    way = np.clip(time / 1.2, 0, 1) ** 2
+    values = np.stack([[300 * way, 50 + 0 * way, 900 + 200 * way], [0 * way, 0 * way, 1400 + way]])
+    reach = label_trajectories(values.transpose(2, 0, 1), markers=["hand", "head"], rate_hz=120)
+    with pytest.raises(NoStrideError) as refused:
+        loop(reach)
+    assert "operands" not in str(refused.value)
+
+
+def test_points_of_one_name_are_refused():
+    walk = simulate_walk(seed=1, duration_s=3, truth=False)
+    twice = walk.isel(marker=[0, 1, 2, 2])
+    with pytest.raises(ValueError, match=r"\[left_shoulder\] come more than once"):
+        loop(twice)
+
+
+def test_skeletons_with_an_origin_have_the_period_of_their_joints(captures):
+    for name in ("masculine_008", "active_021", "normal_001"):
+        path = captures / "bandai-namco" / f"dataset-2_walk_{name}.bvh"
+        capture = ew.read_mocap(path, unit="cm")
+        joints = ew.in_place(ew.virtual_markers(capture))
+        period = 1 / ew.decompose_fourier(joints).frequency_hz
+        assert loop(capture).period_s == pytest.approx(period, rel=0.01)

@@ -256,8 +256,8 @@ def test_a_map_that_would_not_fit_into_memory_is_refused(n_frames, align):
     [
         ({"by": "colour"}, "by='colour'"),
         ({"shape": "cubed"}, "shape='cubed'"),
-        ({"shape": "sigmoid"}, "scale="),
-        ({"shape": "sigmoid", "scale": -1}, "scale="),
+        ({"shape": "sigmoid", "scale": np.inf}, "is no distance above 0"),
+        ({"shape": "sigmoid", "scale": -1}, "is no distance above 0"),
         ({"shape": "power"}, "exponent="),
         ({"weights": {"head": -1}}, "0 or more"),
         ({"weights": {"head": np.nan}}, "0 or more"),

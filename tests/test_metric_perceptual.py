@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 
 import numpy as np
@@ -351,6 +352,8 @@ def test_numbers_may_stand_for_walkers_where_a_trial_ran_out_of_time_too():
     counts = count_pairs(numbered, walkers=range(6))
     assert counts.pairs.tolist() == list(itertools.combinations("012345", 2))
     np.testing.assert_array_equal(counts.chosen, count_pairs(answers.drop(3)).chosen)
+    as_saved = pd.read_csv(io.StringIO(numbered.to_csv(index=False)), dtype=str)
+    np.testing.assert_array_equal(counts.chosen, count_pairs(as_saved, walkers=range(6)).chosen)
 
 
 def test_a_line_is_told_that_one_can_find_though_trials_ran_out_of_time():

@@ -99,7 +99,7 @@ def test_points_that_weigh_nothing_are_refused():
         ({"group_weights": {"knee": 1.0}}, "joint groups"),
         ({"group_weights": {"calf": -1.0}}, "joint groups"),
         ({"group_weights": {"calf": 0.0}}, "above 0"),
-        ({"shape": "sigmoid"}, "scale"),
+        ({"shape": "sigmoid", "scale": 0.0}, "scale"),
         ({"by": "forces"}, "forces"),
     ],
 )

@@ -179,3 +179,40 @@ def test_captures_become_one_body(captures, name, told):
     ankles = placed.sel(marker=["left_ankle", "right_ankle"]).values[..., 2]
     assert abs(np.quantile(ankles.min(axis=1), 0.05) - HEIGHT_MM * SHARES["ankle_height"]) < 15
     assert virtual_markers(placed).marker.values.tolist() == list(JOINTS.markers)
+
+
+def check_feet(placed: xr.DataArray) -> None:
+    """Toes stand on the floor and do not go through it, whatever the build of the feet."""
+    toes = placed.sel(marker=["left_toe", "right_toe"]).values[..., 2]
+    level = HEIGHT_MM * SHARES["toe_height"]
+    assert toes.min() > level - 15
+    assert np.abs(np.quantile(toes, 0.2, axis=0) - level).max() < 10
+    ankles = placed.sel(marker=["left_ankle", "right_ankle"]).values[..., 2]
+    assert abs(ankles.min() - HEIGHT_MM * SHARES["ankle_height"]) < 10
+
+
+def test_toes_stand_on_the_floor():
+    check_feet(comparable_walk(simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin")))
+
+
+@pytest.mark.parametrize(
+    "name", ["cmu/02_01.c3d", *(f"bandai-namco/dataset-2_walk_{s}.bvh" for s in ("active_001",))]
+)
+def test_toes_of_captures_stand_on_the_floor(captures, name):
+    check_feet(comparable_walk(read_mocap(captures / name, unit="cm" if "bvh" in name else None)))
+
+
+def test_feet_turn_as_the_walker_s_do():
+    walk = in_place(
+        virtual_markers(
+            simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin"), joints="full"
+        )
+    )
+    ways = []
+    for clip in (walk, retarget(walk)):
+        way = clip.sel(marker="left_toe").values - clip.sel(marker="left_ankle").values
+        ways.append(way / np.linalg.norm(way, axis=1, keepdims=True))
+    turned = np.rad2deg(np.arccos((ways[0] * ways[1]).sum(axis=1)))
+    assert np.ptp(turned) < 0.5
+    assert 1 < turned.mean() < 20
+    assert np.rad2deg(np.arcsin(np.ptp(ways[1][:, 2]) / 2)) > 20

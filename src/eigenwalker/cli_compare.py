@@ -25,6 +25,7 @@ N_CLUSTERS = 2
 POPULATION = ".nc"
 MOST_SAID = 3
 """Warnings of readers that are told; of many files most say the same."""
+OF_FILES = (".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".nc", ".pdf", ".png", ".svg", ".txt")
 AS_OPTIONS = (
     (r"read_mocap\(\.\.\., unit='?([^')]+)'?\)", r"--unit \1"),
     (r"read_mocap\(\.\.\., rate_hz='?([^')]+)'?\)", r"--rate \1"),
@@ -154,8 +155,15 @@ def _refuse_at_the_door(
         raise ValueError("--clusters are drawn in a report: give a folder for it too, with -o.")
     if first.suffix.lower() == POPULATION and not given["--nearest"]:
         _refuse(given, set(given) - {"--unit", "--rate"}, "is for captures, not for a population")
-    if output is not None and output.exists() and not output.is_dir():
+    if output is None:
+        return
+    if output.exists() and not output.is_dir():
         raise ValueError(f"-o {output} is a file; name a folder to write the report into.")
+    if output.suffix.lower() in OF_FILES and not output.exists():
+        raise ValueError(
+            f"-o {output} is called like a file; name a folder. The report with its pictures, "
+            "and tables as CSV, are written into it."
+        )
 
 
 def _refuse_many(first: Path, second: Path) -> None:

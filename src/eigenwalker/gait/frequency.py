@@ -156,7 +156,7 @@ def frequency_of_centred(
             f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
         )
     if not np.vdot(centred, centred) > n_frames * least**2:
-        raise NoStrideError("Nothing moves here, so there is no stride frequency.")
+        raise NoStrideError("Nothing moves here but all as one, so there is no stride frequency.")
     block = max(1, int(rate_hz / _COARSE_RATE_HZ))
     n_blocks = n_frames // block
     blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))

@@ -27,18 +27,25 @@ _WHOLE = 0.05
 
 _MAX_ROUNDS = 10
 
+_TRAVELS_MM = 500.0
+"""Way that most markers must go before one that stays is none of the body."""
+
+_STAYS_SHARE = 0.01
+"""Share of that way within which a marker stays where it is."""
+
 
 def in_place(
     walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S, low_pass_hz: float | None = None
 ) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
-    Left and right markers that change places are put right, and samples that are elsewhere for
-    moments are taken out (`mend`). Short gaps are filled by cubic splines. Standing, starting,
-    stopping and turning are left out, and what is kept is trimmed to a whole number of strides, to
-    the nearest frame. Of a walk there and back the straight pass with most strides is taken; a walk
-    with too few straight strides, round in a circle or in a figure of eight, is unwound: each frame
-    is seen from the body, whose slow heading is taken out.
+    Points that stay where they are while the others go through the room, such as the origin of a
+    skeleton, are left out. Left and right markers that change places are put right, and samples
+    that are elsewhere for moments are taken out (`mend`). Short gaps are filled by cubic splines.
+    Standing, starting, stopping and turning are left out, and what is kept is trimmed to a whole
+    number of strides, to the nearest frame. Of a walk there and back the straight pass with most
+    strides is taken; a walk with too few straight strides, round in a circle or in a figure of
+    eight, is unwound: each frame is seen from the body, whose slow heading is taken out.
 
     The direction of walking is turned to +x. Forward progress and slow
     drift of the body are taken out together, by regression beside the harmonics of the stride,
@@ -70,7 +77,7 @@ def in_place(
         ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``,
         ``climb_mm`` (how far the body rose), ``wander_mm`` (how far it was, on the whole, from a
         straight line at constant speed), ``filled_samples``, and ``low_pass_hz`` where a filter
-        was asked for.
+        was asked for, and ``still_points``, names of points of the room, where there were some.
 
     Raises
     ------
@@ -92,7 +99,7 @@ def in_place(
     (1200, 90, 3)
 
     """
-    walk = check_trajectories(walk)
+    walk = _of_the_body(check_trajectories(walk))
     rate_hz = sampling_rate(walk)
     walk = mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
     positions, gaps = fill_short_gaps(walk.values, rate_hz, max_gap_s)
@@ -119,6 +126,20 @@ def in_place(
         _facts(walk, placed, passage, rate_hz) | filtered,
         filled_samples=int(filled) + int(walk.attrs.get("filled_samples", 0)),
     )
+
+
+def _of_the_body(walk: xr.DataArray) -> xr.DataArray:
+    """Return a capture without points that stay in the room while the others go through it."""
+    if walk.sizes["time"] < 2 or walk.sizes["marker"] < 2:
+        return walk
+    low, high = (np.where(np.isnan(walk), edge, walk).T for edge in (np.inf, -np.inf))
+    way = (high.max(axis=2) - low.min(axis=2)).max(axis=0)
+    usual = float(np.median(way))
+    still = (way >= 0) & (way < _STAYS_SHARE * usual)
+    if not usual > _TRAVELS_MM or not still.any():
+        return walk
+    names = walk.marker.values[still].tolist()
+    return walk.drop_sel(marker=names).assign_attrs(still_points=", ".join(names))
 
 
 @cache

@@ -168,10 +168,9 @@ def _departure(
 
 def _smoothed(values: np.ndarray, width: int) -> np.ndarray:
     """Return running means; at the ends over what there is."""
-    kernel = np.ones(width)
-    return np.convolve(values, kernel, "same")[: len(values)] / np.convolve(
-        np.ones(len(values)), kernel, "same"
-    )
+    kernel = np.ones(min(width, len(values)))
+    counts = np.convolve(np.ones(len(values)), kernel, "same")
+    return np.convolve(values, kernel, "same") / counts
 
 
 def _best_run(gain: np.ndarray) -> tuple[int, int]:

@@ -15,7 +15,7 @@ import xarray as xr
 from eigenwalker.metric.cycles import mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, shaped
 from eigenwalker.metric.points import common_names, picked, points_of, told_alike
-from eigenwalker.metric.prepared import Clip, PreparedClip, prepare
+from eigenwalker.metric.prepared import Clip, PreparedClip, of_common_points, prepare
 from eigenwalker.metric.registration import register
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def compared_pairs(
     """
     if len(clips) < 2:
         raise ValueError(f"Pairs need two clips or more; got {list(clips)}.")
+    clips = of_common_points(clips)
     steps = _Steps(progress, len(clips))
     prepared = {name: steps.after(prepare(clip)) for name, clip in clips.items()}
     pairs = np.array(list(combinations(range(len(clips)), 2)))

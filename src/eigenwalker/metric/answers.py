@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -10,6 +11,8 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.metric.observers import difference
+
+_WHOLE = re.compile(r"^(\d+)\.0$")
 
 SHOWN = ("a", "b", "c", "d")
 CHOSEN = ("chosen_1", "chosen_2")
@@ -194,8 +197,8 @@ def count_pairs(
 
 
 def as_name(said: object) -> str:
-    """Return a walker's name; 3.0, as columns of numbers with an empty cell are read, is 3."""
-    return str(int(said)) if isinstance(said, float) and said.is_integer() else str(said)
+    """Return a walker's name; 3.0, as columns of numbers with an empty cell are written, is 3."""
+    return _WHOLE.sub(r"\1", str(said))
 
 
 def _names_in(answers: pd.DataFrame, columns: Sequence[str]) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ import pandas as pd
 from eigenwalker.metric.all_pairs import compared_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
 from eigenwalker.metric.prepared import Clip as Clip
+from eigenwalker.metric.prepared import Clips, named, of_common_points
 from eigenwalker.metric.prepared import PreparedClip as PreparedClip
 from eigenwalker.metric.prepared import prepare as prepare
 from eigenwalker.metric.prepared import registration_of as registration_of
@@ -31,7 +31,7 @@ def clip_distance(a: Clip, b: Clip, *, metric: str | ComparesFrames = POSITIONS)
 
     Parameters
     ----------
-    a, b : DataArray of shape (time, marker, axis), or PreparedClip
+    a, b : DataArray of shape (time, marker, axis), Walker or PreparedClip
         Trajectories; points are compared that both have.
     metric : FrameMetric or str
         What is compared and how, or the name of a published metric; left out, the mean Euclidean
@@ -64,7 +64,7 @@ def clip_components(a: Clip, b: Clip, *, metric: str | ComparesFrames = POSITION
 
     Parameters
     ----------
-    a, b : DataArray of shape (time, marker, axis), or PreparedClip
+    a, b : DataArray of shape (time, marker, axis), Walker or PreparedClip
     metric : FrameMetric or str
         Of which what is compared and F count; its weights do not.
 
@@ -89,7 +89,7 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
 
     Parameters
     ----------
-    a, b : DataArray of shape (time, marker, axis), or PreparedClip
+    a, b : DataArray of shape (time, marker, axis), Walker or PreparedClip
     by : {"positions", "velocities", "angles"}
         In mm, mm/s or radians.
 
@@ -104,11 +104,12 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
     True
 
     """
-    return registration_of(prepare(a), prepare(b)).distances(by)
+    a, b = (prepare(clip) for clip in of_common_points({"a": a, "b": b}).values())
+    return registration_of(a, b).distances(by)
 
 
 def pair_table(
-    clips: Mapping[str, Clip],
+    clips: Clips,
     *,
     metric: str | ComparesFrames = POSITIONS,
     progress: Progress | None = None,
@@ -117,9 +118,10 @@ def pair_table(
 
     Parameters
     ----------
-    clips : mapping of str to DataArray or PreparedClip
-        Two or more clips by name. Points are compared that all have, and if one clip does not
-        repeat, all are registered from end to end, so that distances mean the same throughout.
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
+        Two or more clips by name, or such as ``population.walkers`` in order. Points are compared
+        that all have, and if one clip does not repeat, all are registered from end to end, so that
+        distances mean the same throughout.
     metric : FrameMetric or str
         As in `clip_distance`.
     progress : callable, optional
@@ -138,6 +140,7 @@ def pair_table(
     ((3, 3), True)
 
     """
+    clips = named(clips)
     names = list(clips)
     distances = pair_distances(clips, metric=metric, progress=progress).to_numpy()
     table = np.zeros((len(names), len(names)))
@@ -147,7 +150,7 @@ def pair_table(
 
 
 def pair_distances(
-    clips: Mapping[str, Clip],
+    clips: Clips,
     *,
     metric: str | ComparesFrames = POSITIONS,
     progress: Progress | None = None,
@@ -178,7 +181,7 @@ def pair_distances(
 
 
 def pair_components(
-    clips: Mapping[str, Clip],
+    clips: Clips,
     *,
     metric: str | ComparesFrames = POSITIONS,
     progress: Progress | None = None,
@@ -207,6 +210,7 @@ def pair_components(
     (3, 15)
 
     """
+    clips = named(clips)
     values, points = compared_pairs(clips, metric_named(metric), progress)
     index = pd.MultiIndex.from_tuples(combinations(clips, 2), names=["first", "second"])
     return pd.DataFrame(values, index=index, columns=points)

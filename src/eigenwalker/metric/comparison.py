@@ -15,7 +15,10 @@ from eigenwalker.metric.group_tables import by_group
 from eigenwalker.metric.groups import GROUPS, group_points
 from eigenwalker.metric.prepared import (
     Clip,
+    Clips,
     PreparedClip,
+    named,
+    of_common_points,
     on_mannequin,
     prepare,
     registration_of,
@@ -95,7 +98,8 @@ def compare_walks(
     ('hand', 'hand')
 
     """
-    a, b, asked = prepare(a), prepare(b), metric_named(metric)
+    a, b = (prepare(clip) for clip in of_common_points({"a": a, "b": b}).values())
+    asked = metric_named(metric)
     components = clip_components(a, b, metric=asked)
     names = [str(name) for name in components.index]
     weighted = pd.Series(asked.weights_for(names) * components.to_numpy(), index=names)
@@ -129,7 +133,7 @@ def _apart(a: PreparedClip, b: PreparedClip) -> pd.DataFrame:
 
 
 def by_metric(
-    clips: Mapping[str, Clip],
+    clips: Clips,
     metrics: Sequence[str] = tuple(PUBLISHED),
     *,
     progress: Progress | None = None,
@@ -138,7 +142,7 @@ def by_metric(
 
     Parameters
     ----------
-    clips : mapping of str to DataArray or PreparedClip
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
         Two or more walks by name.
     metrics : sequence of str
         Names of published metrics; left out, all.
@@ -151,7 +155,7 @@ def by_metric(
         Of each with a scale of its own.
 
     """
-    prepared = {name: prepare(clip) for name, clip in clips.items()}
+    prepared = {name: prepare(clip) for name, clip in named(clips).items()}
     columns: dict[str, pd.Series] = {}
     for done, name in enumerate(metrics, start=1):
         columns[name] = pair_distances(prepared, metric=name)

@@ -20,6 +20,10 @@ SHAPES: dict[Shape, Callable[[np.ndarray, float], np.ndarray]] = {
 """F of P9, given distances and the one number that the shape takes."""
 
 
+SIGMOID_SCALE: Mapping[By, float] = {"positions": 1000.0, "velocities": 1000.0, "angles": 1.0}
+"""What 1 stands for in d / (d + 1): a metre, a metre a second, a radian."""
+
+
 class ComparesFrames(Protocol):
     """What maps and clip distances ask of a metric."""
 
@@ -60,8 +64,9 @@ class FrameMetric:
     shape : {"absolute", "squared", "sigmoid", "power"}
         F: d, d^2, d / (d + scale), d^exponent (P9).
     scale : float, optional
-        For the sigmoid, the distance at which it is a half, in the unit of `by`. The paper's own,
-        d / (d + 1), leaves the unit open (A28), so it has to be given.
+        For the sigmoid, the distance at which it is a half, in the unit of `by`. Left out, a metre,
+        a metre a second or a radian (`SIGMOID_SCALE`): the paper's d / (d + 1) leaves the unit open
+        (A28).
     exponent : float, optional
         For "power".
     weights : mapping of str to float, optional
@@ -95,12 +100,10 @@ class FrameMetric:
             amiss.append(f"by={self.by!r} is not known; give one of {list(get_args(By))}")
         if self.shape not in get_args(Shape):
             amiss.append(f"shape={self.shape!r} is not known; give one of {list(get_args(Shape))}")
-        for shape, name, value in (
-            ("sigmoid", "scale", self.scale),
-            ("power", "exponent", self.exponent),
-        ):
-            if self.shape == shape and not (value is not None and 0 < value < np.inf):
-                amiss.append(f"shape={shape!r} needs {name}=..., a number above 0; got {value}")
+        if self.shape == "power" and not _above_0(self.exponent):
+            amiss.append(f"shape='power' needs exponent=..., above 0; got {self.exponent}")
+        if self.shape == "sigmoid" and self.scale is not None and not _above_0(self.scale):
+            amiss.append(f"scale={self.scale} is no distance above 0")
         if self.weights is not None:
             wrong = {name: w for name, w in self.weights.items() if not 0 <= w < np.inf}
             if wrong:
@@ -127,14 +130,19 @@ class FrameMetric:
         return weights / weights.sum()
 
 
+def _above_0(number: float | None) -> bool:
+    return number is not None and 0 < number < np.inf
+
+
 POSITIONS = FrameMetric()
 """Mean Euclidean distance of positions, all points weighing the same."""
 
 
 def shape_parameter(metric: ComparesFrames) -> float:
     """Return the one number that the shape of a metric takes; 1 where it takes none."""
-    parameter = {"sigmoid": metric.scale, "power": metric.exponent}.get(metric.shape, 1.0)
-    return 1.0 if parameter is None else float(parameter)
+    if metric.shape == "sigmoid":
+        return SIGMOID_SCALE[metric.by] if metric.scale is None else float(metric.scale)
+    return 1.0 if metric.exponent is None else float(metric.exponent)
 
 
 def shaped(metric: ComparesFrames, distances: np.ndarray) -> np.ndarray:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -11,7 +9,7 @@ from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.frame_metrics import By, ComparesFrames
 from eigenwalker.metric.groups import GROUPS, group_points
-from eigenwalker.metric.prepared import Clip, on_mannequin, prepare
+from eigenwalker.metric.prepared import Clips, named, on_mannequin, prepare
 from eigenwalker.metric.published import metric_named
 
 ALIKE = 0.95
@@ -19,13 +17,13 @@ ALIKE = 0.95
 
 
 def group_table(
-    clips: Mapping[str, Clip], *metrics: str | ComparesFrames, progress: Progress | None = None
+    clips: Clips, *metrics: str | ComparesFrames, progress: Progress | None = None
 ) -> pd.DataFrame:
     """Return how far each joint group of all pairs of walks is apart: the X of `PerceptualMetric`.
 
     Parameters
     ----------
-    clips : mapping of str to DataArray or PreparedClip
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
         Walks by name, best from `comparable_walk`.
     *metrics : FrameMetric or str
         One or several, of which what is compared and F count; weights do not. With several, such
@@ -55,7 +53,7 @@ def group_table(
 
     """
     asked = [metric_named(metric) for metric in metrics]
-    prepared = {name: prepare(clip) for name, clip in clips.items()}
+    prepared = {name: prepare(clip) for name, clip in named(clips).items()}
     mannequin = on_mannequin(prepared.values())
     tables, left_out = [], []
     for metric in asked:

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 from eigenwalker.gait import in_place
 from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.steady import closes, closing_step
+from eigenwalker.metric.points import refuse_names_twice
 from eigenwalker.metric.turns_between import between, quaternions_at, vectors_of
 from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
 
@@ -26,6 +27,10 @@ lowest one: people repeat their stride of a moment ago not always best."""
 SHALLOW = 0.02
 """Share by which a minimum may be higher whatever the lowest one is."""
 
+
+OPEN_ABOVE = 0.12
+"""Squared distance of the two ends of a single stride, as a share of that of any two postures,
+above which it is none: of whole strides cut from steady captures it is below 0.11, mostly 0.04."""
 
 _STILL_MM = 0.1
 """Way below which nothing moves."""
@@ -126,6 +131,7 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
 
     """
     clip = check_trajectories(clip, complete=already_in_place)
+    refuse_names_twice(clip.marker.values.tolist())
     rate_hz = sampling_rate(clip)
     if clip.sizes["time"] < _FEWEST_FRAMES or rate_hz < _LEAST_RATE_HZ:
         raise NoStrideError(
@@ -140,7 +146,7 @@ def loop(clip: xr.DataArray, *, already_in_place: bool = False) -> Loop:
         return _blended(walk, period, rate_hz)
     once = walk.attrs.get("n_strides") == 1 or (len(movement) > 2 and closes(movement))
     if once and movement.size:
-        return _closed(walk, rate_hz)
+        return _closed(walk, movement, rate_hz)
     raise NoStrideError(
         f"Nothing repeats in these {len(movement) / rate_hz:.3g} s: no two postures some time "
         f"apart, from {1 / BOUNDS_HZ[1]:.2g} s to half the clip, are alike throughout. A loop "
@@ -277,11 +283,17 @@ def _least_mismatch(values: np.ndarray, period: float) -> int:
     return int(mismatch[: max(1, int(n_frames - 2 * period) + 1)].argmin())
 
 
-def _closed(walk: xr.DataArray, rate_hz: float) -> Loop:
+def _closed(walk: xr.DataArray, movement: np.ndarray, rate_hz: float) -> Loop:
     """The one period that a clip holds; what lacks to its beginning is spread over it."""
     values = walk.values
     n_frames = len(values)
     gap = values[-1] + closing_step(values) - values[0]
+    lacking = movement[-1] + closing_step(movement) - movement[0]
+    if lacking @ lacking > OPEN_ABOVE * 2 * movement.var(axis=0).sum():
+        raise NoStrideError(
+            f"The beginning and the end of this stride are {_mean_norm(gap):.0f} mm apart, too far "
+            "for the same moment of it: it seems to be less than a whole one."
+        )
     share = np.arange(n_frames) / n_frames - 0.5
     cycle = _as_cycle(walk, values - share[:, None, None] * gap, n_frames / rate_hz)
     if "rotation" in walk.coords:
@@ -290,10 +302,14 @@ def _closed(walk: xr.DataArray, rate_hz: float) -> Loop:
         cycle,
         period_s=n_frames / rate_hz,
         start_s=float(walk.time.values[0]),
-        seam_mm=float(np.linalg.norm(gap, axis=1).mean()),
+        seam_mm=_mean_norm(gap),
         mismatch_mm=0.0,
         n_periods=1,
     )
+
+
+def _mean_norm(ways: np.ndarray) -> float:
+    return float(np.linalg.norm(ways, axis=1).mean())
 
 
 def _as_cycle(walk: xr.DataArray, values: np.ndarray, period_s: float) -> xr.DataArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,6 +16,14 @@ UNITS: dict[By, str] = {"positions": "mm", "velocities": "mm/s", "angles": "rad"
 """Unit of the distance of two points."""
 
 
+VELOCITY_HARMONICS = 12
+"""Harmonics of a stride that count in velocities: some 10 Hz, above which captures of gait are
+noise, of which velocities would be made for the most part."""
+
+FEW = 0.5
+"""Share of the fewer points of two clips below which it is said how few both have."""
+
+
 def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.DataArray:
     """Return what of a clip is compared frame by frame.
 
@@ -23,7 +32,8 @@ def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.Da
     clip : DataArray of shape (time, marker, axis)
         Trajectories.
     by : {"positions", "velocities", "angles"}
-        Velocities are central differences; angles are the rotations of joints.
+        Velocities are central differences, of a cycle derivatives of its first
+        `VELOCITY_HARMONICS` harmonics; angles are the rotations of joints.
     periodic : bool
         Whether the first frame follows the last, as in a cycle.
 
@@ -79,9 +89,13 @@ def picked(names: list[str], values: np.ndarray, wanted: list[str]) -> np.ndarra
 
 
 def _velocities(values: np.ndarray, rate_hz: float, periodic: bool) -> np.ndarray:
-    if periodic:
-        return (np.roll(values, -1, axis=0) - np.roll(values, 1, axis=0)) * rate_hz / 2
-    return np.gradient(values, 1 / rate_hz, axis=0)
+    if not periodic:
+        return np.gradient(values, 1 / rate_hz, axis=0)
+    n_frames = len(values)
+    kept = min(VELOCITY_HARMONICS, (n_frames - 1) // 2) + 1
+    onwards = 2j * np.pi * np.arange(kept) * rate_hz / n_frames
+    spectrum = np.fft.rfft(values, axis=0)[:kept]
+    return np.fft.irfft(spectrum * onwards[:, None, None], n_frames, axis=0)
 
 
 def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
@@ -94,15 +108,31 @@ def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
 
     """
     for names in (first, second):
-        if len(set(names)) < len(names):
-            raise ValueError(f"Points need names of their own; some come twice: {_few(names)}.")
+        refuse_names_twice(names)
     names = sorted({str(name) for name in first} & {str(name) for name in second})
     if not names:
         raise ValueError(
             f"The clips have no points in common: {_few(first)} beside {_few(second)}. "
             "Bring both to the same joints with virtual_markers()."
         )
+    if len(names) < FEW * min(len(first), len(second)):
+        warnings.warn(
+            f"Only {len(names)} points have the same name in both clips, of {len(first)} and "
+            f"{len(second)}, and are compared: {_few(names)}. To compare whole bodies bring both "
+            "to the same joints first, with comparable_walk().",
+            stacklevel=2,
+        )
     return names
+
+
+def refuse_names_twice(names: Sequence[str]) -> None:
+    """Raise a ValueError if points share a name."""
+    names = [str(name) for name in names]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(
+            f"Points need names of their own; {_few(twice)} come more than once. Rename them or "
+            "leave them out."
+        )
 
 
 def _few(names: Sequence[str], most: int = 6) -> str:

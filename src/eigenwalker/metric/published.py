@@ -25,9 +25,6 @@ import numpy as np
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric, Shape
 from eigenwalker.metric.groups import GROUPS, group_points
 
-SIGMOID_SCALE: Mapping[By, float] = {"positions": 1000.0, "velocities": 1000.0, "angles": 1.0}
-"""What 1 stands for in d / (d + 1): a metre, a metre a second, a radian."""
-
 
 @dataclass(frozen=True)
 class GroupMetric:
@@ -159,7 +156,6 @@ def _row(by: By, shape: Shape) -> GroupMetric:
         by=by,
         shape=shape,
         group_weights=dict(zip(GROUPS, FIGURE_5[by, shape].weights, strict=True)),
-        scale=SIGMOID_SCALE[by] if shape == "sigmoid" else None,
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
+from scipy.spatial.transform import Rotation
 
 from eigenwalker.metric.body_frames import SIDES, body_frame
 from eigenwalker.skeleton import JOINTS
@@ -29,12 +30,13 @@ SHARES: Mapping[str, float] = {
     "calf": 0.2275,
     "foot": 0.100,
     "ankle_height": 0.0400,
+    "toe_height": 0.0120,
 }
 """Lengths as shares of height, mid-way between women and men. Of ANSUR II: biacromial breadth,
 heights of acromion, trochanter, tibiale and malleolus, acromion-radiale and radiale-stylion,
 brought to joint centres as `simulation` does (Bell 1989 for the hips, whose place in the pelvis is
 that of Harrington 2007); foot: ankle to ball, from foot length and heel to ball. Chosen: the hand,
-to the knuckles; the neck, from sternum to the centre of the head."""
+to the knuckles; the neck, from sternum to the centre of the head; the height of the ball."""
 
 _LIMBS = {
     **{f"{side}_elbow": (f"{side}_shoulder", "upper_arm") for side in SIDES},
@@ -46,7 +48,9 @@ _LIMBS = {
 }
 """Joints with the joint that carries them and the length between, from the trunk outwards."""
 LOW_SHARE = 0.05
-"""Share of frames in which the lower ankle is lower than what counts as standing, against noise."""
+"""Share of frames in which an ankle or toe is lower than what counts as standing, against noise."""
+FLAT_SHARE = 0.2
+"""Share of frames in which a foot surely stands flat: it does so for a third of the stride."""
 SOFTNESS = 0.01
 """Share of the leg over which one foot takes over from the other as the lower one."""
 
@@ -55,10 +59,11 @@ def retarget(walk: xr.DataArray) -> xr.DataArray:
     """Return the walk of a neutral mannequin that moves as someone did.
 
     The mannequin's proportions are fixed, mid-way between those of women and men. The directions of
-    spine, neck, arms, hands, thighs, calves and feet are kept in every frame, as are the turns of
-    pelvis and shoulders; widths, lengths, and where shoulders and hips sit, are the mannequin's.
-    What the body does on the whole is scaled by the length of the legs, and it is as high over the
-    ground as its lower ankle asks for.
+    spine, neck, arms, hands, thighs and calves are kept in every frame, as are the turns of pelvis
+    and shoulders; widths, lengths, and where shoulders and hips sit, are the mannequin's. Feet turn
+    as the walker's do from where they stand flat: how steep the line from ankle to toe is then, is
+    a matter of build and of where the points sit. What the body does on the whole is scaled by the
+    length of the legs, and it is as high over the ground as its lowest ankle or toe asks for.
 
     Parameters
     ----------
@@ -120,8 +125,30 @@ def _placed(seen: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         placed[f"{side}_shoulder"] = placed["sternum"] + trunk @ shoulder
     for joint, (carrier, part) in _LIMBS.items():
         if joint in seen:
-            placed[joint] = placed[carrier] + _along(seen[joint] - seen[carrier], part)
+            way = seen[joint] - seen[carrier]
+            if part == "foot":
+                way = _from_flat(way, seen[joint][:, 2] + seen[carrier][:, 2])
+            placed[joint] = placed[carrier] + _along(way, part)
     return placed
+
+
+def _from_flat(foot: np.ndarray, heights: np.ndarray) -> np.ndarray:
+    """Return a foot turned by the one angle that makes it lie flat where it stands.
+
+    It stands where ankle and toe together are low: from when the heel is down to when it lifts.
+    """
+    seen = np.isfinite(foot).all(axis=1) & np.isfinite(heights)
+    if not seen.any():
+        return foot
+    standing = seen & (heights <= np.quantile(heights[seen], FLAT_SHARE))
+    forward, flat = foot[seen, :2].mean(axis=0), foot[standing].mean(axis=0)
+    length = np.linalg.norm(forward)
+    if not length > 0:
+        return foot
+    down = np.arctan2(-flat[2], np.linalg.norm(flat[:2]))
+    wanted = np.arcsin((SHARES["ankle_height"] - SHARES["toe_height"]) / SHARES["foot"])
+    across = np.array([-forward[1], forward[0], 0.0]) / length
+    return foot @ Rotation.from_rotvec((wanted - down) * across).as_matrix().T
 
 
 def _along(way: np.ndarray, part: str) -> np.ndarray:
@@ -131,13 +158,22 @@ def _along(way: np.ndarray, part: str) -> np.ndarray:
 
 
 def _root(seen: Mapping[str, np.ndarray], placed: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return where the mannequin's pelvis is: it moves as the walker's, on legs of its own."""
+    """Return where the mannequin's pelvis is: it moves as the walker's, on legs of its own.
+
+    It is as high as its feet ask for: the lowest of ankles and toes is as far above where it stands
+    as the walker's lowest is, legs alike.
+    """
     scale = (_length("thigh") + _length("calf")) / _leg(seen)
+    softness = SOFTNESS * scale * _leg(seen)
     root = scale * seen["pelvis"]
-    lower = scale * _lower_ankle(seen, softness=SOFTNESS * _leg(seen))
-    lifted = lower - np.nanquantile(lower, LOW_SHARE)
-    over_ankle = _lower_ankle(placed, softness=SOFTNESS * scale * _leg(seen))
-    root[:, 2] = _length("ankle_height") + lifted - over_ankle
+    walker, mannequin = [], []
+    for part in ("ankle", "toe"):
+        for joint in (f"{side}_{part}" for side in SIDES):
+            if joint in seen:
+                height = scale * seen[joint][:, 2]
+                walker.append(height - np.nanquantile(height, LOW_SHARE))
+                mannequin.append(placed[joint][:, 2] - _length(f"{part}_height"))
+    root[:, 2] = _lowest(walker, softness) - _lowest(mannequin, softness)
     return root
 
 
@@ -150,10 +186,10 @@ def _leg(places: Mapping[str, np.ndarray]) -> float:
     return float(np.nanmean(lengths) * 2)
 
 
-def _lower_ankle(places: Mapping[str, np.ndarray], *, softness: float) -> np.ndarray:
-    """Return the height of the lower ankle, with no kink where the other becomes the lower one."""
-    left, right = (-places[f"{side}_ankle"][:, 2] / softness for side in SIDES)
-    return -softness * (np.logaddexp(left, right) - np.log(2))
+def _lowest(heights: list[np.ndarray], softness: float) -> np.ndarray:
+    """Return the least height, with no kink where another becomes the least; NaN is none."""
+    near = np.nan_to_num(-np.array(heights) / softness, nan=-np.inf)
+    return -softness * (np.logaddexp.reduce(near) - np.log(len(heights)))
 
 
 def _with_rotations(result: xr.DataArray, walk: xr.DataArray) -> xr.DataArray:

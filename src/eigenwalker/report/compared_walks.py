@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -11,19 +12,15 @@ import xarray as xr
 
 from eigenwalker.folds import Progress
 from eigenwalker.metric.comparable import comparable_walk
-from eigenwalker.metric.prepared import PreparedClip, prepare
+from eigenwalker.metric.prepared import PreparedClip, as_trajectories, prepare
 from eigenwalker.metric.retargeting import retarget
-from eigenwalker.mocap import read_mocap, virtual_markers
+from eigenwalker.mocap import RateAssumed, UnitGuessed, read_mocap, virtual_markers
 from eigenwalker.population import FLAG, Population, flags_of
 from eigenwalker.quality import assess
 from eigenwalker.report.main_tables import names_of
 from eigenwalker.report.strange_bodies import strangeness
 from eigenwalker.study_table import FILE, listed
-from eigenwalker.walker import Walker
 
-RATE_HZ = 100.0
-"""Frames a second at which walkers of a population are played, as the paper's clips were."""
-N_STRIDES = 3
 STRANGE = "strange"
 """Attribute of a walk that says why it is not itself on the mannequin."""
 MOST_CLASSES = 10
@@ -64,10 +61,11 @@ def walk_of_capture(
 ) -> xr.DataArray:
     """Return the steady strides of a capture, ready to be compared (`comparable_walk`).
 
-    Its attributes say what is wrong with the capture (``flag``), and why it is not itself on the
-    mannequin (``strange``); empty if nothing is.
+    Unit and frame rate are for files that name none: others keep their own. The attributes say what
+    is wrong with the capture (``flag``), and why it is not itself on the mannequin (``strange``);
+    empty if nothing is.
     """
-    capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
+    capture = _read(path, unit, rate_hz)
     own = comparable_walk(capture, mannequin=False)
     own.attrs[FLAG] = assess(virtual_markers(capture)).flag
     if not mannequin:
@@ -76,18 +74,29 @@ def walk_of_capture(
     return shown.assign_attrs({STRANGE: strangeness(own, shown)})
 
 
+def _read(path: Path, unit: str | None, rate_hz: float | None) -> xr.DataArray:
+    """Return a capture, told what it does not say itself."""
+    if unit is None and rate_hz is None:
+        return read_mocap(path)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            capture = read_mocap(path)
+        except ValueError:  # perhaps for want of what is told
+            return read_mocap(path, unit=unit, rate_hz=rate_hz)
+    lacks = {each.category for each in caught}
+    told_unit = unit if UnitGuessed in lacks else None
+    told_rate = rate_hz if RateAssumed in lacks else None
+    if told_unit is None and told_rate is None:
+        return capture
+    return read_mocap(path, unit=told_unit, rate_hz=told_rate)
+
+
 def remarks_on(clip: xr.DataArray) -> str:
     """Return what is to be known of the capture behind a walk, in words; mostly nothing."""
     flag, strange = clip.attrs.get(FLAG), clip.attrs.get(STRANGE)
     said = [f"it is flagged: {flag.rstrip('.')}"] if flag else []
     return "; ".join([*said, strange] if strange else said)
-
-
-def walk_of_walker(walker: Walker, *, mannequin: bool = True) -> xr.DataArray:
-    """Return a few strides of a walker, ready to be compared."""
-    time = np.arange(0, N_STRIDES * walker.period_s, 1 / RATE_HZ)
-    walk = walker.trajectories(time)
-    return retarget(walk) if mannequin else walk
 
 
 def walks_of_population(
@@ -123,7 +132,8 @@ def walks_of_population(
         if population.flagged[row]:
             flagged[name] = flags[row]
         else:
-            clips[name] = prepare(walk_of_walker(walker, mannequin=mannequin))
+            walk = as_trajectories(walker)
+            clips[name] = prepare(retarget(walk) if mannequin else walk)
         if progress is not None:
             progress(row + 1, len(names))
     labels = {}
