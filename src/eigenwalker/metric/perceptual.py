@@ -70,7 +70,9 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
             How much each pair counts, such as how often it was shown; the paper's count alike.
 
         """
-        table, differences = _validated(self, X, y, dtype=np.float64, y_numeric=True)
+        plain = _is_plain(X, 2) and _is_plain(y, 1) and np.shape(X)[0] == np.shape(y)[0]
+        checks = {"skip_check_array": True} if plain else {"dtype": np.float64, "y_numeric": True}
+        table, differences = _validated(self, X, y, **checks)
         self.weights_, self.constant_ = non_negative_fit(
             table,
             differences,
@@ -93,6 +95,17 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         if tags.regressor_tags is not None:
             tags.regressor_tags.poor_score = True  # on data that ask for weights below 0
         return tags
+
+
+def _is_plain(values: ArrayLike, n_dimensions: int) -> bool:
+    """Return whether these are numbers as they should be, which need none of the longer checks."""
+    return (
+        type(values) is np.ndarray
+        and values.dtype == np.float64
+        and values.ndim == n_dimensions
+        and values.size > 0
+        and bool(np.isfinite(values).all())
+    )
 
 
 def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
@@ -140,13 +153,17 @@ def non_negative_fit(
     ([2.0], 1.0)
 
     """
-    counts = np.ones(len(y)) if sample_weight is None else sample_weight
     middle, level = np.zeros(X.shape[1]), 0.0
-    if fit_constant:
-        middle, level = counts @ X / counts.sum(), counts @ y / counts.sum()
-    root = np.sqrt(counts)
-    centred = root[:, None] * (X - middle)
-    size = np.linalg.norm(centred, axis=0)
+    if sample_weight is None:
+        if fit_constant:
+            middle, level = X.sum(axis=0) / len(y), y.sum() / len(y)
+        centred, told = X - middle, y - level
+    else:
+        total, root = sample_weight.sum(), np.sqrt(sample_weight)
+        if fit_constant:
+            middle, level = sample_weight @ X / total, sample_weight @ y / total
+        centred, told = root[:, None] * (X - middle), root * (y - level)
+    size = np.sqrt(np.einsum("pk,pk->k", centred, centred))
     size[size == 0] = 1.0
-    weights = nnls(centred / size, root * (y - level))[0] / size
+    weights = nnls(centred / size, told)[0] / size
     return Weights(weights, float(level - middle @ weights))
