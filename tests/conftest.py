@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -16,6 +18,12 @@ from eigenwalker.simulation import simulate_walk
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import sampling_rate
 from eigenwalker.walker import Form, Walker
+
+_KERNELS = sorted((Path(__file__).parents[1] / "src" / "eigenwalker" / "metric").glob("*.py"))
+_VERSION = hashlib.sha256(b"".join(path.read_bytes() for path in _KERNELS)).hexdigest()[:16]
+os.environ.setdefault(
+    "NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"eigenwalker-kernels-{_VERSION}")
+)  # numba keeps a function's code when another that it calls, in another file, has changed
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "data"
 

@@ -313,3 +313,10 @@ def test_a_joint_that_stays_where_the_body_stays_is_kept():
     walk = simulate_walk(seed=4, duration_s=5.0, truth=False)
     about = plain(walk - walk.sel(marker="pelvis"))
     assert "pelvis" in in_place(about).marker
+
+
+def test_the_middle_of_large_swings_is_no_point_of_the_room():
+    legs = [name for name in JOINTS.markers if name.endswith(("hip", "knee", "ankle"))]
+    walk = simulate_walk(seed=4, duration_s=5.0, truth=False).sel(marker=["pelvis", *legs])
+    swung = plain((walk - walk.sel(marker="pelvis")) * [3.0, 1.0, 1.0])
+    assert "pelvis" in in_place(swung).marker

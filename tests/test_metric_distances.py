@@ -21,7 +21,9 @@ from eigenwalker.metric.clip_distances import (
     registration_of,
     step_distances,
 )
+from eigenwalker.metric.comparison import by_metric, compare_walks
 from eigenwalker.metric.frame_metrics import FrameMetric
+from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.metric.registration import register, register_walks
 from eigenwalker.simulation import Route, simulate_walk
@@ -343,3 +345,28 @@ def test_noise_makes_little_of_velocities():
     noise = np.random.default_rng(0).normal(size=walk.shape)
     between = clip_distance(walk, some_walk(2, rate_hz=120), metric=FrameMetric("velocities"))
     assert clip_distance(walk, walk + noise, metric=FrameMetric("velocities")) < 0.15 * between
+
+
+def test_what_only_one_clip_has_decides_no_table_of_many():
+    walks = {name: some_walk(seed) for seed, name in enumerate("abc", start=1)}
+    prop = walks["a"].isel(marker=[4]).assign_coords(marker=["prop"]) * 3 + 500
+    more = walks | {"a": xr.concat([walks["a"], prop], "marker", combine_attrs="override")}
+    for table_of in (
+        pair_components,
+        lambda clips: group_table(clips, "positions-sigmoid"),
+        lambda clips: by_metric(clips, ["kovar", "velocities-absolute"]),
+        lambda clips: compare_walks(clips["a"], clips["b"]).groups,
+        lambda clips: step_distances(clips["a"], clips["b"]),
+    ):
+        np.testing.assert_allclose(table_of(more), table_of(walks))
+
+
+def test_a_walk_with_a_short_gap_can_be_compared_with_what_does_not_repeat():
+    walk, time = some_walk(1), np.arange(0, 1.5, 1 / 60)
+    holed = walk.copy(deep=True)
+    holed.loc[{"marker": "left_wrist"}][50:53] = np.nan
+    assert not prepare(holed).clip.isnull().any()
+    still = walk.isel(time=slice(None, 40)).mean("time").expand_dims(time=time)
+    rising = still.transpose("time", "marker", "axis") + 200 * time[:, None, None] ** 2
+    with pytest.warns(UserWarning, match="do not repeat"):
+        assert np.isfinite(clip_distance(holed, rising))

@@ -12,10 +12,13 @@ from scipy.spatial.distance import cdist
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.metric.alignment import align_windows
+from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.frame_metrics import FrameMetric, shaped
 from eigenwalker.metric.kernels import diagonal_means
+from eigenwalker.metric.loops import loop
 from eigenwalker.metric.motion_maps import motion_map, motion_maps
 from eigenwalker.metric.point_maps import EXACT, point_distances, point_map
+from eigenwalker.metric.points import points_of
 from eigenwalker.simulation import simulate_walk
 from eigenwalker.trajectories import label_trajectories
 
@@ -287,3 +290,23 @@ def test_maps_are_filled_in_a_forked_process_too():
     assert float(os.read(reading, 100)) == expected
     os.close(reading)
     os.close(writing)
+
+
+def test_maps_of_cycles_have_the_velocities_of_clip_distances():
+    noise = np.random.default_rng(0).normal(size=(120, 15, 3))
+    cycles = [common_clock(loop(simulate_walk(seed=seed, truth=False))) + noise for seed in (1, 2)]
+    metric = FrameMetric("velocities")
+    found = motion_map(*cycles, metric=metric, periodic=True).values
+    points = [points_of(cycle, "velocities", periodic=True)[1] for cycle in cycles]
+    apart = point_distances(*points).mean(axis=1)
+    np.testing.assert_allclose(np.diagonal(found), apart)
+    assert np.diagonal(motion_map(*cycles, metric=metric).values).mean() > apart.mean()
+
+
+def test_a_gap_does_not_change_the_scale_of_a_map():
+    rng = np.random.default_rng(0)
+    a, b = rng.normal(size=(2, 6, 3, 3))
+    whole = point_map(a, b, np.array([2.0, 1.0, 1.0]), shape="absolute")
+    a[0] = np.nan
+    holed = point_map(a, b, np.array([2.0, 1.0, 1.0]), shape="absolute")
+    np.testing.assert_allclose(holed[1:], whole[1:])

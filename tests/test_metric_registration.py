@@ -302,3 +302,30 @@ def test_markers_that_only_one_clip_has_do_not_matter():
     names = [*played.marker.values.tolist(), "extra"]
     extra = trajectories_at(played.time.values, more, names)
     assert register(first, extra).cost == pytest.approx(register(first, played).cost)
+
+
+@pytest.mark.parametrize("limit", [None, 1, 3, 1000])
+def test_a_map_with_missing_cells_has_no_path(limit):
+    cost = np.random.default_rng(0).random((40, 50))
+    cost[np.random.default_rng(1).random(cost.shape) < 0.2] = np.nan
+    with pytest.raises(ValueError, match="missing"):
+        least_cost_path(cost, slope_limit=limit)
+
+
+def test_a_cell_far_off_the_path_does_not_matter_however_large():
+    time = np.linspace(0, 1, 60)
+    cost = np.abs(np.sin(6 * time)[:, None] - np.sin(6 * time**1.4))
+    expected = least_cost_path(cost, slope_limit=3)
+    for forbidden in (1e6, 1e12, np.inf):
+        cost[0, -1] = forbidden
+        np.testing.assert_array_equal(least_cost_path(cost, slope_limit=3), expected)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10_000), n=st.integers(1, 8), m=st.integers(1, 8))
+def test_paths_through_whole_numbers_with_many_ties_cost_least_too(seed, n, m):
+    cost = np.random.default_rng(seed).integers(0, 4, (n, m)).astype(float)
+    expected = by_brute_force(cost, 3)
+    if np.isfinite(expected):
+        path = least_cost_path(cost, slope_limit=3)
+        assert cost[tuple(path.T)].sum() == pytest.approx(expected, abs=1e-3)

@@ -216,3 +216,17 @@ def test_feet_turn_as_the_walker_s_do():
     assert np.ptp(turned) < 0.5
     assert 1 < turned.mean() < 20
     assert np.rad2deg(np.arcsin(np.ptp(ways[1][:, 2]) / 2)) > 20
+
+
+def test_a_toe_that_is_hidden_for_moments_moves_nothing_else():
+    walk = in_place(
+        virtual_markers(
+            simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin"), joints="full"
+        )
+    )
+    holed = walk.copy(deep=True)
+    holed.loc[{"marker": "left_toe"}][50:53] = np.nan
+    inner = [name for name in walk.marker.values if name != "left_toe"]
+    moved = np.abs(retarget(holed) - retarget(walk)).sel(marker=inner)
+    assert float(moved.max()) < 20
+    assert float(moved.median()) < 0.5

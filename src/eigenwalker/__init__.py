@@ -44,7 +44,7 @@ _HOME = {
     "clip_distance": "metric.clip_distances",
     "clusters_of_walks": "metric.difference_structure",
     "comparable_walk": "metric.comparable",
-    "compare_by_choices": "metric.choices",
+    "compare_by_choices": "metric.foretold",
     "compare_metrics": "metric.fit_quality",
     "compare_walks": "metric.comparison",
     "contrast": "contrasts",
@@ -131,7 +131,7 @@ _HOME = {
     "true_direction": "simulation",
     "true_events": "simulation",
     "truth_of": "simulation",
-    "unseen_differences": "metric.choices",
+    "unseen_differences": "metric.foretold",
     "virtual_markers": "mocap",
     "walker_from_file": "attempts",
     "walker_from_mm": "walker_tables",
@@ -195,10 +195,8 @@ if TYPE_CHECKING:
     from eigenwalker.metric.answers import count_pairs as count_pairs
     from eigenwalker.metric.answers import read_trials as read_trials
     from eigenwalker.metric.choices import bootstrap_choices as bootstrap_choices
-    from eigenwalker.metric.choices import compare_by_choices as compare_by_choices
     from eigenwalker.metric.choices import expected_differences as expected_differences
     from eigenwalker.metric.choices import fit_choices as fit_choices
-    from eigenwalker.metric.choices import unseen_differences as unseen_differences
     from eigenwalker.metric.clip_distances import clip_components as clip_components
     from eigenwalker.metric.clip_distances import clip_distance as clip_distance
     from eigenwalker.metric.clip_distances import pair_components as pair_components
@@ -213,6 +211,8 @@ if TYPE_CHECKING:
     from eigenwalker.metric.difference_structure import order_of_walks as order_of_walks
     from eigenwalker.metric.fit_quality import compare_metrics as compare_metrics
     from eigenwalker.metric.fit_quality import leave_walkers_out as leave_walkers_out
+    from eigenwalker.metric.foretold import compare_by_choices as compare_by_choices
+    from eigenwalker.metric.foretold import unseen_differences as unseen_differences
     from eigenwalker.metric.frame_metrics import FrameMetric as FrameMetric
     from eigenwalker.metric.group_tables import group_table as group_table
     from eigenwalker.metric.groups import group_points as group_points

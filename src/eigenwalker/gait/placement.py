@@ -28,7 +28,7 @@ _WHOLE = 0.05
 _MAX_ROUNDS = 10
 
 _TRAVELS_MM = 500.0
-"""Way that most markers must go before one that stays is none of the body."""
+"""Way that the middle of all markers must go before one that stays is none of the body."""
 
 _STAYS_SHARE = 0.01
 """Share of that way within which a marker stays where it is."""
@@ -134,12 +134,14 @@ def _of_the_body(walk: xr.DataArray) -> xr.DataArray:
         return walk
     low, high = (np.where(np.isnan(walk), edge, walk).T for edge in (np.inf, -np.inf))
     way = (high.max(axis=2) - low.min(axis=2)).max(axis=0)
-    usual = float(np.median(way))
-    still = (way >= 0) & (way < _STAYS_SHARE * usual)
-    if not usual > _TRAVELS_MM or not still.any():
+    seen = ~np.isnan(walk.values).any(axis=(0, 2))
+    body = walk.values[:, seen].mean(axis=1) if seen.any() else np.zeros((1, 3))
+    travelled = float(np.ptp(body, axis=0).max())
+    still = (way >= 0) & (way < _STAYS_SHARE * travelled)
+    if not travelled > _TRAVELS_MM or not still.any():
         return walk
     names = walk.marker.values[still].tolist()
-    return walk.drop_sel(marker=names).assign_attrs(still_points=", ".join(names))
+    return walk.isel(marker=~still).assign_attrs(still_points=", ".join(names))
 
 
 @cache

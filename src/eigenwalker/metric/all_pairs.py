@@ -15,7 +15,7 @@ import xarray as xr
 from eigenwalker.metric.cycles import mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, shaped
 from eigenwalker.metric.points import common_names, picked, points_of, told_alike
-from eigenwalker.metric.prepared import Clip, PreparedClip, of_common_points, prepare
+from eigenwalker.metric.prepared import Clips, PreparedClip, prepare_alike
 from eigenwalker.metric.registration import register
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ _AT_ONCE = 4096
 
 
 def compared_pairs(
-    clips: Mapping[str, Clip], metric: ComparesFrames, progress: Progress | None
-) -> tuple[np.ndarray, list[str]]:
-    """Return means of F(d) along the paths of all pairs, of shape (pair, point), and the points.
+    clips: Clips, metric: ComparesFrames, progress: Progress | None
+) -> tuple[list[str], np.ndarray, list[str]]:
+    """Return names of clips, means of F(d) along the paths of all pairs, and names of points.
 
     Parameters
     ----------
-    clips : mapping of str to DataArray or PreparedClip
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
         Two or more. If one does not repeat, all are registered from end to end.
     metric : FrameMetric
         Of which what is compared and F count.
@@ -41,16 +41,15 @@ def compared_pairs(
 
     """
     if len(clips) < 2:
-        raise ValueError(f"Pairs need two clips or more; got {list(clips)}.")
-    clips = of_common_points(clips)
+        raise ValueError(f"Pairs need two clips or more; got {len(clips)}.")
     steps = _Steps(progress, len(clips))
-    prepared = {name: steps.after(prepare(clip)) for name, clip in clips.items()}
+    prepared = prepare_alike(clips, done=lambda: steps.forward(1))
     pairs = np.array(list(combinations(range(len(clips)), 2)))
     still = [name for name, clip in prepared.items() if clip.cycle is None]
-    if not still:
-        return _of_strides(list(prepared.values()), pairs, metric, steps)
-    _tell_of_actions(still, prepared)
-    return _of_actions(list(prepared.values()), pairs, metric, steps)
+    if still:
+        _tell_of_actions(still, prepared)
+    means = _of_actions if still else _of_strides
+    return list(prepared), *means(list(prepared.values()), pairs, metric, steps)
 
 
 def _tell_of_actions(still: list[str], prepared: Mapping[str, PreparedClip]) -> None:
@@ -75,10 +74,6 @@ class _Steps:
         self._done += steps
         if self._progress is not None:
             self._progress(self._done, self._total)
-
-    def after(self, clip: PreparedClip) -> PreparedClip:
-        self.forward(1)
-        return clip
 
 
 def _of_strides(

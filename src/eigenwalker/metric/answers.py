@@ -77,6 +77,24 @@ class Trials:
     shown: np.ndarray
     chosen: np.ndarray
 
+    def __post_init__(self) -> None:
+        n_trials = len(self.shown)
+        amiss = []
+        if self.shown.ndim != 2 or not n_trials:
+            amiss.append(f"shown has shape {self.shown.shape}")
+        for name, length in (("observer", len(self.observers)), ("chosen", self.shown.shape[-1])):
+            numbers = getattr(self, name)
+            if numbers.shape != (n_trials,):
+                amiss.append(f"{name} has shape {numbers.shape}")
+            elif n_trials and not 0 <= numbers.min() <= numbers.max() < length:
+                amiss.append(f"{name} goes from {numbers.min()} to {numbers.max()} of {length}")
+        if n_trials and not 0 <= self.shown.min() <= self.shown.max() < len(self.pairs):
+            amiss.append(f"shown names the pairs {self.shown.min()} to {self.shown.max()}")
+        if amiss:
+            raise ValueError(
+                f"Expected trials of {len(self.pairs)} pairs, one row each: {'; '.join(amiss)}."
+            )
+
     def __repr__(self) -> str:
         return (
             f"Trials({len(self.chosen)} of {len(self.observers)} observers, "

@@ -14,23 +14,29 @@ with no w_k below 0, as in the paper. Its likelihood has one maximum.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from eigenwalker.folds import Progress
-from eigenwalker.metric.answers import Trials, count_pairs
-from eigenwalker.metric.fit_quality import goodness
-from eigenwalker.metric.observers import Bootstrap
+from eigenwalker.metric.answers import Trials
+from eigenwalker.metric.observers import Bootstrap, times_drawn
+
+if TYPE_CHECKING:
+    from eigenwalker.folds import Progress  # which loads scikit-learn
+
+OPEN = 0.5
+"""Log-likelihood, in nats, by less of which much more weight is worse: it is open upwards then."""
+
+MUCH = 10.0
+"""How many times as much that is, or, of a weight below one per unit of spread, how much."""
 
 _MOST_STEPS = 100
-_CERTAIN = 1e-3
-"""Mean surprise of a choice, in nats, below which the choices leave the sum of weights open."""
+_SAME = 1e-9
+"""Share of its values within which a column does not vary."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +49,14 @@ class ChoiceFit:
         w_k, 0 or more. A pair that differs by 1 more is chosen 1/e times as often.
     log_likelihood : float
         Of all choices, in nats; guessing has ``-n_trials * log(6)``.
-    n_trials : int
+    n_trials : float
+        Trials that count.
 
     """
 
     weights: np.ndarray
     log_likelihood: float
-    n_trials: int
+    n_trials: float
 
     @property
     def relative_weights(self) -> np.ndarray:
@@ -58,14 +65,15 @@ class ChoiceFit:
         return self.weights / total if total > 0 else self.weights
 
     def __repr__(self) -> str:
-        surprise = -self.log_likelihood / max(self.n_trials, 1)
+        surprise = -self.log_likelihood / self.n_trials
         return f"ChoiceFit({len(self.weights)} weights, {surprise:.3f} nats a trial)"
 
 
 def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None) -> ChoiceFit:
     """Return the weights of joint groups that make what observers chose most likely.
 
-    Newton's method, of which each step is a problem of non-negative least squares.
+    Newton's method, of which each step is a problem of non-negative least squares. Warns of weights
+    that the choices leave open upwards, as of a group that differs only in pairs never chosen.
 
     Parameters
     ----------
@@ -90,6 +98,7 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     Of two pairs, the one that differs by 1 less is chosen three times of four, so that its odds
     are e to the power of the weight:
 
+    >>> import pandas as pd
     >>> pairs = pd.MultiIndex.from_tuples([("a", "b"), ("c", "d")])
     >>> shown, chosen = np.array([[0, 1]] * 4), np.array([0, 0, 0, 1])
     >>> trials = ew.Trials(pairs, ("Eva",), np.zeros(4, dtype=int), shown, chosen)
@@ -97,22 +106,23 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     (array([1.0986]), np.float64(1.0986))
 
     """
-    X = _checked(X, trials)
     times = np.ones(len(trials.chosen)) if counts is None else np.asarray(counts, dtype=float)
-    if times.shape != trials.chosen.shape or not (times >= 0).all() or not times.sum() > 0:
+    amiss = times.shape != trials.chosen.shape or not np.isfinite(times).all()
+    if amiss or times.min(initial=0) < 0 or not times.sum() > 0:
         raise ValueError(
             f"counts must be one number a trial, 0 or more and not all zero; got shape "
-            f"{times.shape} for {len(trials.chosen)} trials."
+            f"{times.shape} for {len(trials.chosen)} trials, {times[~(times >= 0)][:5]} among them."
         )
-    spread = _spread(X)
-    found, surprise = _most_likely(_to_chosen(X / spread, trials), times, None)
-    if surprise < _CERTAIN * times.sum():
+    problem = ChoiceProblem.of(X, trials)
+    found = problem.fit(times)
+    if still_open := problem.open_upwards(found, times):
         warnings.warn(
-            "These choices are foretold almost without exception, so they leave the sum of the "
-            "weights open; their ratios are what they tell.",
+            f"The choices leave open how large the weights of the columns {still_open}, counted "
+            "from 0, are: much more fits as well, as pairs that differ in them were hardly ever "
+            "chosen.",
             stacklevel=2,
         )
-    return ChoiceFit(found / spread, -surprise, int(np.count_nonzero(times)))
+    return ChoiceFit(problem.weights(found), -found.surprise, float(times.sum()))
 
 
 def bootstrap_choices(
@@ -126,6 +136,8 @@ def bootstrap_choices(
     """Return weights fitted anew to the choices of observers drawn with replacement.
 
     Observers are drawn rather than trials, since the answers of one observer belong together.
+    Intervals of weights that are not 0 are a little narrow: in repeated simulations of the paper's
+    study those of 95 per cent held the planted weight 86 to 91 times of 100.
 
     Parameters
     ----------
@@ -149,21 +161,18 @@ def bootstrap_choices(
         If X does not fit the pairs, or there is one observer only.
 
     """
-    X = _checked(X, trials)
     if len(trials.observers) < 2:
         raise ValueError(
             f"Intervals come from how observers differ; there are answers of "
             f"{len(trials.observers)} observer."
         )
-    rng = np.random.default_rng(seed)
-    spread = _spread(X)
-    apart = _to_chosen(X / spread, trials)
-    start, _ = _most_likely(apart, np.ones(len(apart)), None)
-    n = len(trials.observers)
-    drawn = rng.multinomial(n, np.full(n, 1 / n), size=n_samples)
+    problem = ChoiceProblem.of(X, trials)
+    start = problem.fit(np.ones(len(trials.chosen)))
     samples = []
+    drawn = times_drawn(np.random.default_rng(seed), len(trials.observers), n_samples)
     for done, times in enumerate(drawn, start=1):
-        samples.append(_most_likely(apart, times[trials.observer], start)[0] / spread)
+        found = problem.fit(times[trials.observer].astype(float), start)
+        samples.append(problem.weights(found))
         if progress is not None:
             progress(done, n_samples)
     return Bootstrap(np.array(samples), np.zeros(n_samples))
@@ -217,143 +226,88 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     return 1 - np.divide(chosen, shown, out=np.full(n_pairs, np.nan), where=shown > 0)
 
 
-def unseen_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
-    """Return what is expected of each pair by weights that know neither of its walkers.
+class _Found(NamedTuple):
+    """Weights of columns of unit spread, and minus the log-likelihood there."""
 
-    They are fitted to the trials that showed neither, and tell what is chosen in those that showed
-    both.
-
-    Parameters
-    ----------
-    X, trials
-        As for `fit_choices`.
-
-    Returns
-    -------
-    array of shape (pair,)
-        NaN where no trial showed the pair, or all others showed one of the two.
-
-    """
-    X = _checked(X, trials)
-    spread = _spread(X)
-    apart = _to_chosen(X / spread, trials)
-    start, _ = _most_likely(apart, np.ones(len(apart)), None)
-    ends = np.array([[*map(str, pair)] for pair in trials.pairs])
-    walkers, number = np.unique(ends, return_inverse=True)
-    number = number.reshape(ends.shape)
-    there = np.zeros((len(trials.chosen), len(walkers)), dtype=bool)
-    rows = np.arange(len(there))
-    for at in trials.shown.T:
-        there[rows[:, None], number[at]] = True
-    expected = np.full(len(ends), np.nan)
-    for pair, (first, second) in enumerate(number):
-        others = ~(there[:, first] | there[:, second])
-        both = (trials.shown == pair).any(axis=1)
-        if others.any() and both.any():
-            weights, _ = _most_likely(apart, others.astype(float), start)
-            shown = trials.shown[both]
-            likely = choice_probabilities(X @ (weights / spread), shown)
-            expected[pair] = 1 - likely[shown == pair].mean()
-    return expected
+    scaled: np.ndarray
+    surprise: float
 
 
-def compare_by_choices(
-    tables: Mapping[str, ArrayLike], trials: Trials, *, progress: Progress | None = None
-) -> pd.DataFrame:
-    """Return how well several metrics tell what observers chose.
+class ChoiceProblem(NamedTuple):
+    """How much more each pair shown differs than the chosen one, columns of unit spread.
 
     Parameters
     ----------
-    tables : mapping of str to array of shape (pair, column)
-        For each metric its distances, or mean F(d_k) of each group. Each gets the weights that make
-        the choices most likely; a published metric, of one column, keeps all but its factor.
-    trials : Trials
-        What was shown and chosen.
-    progress : callable, optional
-        Called with the number of metrics that are done, and of all.
-
-    Returns
-    -------
-    DataFrame
-        Rows are metrics; columns ``n_weights`` (that are not 0); ``bits``, how much likelier than
-        by guessing a choice is in the mean, as a power of 2; ``pearson``, the correlation of the
-        differences that are expected with those observed; and ``cv_pearson``, the same of
-        `unseen_differences`.
+    apart : array of shape (trial, 6, group)
+    spread : array of shape (group,)
+        By which the columns were divided; infinite for those that do not vary.
 
     """
-    counted = count_pairs(trials)
-    observed = counted.differences.to_numpy()
-    seen = np.isfinite(observed)
-    rows = {}
-    for done, (name, table) in enumerate(tables.items(), start=1):
-        X = np.asarray(table, dtype=float).reshape(len(observed), -1)
-        fitted = fit_choices(X, trials)
-        expected = expected_differences(X @ fitted.weights, trials)
-        unseen = unseen_differences(X, trials)
-        known = np.isfinite(unseen) & seen
-        gain = fitted.log_likelihood / fitted.n_trials + np.log(trials.shown.shape[1])
-        rows[name] = {
-            "n_weights": int((fitted.weights > 0).sum()),
-            "bits": gain / np.log(2),
-            "pearson": goodness(observed[seen], expected[seen])["pearson"],
-            "cv_pearson": goodness(observed[known], unseen[known])["pearson"],
-        }
-        if progress is not None:
-            progress(done, len(tables))
-    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("metric")
 
+    apart: np.ndarray
+    spread: np.ndarray
 
-def _checked(X: ArrayLike, trials: Trials) -> np.ndarray:
-    table = np.asarray(X, dtype=float)
-    if table.ndim != 2 or len(table) != len(trials.pairs) or not np.isfinite(table).all():
-        raise ValueError(
-            f"Expected a finite table of {len(trials.pairs)} pairs by groups, as the answers have "
-            f"pairs; got shape {table.shape}."
-        )
-    return table
+    @classmethod
+    def of(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
+        """Return the problem of fitting weights of a table to trials; refuse what does not fit."""
+        table = np.asarray(X, dtype=float)
+        if table.ndim != 2 or len(table) != len(trials.pairs):
+            raise ValueError(
+                f"Expected a table of {len(trials.pairs)} pairs by groups, as the answers have "
+                f"pairs; got shape {table.shape}."
+            )
+        if not np.isfinite(table).all():
+            raise ValueError("The table of pairs by groups has numbers that are not finite.")
+        apart = table[trials.shown] - table[trials.chosen_pairs][:, None]
+        spread = np.sqrt((apart**2).mean(axis=(0, 1)))
+        spread[spread <= _SAME * np.abs(table).max(axis=0)] = np.inf
+        return cls(apart / spread, spread)
 
+    def weights(self, found: _Found) -> np.ndarray:
+        """Return weights per unit of the table's columns."""
+        return found.scaled / self.spread
 
-def _spread(X: np.ndarray) -> np.ndarray:
-    spread = X.std(axis=0)
-    return np.where(spread > 0, spread, 1.0)
-
-
-def _to_chosen(X: np.ndarray, trials: Trials) -> np.ndarray:
-    """Return how much more each pair shown differs than the chosen one, (trial, 6, group)."""
-    return X[trials.shown] - X[trials.chosen_pairs][:, None]
-
-
-def _most_likely(
-    apart: np.ndarray, times: np.ndarray, start: np.ndarray | None
-) -> tuple[np.ndarray, float]:
-    """Return the weights of least surprise, and their surprise: minus the log-likelihood."""
-    kept = times > 0
-    apart, times = apart[kept], times[kept]
-    n_groups = apart.shape[2]
-    weights = np.zeros(n_groups) if start is None else start
-    surprise, likely = _surprise(apart, times, weights)
-    for _ in range(_MOST_STEPS):
-        mean = np.einsum("tp,tpk->tk", likely, apart)
-        slope = -times @ mean
-        scaled = apart * np.sqrt(likely * times[:, None])[:, :, None]
-        scaled = scaled.reshape(-1, n_groups)
-        bend = scaled.T @ scaled - (mean * times[:, None]).T @ mean
-        bend[np.diag_indices(n_groups)] += 1e-9 * times.sum()
-        root = np.linalg.cholesky(bend)
-        target = root.T @ weights - solve_triangular(root, slope, lower=True)
-        aim = nnls(root.T, target)[0]
-        expected = slope @ (aim - weights)
-        if expected > -1e-10 * times.sum():
-            break
-        step = 1.0
-        while True:
-            tried = weights + step * (aim - weights)
-            found, chances = _surprise(apart, times, tried)
-            if found <= surprise + 1e-4 * step * expected or step < 1e-8:
+    def fit(self, times: np.ndarray, start: _Found | None = None) -> _Found:
+        """Return the weights of least surprise, trials counting so many times."""
+        kept = times > 0
+        apart, times = self.apart[kept], times[kept]
+        n_groups = apart.shape[2]
+        weights = np.zeros(n_groups) if start is None else start.scaled
+        surprise, likely = _surprise(apart, times, weights)
+        for _ in range(_MOST_STEPS):
+            mean = np.einsum("tp,tpk->tk", likely, apart)
+            slope = -times @ mean
+            scaled = apart * np.sqrt(likely * times[:, None])[:, :, None]
+            scaled = scaled.reshape(-1, n_groups)
+            bend = scaled.T @ scaled - (mean * times[:, None]).T @ mean
+            bend[np.diag_indices(n_groups)] += 1e-9 * times.sum()
+            root = np.linalg.cholesky(bend)
+            target = root.T @ weights - solve_triangular(root, slope, lower=True)
+            way = nnls(root.T, target)[0] - weights
+            expected = slope @ way
+            if expected > -1e-10 * times.sum():
                 break
-            step /= 2
-        weights, surprise, likely = tried, found, chances
-    return weights, surprise
+            step = 1.0
+            found, chances = _surprise(apart, times, weights + way)
+            while found > surprise + 1e-4 * step * expected and step > 1e-8:
+                step /= 2
+                found, chances = _surprise(apart, times, weights + step * way)
+            if found > surprise:  # no way down is left that numbers could tell
+                break
+            weights, surprise, likely = weights + step * way, found, chances
+        return _Found(weights, surprise)
+
+    def open_upwards(self, found: _Found, times: np.ndarray) -> list[int]:
+        """Return groups of which ten times the weight would hardly be less likely."""
+        groups = np.flatnonzero(found.scaled).tolist()
+
+        def is_open(direction: np.ndarray) -> bool:
+            more = found.scaled + MUCH * direction / min(direction.max(), 1.0)
+            return _surprise(self.apart, times, more)[0] - found.surprise < OPEN
+
+        if groups and is_open(found.scaled):  # all of them together
+            return groups
+        return [group for group in groups if is_open(np.diag(found.scaled)[group])]
 
 
 def _surprise(

@@ -11,7 +11,7 @@ import pandas as pd
 from eigenwalker.metric.all_pairs import compared_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
 from eigenwalker.metric.prepared import Clip as Clip
-from eigenwalker.metric.prepared import Clips, named, of_common_points
+from eigenwalker.metric.prepared import Clips, prepare_alike
 from eigenwalker.metric.prepared import PreparedClip as PreparedClip
 from eigenwalker.metric.prepared import prepare as prepare
 from eigenwalker.metric.prepared import registration_of as registration_of
@@ -104,8 +104,7 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
     True
 
     """
-    a, b = (prepare(clip) for clip in of_common_points({"a": a, "b": b}).values())
-    return registration_of(a, b).distances(by)
+    return registration_of(*prepare_alike([a, b]).values()).distances(by)
 
 
 def pair_table(
@@ -140,9 +139,8 @@ def pair_table(
     ((3, 3), True)
 
     """
-    clips = named(clips)
-    names = list(clips)
-    distances = pair_distances(clips, metric=metric, progress=progress).to_numpy()
+    distances = pair_distances(clips, metric=metric, progress=progress)
+    names = list(dict.fromkeys(name for pair in distances.index for name in pair))
     table = np.zeros((len(names), len(names)))
     rows, columns = np.triu_indices(len(names), 1)
     table[rows, columns] = table[columns, rows] = distances
@@ -210,7 +208,6 @@ def pair_components(
     (3, 15)
 
     """
-    clips = named(clips)
-    values, points = compared_pairs(clips, metric_named(metric), progress)
-    index = pd.MultiIndex.from_tuples(combinations(clips, 2), names=["first", "second"])
+    names, values, points = compared_pairs(clips, metric_named(metric), progress)
+    index = pd.MultiIndex.from_tuples(combinations(names, 2), names=["first", "second"])
     return pd.DataFrame(values, index=index, columns=points)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
-from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import clip_components, pair_distances
 from eigenwalker.metric.frame_metrics import By, ComparesFrames, FrameMetric
 from eigenwalker.metric.group_tables import by_group
@@ -17,14 +17,15 @@ from eigenwalker.metric.prepared import (
     Clip,
     Clips,
     PreparedClip,
-    named,
-    of_common_points,
     on_mannequin,
-    prepare,
+    prepare_alike,
     registration_of,
 )
 from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration
+
+if TYPE_CHECKING:
+    from eigenwalker.folds import Progress  # which loads scikit-learn
 
 PLAIN: Mapping[By, FrameMetric] = {
     by: FrameMetric(by=by) for by in ("positions", "velocities", "angles")
@@ -98,7 +99,7 @@ def compare_walks(
     ('hand', 'hand')
 
     """
-    a, b = (prepare(clip) for clip in of_common_points({"a": a, "b": b}).values())
+    a, b = prepare_alike([a, b]).values()
     asked = metric_named(metric)
     components = clip_components(a, b, metric=asked)
     names = [str(name) for name in components.index]
@@ -155,7 +156,7 @@ def by_metric(
         Of each with a scale of its own.
 
     """
-    prepared = {name: prepare(clip) for name, clip in named(clips).items()}
+    prepared = prepare_alike(clips)
     columns: dict[str, pd.Series] = {}
     for done, name in enumerate(metrics, start=1):
         columns[name] = pair_distances(prepared, metric=name)

@@ -25,9 +25,9 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
     -------
     dict
         ``rss``, the sum of squared errors; ``rms``, the root of their mean; ``pearson`` and
-        ``spearman`` correlations, NaN if one of the two does not vary. Figure 5's "difference",
-        said to be a norm, can only be a sum of squares, it seems over the whole table (A27): then
-        ``rss`` is half of it.
+        ``spearman`` correlations, NaN if one of the two does not vary or there is no pair. Figure
+        5's "difference", said to be a norm, can only be a sum of squares, it seems over the whole
+        table (A27): then ``rss`` is half of it.
 
     Examples
     --------
@@ -37,6 +37,8 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
     """
     observed, predicted = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
     error = observed - predicted
+    if not error.size:
+        return {"rss": 0.0, "rms": np.nan, "pearson": np.nan, "spearman": np.nan}
     varies = np.ptp(observed) > 0 and np.ptp(predicted) > 1e-12 * np.abs(predicted).max()
     ranks = [rankdata(observed), rankdata(predicted)]
     return {

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
 
-from eigenwalker.folds import Progress
 from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.frame_metrics import By, ComparesFrames
 from eigenwalker.metric.groups import GROUPS, group_points
-from eigenwalker.metric.prepared import Clips, named, on_mannequin, prepare
+from eigenwalker.metric.prepared import Clips, on_mannequin, prepare_alike
 from eigenwalker.metric.published import metric_named
+
+if TYPE_CHECKING:
+    from eigenwalker.folds import Progress  # which loads scikit-learn
 
 ALIKE = 0.95
 """Correlation above which two columns of a table can hardly be told apart by a fit."""
@@ -53,7 +57,7 @@ def group_table(
 
     """
     asked = [metric_named(metric) for metric in metrics]
-    prepared = {name: prepare(clip) for name, clip in named(clips).items()}
+    prepared = prepare_alike(clips)
     mannequin = on_mannequin(prepared.values())
     tables, left_out = [], []
     for metric in asked:

@@ -42,6 +42,7 @@ def motion_map(
     metric: str | ComparesFrames = POSITIONS,
     window_s: float = 0.0,
     align: bool = False,
+    periodic: bool = False,
 ) -> xr.DataArray:
     """Return how different every frame of one clip is from every frame of another.
 
@@ -63,13 +64,16 @@ def motion_map(
     align : bool
         Whether the second clip is turned about the vertical and moved along the floor, for every
         cell on its own, so that the points in the window lie nearest to those of the first.
+    periodic : bool
+        Whether the clips are cycles, such as `loop` gives them, whose first frame follows the last:
+        their velocities are those of clip distances then.
 
     Returns
     -------
     DataArray of shape (time_a, time_b)
         In the unit of F(d). A point that is missing in either frame is left out and the others
-        weigh more; a cell is NaN where all are missing. Of more than `EXACT` distances, such as
-        520 x 520 frames of 15 joints, a map is exact to six digits only.
+        weigh more; a cell is NaN where all are missing. Of more than 4 million distances, such as
+        520 x 520 frames of 15 joints, a map is of single precision.
 
     Raises
     ------
@@ -89,7 +93,7 @@ def motion_map(
 
     """
     metric = metric_named(metric)
-    clips = _both(a, b, metric, align)
+    clips = _both(a, b, metric, align, periodic)
     half = _half_window(clips.a, clips.b, window_s)
     values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
     return xr.DataArray(
@@ -188,7 +192,13 @@ class _Both(NamedTuple):
         return diagonal_means(cells, half) if half else cells
 
 
-def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames, align: bool) -> _Both:
+def _both(
+    a: xr.DataArray,
+    b: xr.DataArray | None,
+    metric: ComparesFrames,
+    align: bool,
+    periodic: bool = False,
+) -> _Both:
     a = check_trajectories(a)
     b = a if b is None else check_trajectories(b)
     n_cells = a.sizes["time"] * b.sizes["time"]
@@ -201,8 +211,8 @@ def _both(a: xr.DataArray, b: xr.DataArray | None, metric: ComparesFrames, align
             f"cells, more than {most:.2g}. Take parts of the clips, or every n-th frame."
         )
     alike = (a, b) if b is a else told_alike((a, b))
-    points_a = points_of(alike[0], metric.by, periodic=False)
-    points_b = points_a if b is a else points_of(alike[1], metric.by, periodic=False)
+    points_a = points_of(alike[0], metric.by, periodic=periodic)
+    points_b = points_a if b is a else points_of(alike[1], metric.by, periodic=periodic)
     names = common_names(points_a[0], points_b[0])
     values_a = picked(*points_a, names)
     values_b = values_a if b is a else picked(*points_b, names)

@@ -120,7 +120,7 @@ def bootstrap_weights(
     rng = np.random.default_rng(seed)
     fits: list[Weights] = []
     for _ in range(_MOST_DRAWS):
-        times = _times_drawn(rng, len(shown), n_samples)
+        times = times_drawn(rng, len(shown), n_samples)
         differences = difference(times @ chosen, times @ shown)
         counts = np.ones_like(differences)
         if pairs is not None:
@@ -141,7 +141,7 @@ def bootstrap_weights(
     )
 
 
-def _times_drawn(rng: np.random.Generator, n: int, n_samples: int) -> np.ndarray:
+def times_drawn(rng: np.random.Generator, n: int, n_samples: int) -> np.ndarray:
     """Return how often each of n is among n drawn with replacement, (sample, n)."""
     return rng.multinomial(n, np.full(n, 1 / n), size=n_samples)
 
@@ -151,7 +151,7 @@ def _counts_of_pairs(
 ) -> np.ndarray:
     """Return how often each pair of two different walkers is among those drawn, (sample, pair)."""
     walkers, at = np.unique([[str(end) for end in pair] for pair in pairs], return_inverse=True)
-    times = _times_drawn(rng, len(walkers), n_samples)
+    times = times_drawn(rng, len(walkers), n_samples)
     first, second = at.reshape(-1, 2).T
     return (times[:, first] * times[:, second]).astype(float)
 

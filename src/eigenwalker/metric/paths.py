@@ -16,8 +16,11 @@ SLOPE_LIMIT = 3
 """Frames in a row that one clip may stand still: warps from a quarter to four times the speed."""
 
 SLACK = 1e-5
-"""Share of a map's largest cell below which no clip stands still for a gain: where frames hardly
-differ, both go on."""
+"""Share of a usual cell that a frame of standing still has to gain: where frames hardly differ,
+both clips go on."""
+
+_CELLS_LOOKED_AT = 2000
+"""Of which the median tells what is usual."""
 
 
 def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.ndarray:
@@ -28,8 +31,9 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     cost : array of shape (frame, other frame)
         Distances, 0 or more, none missing.
     slope_limit : int, optional
-        Frames of one clip in a row that may be passed while the other stands still. Left out,
-        any number: plain dynamic time warping.
+        Frames of one clip in a row that may be passed while the other stands still, where that
+        gains more than rounding errors do (`SLACK`). Left out, any number: plain dynamic time
+        warping.
 
     Returns
     -------
@@ -39,7 +43,7 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     Raises
     ------
     ValueError
-        If there are no frames, or slopes within the limit cannot join the two ends.
+        If there are no frames, a cell is missing, or slopes within the limit cannot join the ends.
 
     Examples
     --------
@@ -53,11 +57,15 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     if not n or not m:
         raise ValueError(f"A path needs frames on both sides; there are {n} and {m}.")
     cost = np.ascontiguousarray(cost, dtype=float)
+    if np.isnan(cost).any():
+        raise ValueError("Cells of this map are missing, so no path leads through it; fill gaps.")
     if slope_limit is None:
         return _warped(cost)
     if slope_limit < 1:
         raise ValueError(f"slope_limit={slope_limit}; give 1 or more, or None for no limit.")
-    path = limited_path(cost, min(slope_limit, max(n, m)))
+    some = cost.ravel()[:: max(1, cost.size // _CELLS_LOOKED_AT)]
+    usual = float(np.median(some[np.isfinite(some)])) if np.isfinite(some).any() else 0.0
+    path = limited_path(cost, min(slope_limit, max(n, m)), SLACK * usual)
     if not len(path):
         raise ValueError(
             f"With slope_limit={slope_limit} no path joins {n} frames with {m}: one clip would "
@@ -106,14 +114,16 @@ def _warped(cost):
 
 
 @compiled
-def limited_path(cost, limit):
+def limited_path(cost, limit, slack):
     """Path with slope limits through a whole map; empty if there is none."""
     n, m = cost.shape
     margin = limit + 1
     cells = np.full((margin + n, margin + m), np.inf, cost.dtype)
     cells[margin:, margin:] = cost
     row = margin + m
-    return _path_between(cells.ravel(), margin * row + margin, n, row, m, row + 1, m - 1, limit)
+    return _path_between(
+        cells.ravel(), margin * row + margin, n, row, m, row + 1, m - 1, limit, slack
+    )
 
 
 @compiled
@@ -129,12 +139,13 @@ def closed_path(cost, shift, limit, band):
     about the line in which each path keeps. The number of frames divides by 4.
     """
     n = cost.shape[0]
-    coarse = _path_near_line(cost, 0, 2 * band, band // 2, 2, limit)
+    slack = SLACK * cost[0].mean()
+    coarse = _path_near_line(cost, 0, 2 * band, band // 2, 2, limit, slack)
     middle = 0
     while coarse[middle, 0] < n // 4:
         middle += 1
     begin, lead = n // 2, 2 * (coarse[middle, 1] - coarse[middle, 0])
-    path = _path_near_line(cost, begin, 2 * band + lead, band, 1, limit)[:-1]
+    path = _path_near_line(cost, begin, 2 * band + lead, band, 1, limit, slack)[:-1]
     for step in range(len(path)):
         path[step, 0] = (path[step, 0] + begin) % n
         path[step, 1] = (path[step, 1] + begin + shift + lead) % n
@@ -142,23 +153,22 @@ def closed_path(cost, shift, limit, band):
 
 
 @compiled
-def _path_near_line(cost, begin, lead, band, every, limit):
+def _path_near_line(cost, origin, lead, band, every, limit, slack):
     """Path from one frame of two cycles, of which every n-th is taken, on to the same one again."""
     n_frames, width = cost.shape[0], 2 * band + 1
     n_rows, length = n_frames // every + 1, (width + 7) // 8 * 8  # whole vectors of numbers
     margin, row = limit + 1, 2 * limit + length
     cells = np.full((margin + n_rows, row), np.inf, cost.dtype)
     for i in range(n_rows):
-        leads = cost[(begin + i * every) % n_frames]
+        leads = cost[(origin + i * every) % n_frames]
         for x in range(max(0, band - i), min(width, band + n_rows - i)):
             cells[margin + i, limit + x] = leads[lead + (x - band) * every]
-    return _path_between(
-        cells.ravel(), margin * row + limit, n_rows, row, length, row, n_rows - 1, limit, band
-    )
+    begin, last = margin * row + limit, n_rows - 1
+    return _path_between(cells.ravel(), begin, n_rows, row, length, row, last, limit, slack, band)
 
 
 @compiled
-def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0):
+def _path_between(cost, begin, n_rows, row, length, across, last, limit, slack, first=0):
     """Path from the first frames of two clips to the last, through cells that lie in one line.
 
     A cell is reached by a diagonal step, after which up to `limit` frames of one clip may pass.
@@ -167,12 +177,13 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
     cost: cells of a map in one line, with a margin of infinite ones; begin: where the first row
     begins; n_rows, row, length: how many rows there are, how far apart, how many cells in each;
     across: how far a step of both clips leads; last: frame of the second clip at which the path
-    ends; first: which cell of the first row the path begins with.
+    ends; slack: what a frame of standing still has to gain; first: which cell of the first row the
+    path begins with.
     """
     total = np.full(len(cost), np.inf, cost.dtype)
     start = begin + first - across
     total[start] = 0.0
-    slack = cost.dtype.type(SLACK) * _largest(cost)
+    slack = cost.dtype.type(slack)
     passed, climbed = np.empty(length, cost.dtype), np.empty(length, cost.dtype)
     for at in range(begin, begin + n_rows * row, row):
         best = total[at : at + length]
@@ -208,16 +219,6 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, first=0
         j -= 1
         at -= across + s if s > 0 else across - s * (across - 1)
     return path[step:].copy()
-
-
-@compiled
-def _largest(cost):
-    """Return the largest cell that is finite."""
-    largest = cost.dtype.type(0)
-    for cell in cost:
-        if cell > largest and cell < np.inf:
-            largest = cell
-    return largest
 
 
 @compiled

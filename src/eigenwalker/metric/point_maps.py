@@ -17,9 +17,8 @@ _ROWS = 32
 """Rows that one thread takes at a time."""
 
 EXACT = 4_000_000
-"""Distances up to which a map is computed in double precision. Larger ones are in single, about the
-middle of each point, and off by less than a millionth of how far points move: in a third of the
-time."""
+"""Distances up to which a map is computed in double precision. Larger maps are in single, in a
+third of the time: off by some ten-millionths of how far points are from their common middle."""
 
 _FEW = 1_000_000
 """Distances below which a second thread costs more than it brings."""
@@ -62,11 +61,12 @@ def point_map(
     a, weights = a[:, kept], np.asarray(weights, dtype=float)[kept]
     b = a if same else b[:, kept]
     missing = np.isnan(a).any() or np.isnan(b).any()
+    large = len(a) * len(b) * len(weights) > EXACT
     if shape == "squared" and a.shape[-1] == 3 and not missing:
         return _squared_map(a, b, weights)
     if missing:
-        return _map_with_gaps(a, b, weights, shape, parameter)
-    return _filled(a, b, weights, shape, parameter)
+        return _map_with_gaps(a, b, weights, shape, parameter, large)
+    return _filled(a, b, weights, shape, parameter, large)
 
 
 def _squared_map(a: np.ndarray, b: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -85,7 +85,7 @@ def _squared_map(a: np.ndarray, b: np.ndarray, weights: np.ndarray) -> np.ndarra
 
 
 def _map_with_gaps(
-    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
+    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float, large: bool
 ) -> np.ndarray:
     """Map in which each cell is made of the points that both frames have."""
     seen_a, seen_b = (np.atleast_2d(~np.isnan(values).any(axis=2)) for values in (a, b))
@@ -95,19 +95,20 @@ def _map_with_gaps(
         rows, columns = np.flatnonzero(seen_a[:, k]), np.flatnonzero(seen_b[:, k])
         if not rows.size or not columns.size:
             continue
-        part = _filled(a[rows, k : k + 1], b[columns, k : k + 1], np.array([w]), shape, parameter)
+        point = a[rows, k : k + 1], b[columns, k : k + 1]
+        part = _filled(*point, np.array([w]), shape, parameter, large)
         total[np.ix_(rows, columns)] += part
+    total *= weights.sum()
     return np.divide(total, weight, out=np.full_like(total, np.nan), where=weight > 1e-12)
 
 
 def _filled(
-    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
+    a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float, large: bool
 ) -> np.ndarray:
     """Fill a map by blocks of rows; of a clip with itself half of them, which is mirrored."""
     result = np.empty((len(a), len(b)))
-    n_distances = result.size * len(weights)
-    precision = np.float32 if n_distances > EXACT else np.float64
-    middle = 0.0 if a.shape[2] == 4 else b.mean(axis=0, keepdims=True)
+    precision = np.float32 if large else np.float64
+    middle = 0.0 if a.shape[2] == 4 else (a.mean(axis=0) + b.mean(axis=0)) / 2
     rows = np.ascontiguousarray(a - middle, dtype=precision)
     columns = np.ascontiguousarray((b - middle).transpose(1, 2, 0), dtype=precision)
     weights, number = weights.astype(precision), np.array([parameter], dtype=precision)
@@ -126,7 +127,7 @@ def _filled(
         if half:
             result[start + _ROWS :, block] = result[block, start + _ROWS :].T
 
-    in_threads(fill, range(0, len(a), _ROWS), few=n_distances < _FEW)
+    in_threads(fill, range(0, len(a), _ROWS), few=result.size * len(weights) < _FEW)
     return result
 
 

@@ -24,8 +24,8 @@ FEW = 0.5
 """Share of the fewer points of two clips below which it is said how few both have."""
 
 
-def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.DataArray:
-    """Return what of a clip is compared frame by frame.
+def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str], np.ndarray]:
+    """Return what of a clip is compared frame by frame, unlabelled, as labels take their time.
 
     Parameters
     ----------
@@ -39,27 +39,11 @@ def frame_points(clip: xr.DataArray, by: By, *, periodic: bool = False) -> xr.Da
 
     Returns
     -------
-    DataArray of shape (time, point, part)
+    names : list of str
+    values : array of shape (time, point, part)
         Three parts in mm or mm/s, or four of a unit quaternion.
 
-    Examples
-    --------
-    >>> foot = ew.label_trajectories([[[0, 0, 0]], [[10, 0, 0]]], markers=["foot"], rate_hz=100)
-    >>> frame_points(foot, "velocities").values[:, 0, 0].round(6).tolist()
-    [1000.0, 1000.0]
-
     """
-    names, values = points_of(clip, by, periodic=periodic)
-    return xr.DataArray(
-        values,
-        dims=("time", "point", "part"),
-        coords={"time": clip.time.values, "point": names},
-        attrs={"units": UNITS[by]},
-    )
-
-
-def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str], np.ndarray]:
-    """Return names and values of `frame_points`, unlabelled: in loops over clips labels cost."""
     if by == "angles":
         points = joint_quaternions(clip)
         return points["joint"].values.tolist(), points.values

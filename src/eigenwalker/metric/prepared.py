@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 
@@ -78,14 +78,14 @@ def prepare(clip: Clip) -> PreparedClip:
     if isinstance(clip, PreparedClip):
         return clip
     clip = as_trajectories(clip)
-    rate_hz = sampling_rate(clip)
+    filled, gaps = fill_short_gaps(clip.values, sampling_rate(clip))
+    whole = clip.copy(data=filled)
     try:
-        return PreparedClip(clip, common_clock(loop(clip)))
+        return PreparedClip(whole, common_clock(loop(clip)))
     except NoStrideError as error:
-        filled, gaps = fill_short_gaps(clip.values, rate_hz)
         if gaps:
             raise
-        return PreparedClip(clip.copy(data=filled), None, str(error))
+        return PreparedClip(whole, None, str(error))
 
 
 def on_mannequin(clips: Iterable[PreparedClip]) -> bool:
@@ -105,10 +105,19 @@ def registration_of(a: PreparedClip, b: PreparedClip) -> Registration:
     return register(a.clip, b.clip)
 
 
-def of_common_points(clips: Mapping[str, Clip]) -> dict[str, Clip]:
-    """Return clips of the points that all have, so that no other decides how one is prepared.
+def prepare_alike(
+    clips: Clips, *, done: Callable[[], object] = lambda: None
+) -> dict[str, PreparedClip]:
+    """Return clips made ready to be compared with each other, by the points that all have.
 
-    What was prepared stays as it is.
+    What only some clips have decides nothing then. Clips that are prepared stay as they are.
+
+    Parameters
+    ----------
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
+        Clips that are given in order are called "0", "1" and so on.
+    done : callable, optional
+        Called after each clip.
 
     Raises
     ------
@@ -116,24 +125,24 @@ def of_common_points(clips: Mapping[str, Clip]) -> dict[str, Clip]:
         If they have no points in common.
 
     """
-    markers = []
-    for clip in clips.values():
-        there = clip.clip if isinstance(clip, PreparedClip) else as_trajectories(clip)
-        markers.append([str(name) for name in there.marker.values])
-    common = reduce(common_names, markers)
-    return {
-        name: clip
-        if isinstance(clip, PreparedClip)
-        else as_trajectories(clip).sel(marker=[each for each in there if each in common])
-        for (name, clip), there in zip(clips.items(), markers, strict=True)
+    if not isinstance(clips, Mapping):
+        clips = {str(number): clip for number, clip in enumerate(clips)}
+    plain = {
+        name: clip if isinstance(clip, PreparedClip) else as_trajectories(clip)
+        for name, clip in clips.items()
     }
-
-
-def named(clips: Clips) -> dict[str, Clip]:
-    """Return clips by name; those that are given in order are called "0", "1" and so on."""
-    if isinstance(clips, Mapping):
-        return {str(name): clip for name, clip in clips.items()}
-    return {str(number): clip for number, clip in enumerate(clips)}
+    markers = [
+        [str(m) for m in (each.clip if isinstance(each, PreparedClip) else each).marker.values]
+        for each in plain.values()
+    ]
+    common = set(reduce(common_names, markers)) if markers else set()
+    found = {}
+    for (name, clip), there in zip(plain.items(), markers, strict=True):
+        if not isinstance(clip, PreparedClip) and len(there) > len(common):
+            clip = clip.isel(marker=[marker in common for marker in there])
+        found[name] = prepare(clip)
+        done()
+    return found
 
 
 def as_trajectories(clip: xr.DataArray | Walker) -> xr.DataArray:

@@ -47,6 +47,7 @@ _LIMBS = {
     **{f"{side}_toe": (f"{side}_ankle", "foot") for side in SIDES},
 }
 """Joints with the joint that carries them and the length between, from the trunk outwards."""
+
 LOW_SHARE = 0.05
 """Share of frames in which an ankle or toe is lower than what counts as standing, against noise."""
 FLAT_SHARE = 0.2
@@ -169,7 +170,7 @@ def _root(seen: Mapping[str, np.ndarray], placed: Mapping[str, np.ndarray]) -> n
     walker, mannequin = [], []
     for part in ("ankle", "toe"):
         for joint in (f"{side}_{part}" for side in SIDES):
-            if joint in seen:
+            if joint in seen and np.isfinite(seen[joint]).any():
                 height = scale * seen[joint][:, 2]
                 walker.append(height - np.nanquantile(height, LOW_SHARE))
                 mannequin.append(placed[joint][:, 2] - _length(f"{part}_height"))
@@ -189,7 +190,9 @@ def _leg(places: Mapping[str, np.ndarray]) -> float:
 def _lowest(heights: list[np.ndarray], softness: float) -> np.ndarray:
     """Return the least height, with no kink where another becomes the least; NaN is none."""
     near = np.nan_to_num(-np.array(heights) / softness, nan=-np.inf)
-    return -softness * (np.logaddexp.reduce(near) - np.log(len(heights)))
+    n_seen = np.isfinite(near).sum(axis=0)
+    least = -softness * (np.logaddexp.reduce(near) - np.log(np.maximum(n_seen, 1)))
+    return np.where(n_seen, least, np.nan)
 
 
 def _with_rotations(result: xr.DataArray, walk: xr.DataArray) -> xr.DataArray:

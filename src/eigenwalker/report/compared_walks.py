@@ -14,7 +14,7 @@ from eigenwalker.folds import Progress
 from eigenwalker.metric.comparable import comparable_walk
 from eigenwalker.metric.prepared import PreparedClip, as_trajectories, prepare
 from eigenwalker.metric.retargeting import retarget
-from eigenwalker.mocap import RateAssumed, UnitGuessed, read_mocap, virtual_markers
+from eigenwalker.mocap import RateAssumed, read_mocap, virtual_markers
 from eigenwalker.population import FLAG, Population, flags_of
 from eigenwalker.quality import assess
 from eigenwalker.report.main_tables import names_of
@@ -75,21 +75,27 @@ def walk_of_capture(
 
 
 def _read(path: Path, unit: str | None, rate_hz: float | None) -> xr.DataArray:
-    """Return a capture, told what it does not say itself."""
+    """Return a capture, told what it does not say itself, and no more than that."""
     if unit is None and rate_hz is None:
         return read_mocap(path)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            capture = read_mocap(path)
-        except ValueError:  # perhaps for want of what is told
-            return read_mocap(path, unit=unit, rate_hz=rate_hz)
-    lacks = {each.category for each in caught}
-    told_unit = unit if UnitGuessed in lacks else None
-    told_rate = rate_hz if RateAssumed in lacks else None
-    if told_unit is None and told_rate is None:
-        return capture
-    return read_mocap(path, unit=told_unit, rate_hz=told_rate)
+    last = ValueError()
+    for told_unit, told_rate in ((None, None), (None, rate_hz), (unit, None), (unit, rate_hz)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                capture = read_mocap(path, unit=told_unit, rate_hz=told_rate)
+            except ValueError as error:  # perhaps for want of what is told
+                last = error
+                continue
+        lacks_rate = any(each.category is RateAssumed for each in caught)
+        wanted = (
+            unit if capture.attrs["unit_reason"] else told_unit,  # empty where the file names it
+            rate_hz if lacks_rate else told_rate,
+        )
+        if wanted == (told_unit, told_rate):
+            return capture
+        return read_mocap(path, unit=wanted[0], rate_hz=wanted[1])
+    raise last
 
 
 def remarks_on(clip: xr.DataArray) -> str:

@@ -16,13 +16,12 @@ from eigenwalker.folds import Progress
 from eigenwalker.metric.answers import PairCounts, as_name, count_pairs, read_trials
 from eigenwalker.metric.choices import (
     bootstrap_choices,
-    compare_by_choices,
     expected_differences,
     fit_choices,
-    unseen_differences,
 )
 from eigenwalker.metric.comparison import by_metric
 from eigenwalker.metric.fit_quality import compare_metrics, leave_walkers_out
+from eigenwalker.metric.foretold import compare_by_choices, unseen_differences
 from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.observers import Bootstrap, Reliability, bootstrap_weights, split_half
 from eigenwalker.metric.perceptual import PerceptualMetric
@@ -182,15 +181,21 @@ def in_words(found: FittedMetric) -> list[str]:
         f"{found.reliability.halves:.2f}; no metric can be expected above "
         f"{found.reliability.ceiling:.2f}.",
         f"Fitted to the choices, relative weights are: {_shares_in_words(found.by_choices)}. They "
-        f"foretell the differences of these pairs with r = {fitted.choices_pearson:.2f}, of pairs "
-        f"of walkers they have not seen with r = {fitted.choices_cv_pearson:.2f}.",
+        f"foretell the differences of these pairs with r = {fitted.choices_pearson:.2f}, "
+        f"{_of_unseen(float(fitted.choices_cv_pearson))}.",
         f"Fitted to the differences, as in the paper: {_shares_in_words(found.weights)}, constant "
-        f"{found.model.constant_:.2f}; r = {fitted.pearson:.2f}, unseen {fitted.cv_pearson:.2f}.",
+        f"{found.model.constant_:.2f}; r = {fitted.pearson:.2f}, {_of_unseen(float(fitted.cv_pearson))}.",
     ]
     best = others[["choices_cv_pearson", "cv_pearson"]].max(axis=1)
     if best.notna().any():
         said.append(f"Best of the others is {best.idxmax()}, r = {best.max():.2f} unseen.")
     return said
+
+
+def _of_unseen(correlation: float) -> str:
+    if np.isnan(correlation):
+        return "of unseen walkers unknown, as there are too few"
+    return f"of pairs of walkers they have not seen with r = {correlation:.2f}"
 
 
 def weights_side_by_side(found: FittedMetric) -> pd.DataFrame:

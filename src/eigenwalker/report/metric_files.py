@@ -33,7 +33,8 @@ def metric_of(told: str) -> GroupMetric:
     Parameters
     ----------
     told : str
-        A name of `PUBLISHED`, or a path that ends in ``.csv``, such as the ``weights.csv`` of
+        A name of `PUBLISHED`, or a path that ends in ``.csv``, such as the
+        ``weights-by-choices.csv`` of
         ``eigenwalker compare --answers``.
 
     Raises
@@ -52,7 +53,7 @@ def metric_of(told: str) -> GroupMetric:
     if not told.lower().endswith(".csv"):
         raise ValueError(
             f"The metric {told!r} is not known; give one of {list(PUBLISHED)}, or the "
-            f"{WEIGHTS_NAME} of a fit to answers."
+            f"{WEIGHTS_NAME} or {BY_CHOICES_NAME} of a fit to answers."
         )
     return _fitted(Path(told))
 
@@ -66,7 +67,7 @@ def _fitted(path: Path) -> GroupMetric:
     if lacking := [column for column in _COLUMNS if column not in table]:
         raise ValueError(
             f"{path} holds no fitted metric: it lacks the columns {lacking}; expected the "
-            f"{WEIGHTS_NAME} that 'eigenwalker compare --answers' writes."
+            f"{WEIGHTS_NAME} or {BY_CHOICES_NAME} that 'eigenwalker compare --answers' writes."
         )
     names = set(map(str, table.metric))
     if len(names) != 1 or not names <= set(PUBLISHED):

@@ -71,7 +71,9 @@ def maps_of_components(found: Comparison, names: tuple[str, str]) -> Figure:
     registered = found.registration
     pictures = []
     for by, metric in PLAIN.items():
-        cells = motion_map(registered.first, _lain_over(found), metric=metric)
+        cells = motion_map(
+            registered.first, _lain_over(found), metric=metric, periodic=registered.periodic
+        )
         values = np.rad2deg(cells.values) if by == "angles" else cells.values
         pictures.append(
             MapPicture(
