@@ -213,8 +213,10 @@ def test_feet_turn_as_the_walker_s_do():
         way = clip.sel(marker="left_toe").values - clip.sel(marker="left_ankle").values
         ways.append(way / np.linalg.norm(way, axis=1, keepdims=True))
     turned = np.rad2deg(np.arccos((ways[0] * ways[1]).sum(axis=1)))
-    assert np.ptp(turned) < 0.5
-    assert 1 < turned.mean() < 20
+    free = retarget(walk).sel(marker="left_toe", axis="z").values > 60
+    assert free.sum() > 20
+    assert np.ptp(turned[free]) < 0.5
+    assert 1 < turned[free].mean() < 20
     assert np.rad2deg(np.arcsin(np.ptp(ways[1][:, 2]) / 2)) > 20
 
 
@@ -226,7 +228,23 @@ def test_a_toe_that_is_hidden_for_moments_moves_nothing_else():
     )
     holed = walk.copy(deep=True)
     holed.loc[{"marker": "left_toe"}][50:53] = np.nan
-    inner = [name for name in walk.marker.values if name != "left_toe"]
-    moved = np.abs(retarget(holed) - retarget(walk)).sel(marker=inner)
-    assert float(moved.max()) < 20
-    assert float(moved.median()) < 0.5
+    moved = np.abs(retarget(holed) - retarget(walk)).drop_sel(marker="left_toe")
+    assert float(moved.max()) == 0
+
+
+def test_the_mannequin_rises_and_falls_as_smoothly_as_the_walker():
+    walk = comparable_walk(
+        simulate_walk(seed=5, duration_s=6.0, rate_hz=60, markers="skin"), mannequin=False
+    )
+    placed = retarget(walk)
+    heights = [clip.sel(marker="pelvis", axis="z").values for clip in (walk, placed)]
+    assert np.corrcoef(*heights)[0, 1] > 0.6
+    fastest = [np.abs(np.gradient(height)).max() for height in heights]
+    assert fastest[1] < 1.6 * fastest[0]
+    bare = retarget(walk.drop_sel(marker=["left_toe", "right_toe"]))
+    np.testing.assert_allclose(placed.sel(marker=bare.marker), bare)
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 5])
+def test_a_few_frames_can_be_shown_too(walk, n_frames):
+    assert np.isfinite(retarget(walk.isel(time=slice(n_frames)))).all()

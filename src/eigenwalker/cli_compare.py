@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import re
 import sys
 import warnings
@@ -157,8 +158,9 @@ def _refuse_at_the_door(
         _refuse(given, set(given) - {"--unit", "--rate"}, "is for captures, not for a population")
     if output is None:
         return
-    if output.exists() and not output.is_dir():
-        raise ValueError(f"-o {output} is a file; name a folder to write the report into.")
+    above = next(each for each in (output, *output.absolute().parents) if each.exists())
+    if not above.is_dir():
+        raise ValueError(f"-o {output}: {above} is a file; name a folder to write a report into.")
     if output.suffix.lower() in OF_FILES and not output.exists():
         raise ValueError(
             f"-o {output} is called like a file; name a folder. The report with its pictures, "
@@ -251,13 +253,23 @@ def _answers(path: Path, metric: GroupMetric) -> pd.DataFrame:
     if metric.name not in PUBLISHED:
         raise ValueError("--answers finds weights of its own: name a published --metric.")
     try:
-        table = pd.read_csv(path, dtype=str)
-    except (ValueError, OSError) as error:
+        table = pd.read_csv(path, dtype=str, sep=None, engine="python", encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(
+            f"The answers {path} are no text in UTF-8; save them as 'CSV UTF-8'."
+        ) from error
+    except (ValueError, OSError, csv.Error) as error:
         why = str(getattr(error, "strerror", None) or error).strip()
         raise ValueError(f"The answers {path} could not be read as CSV: {why}") from error
+    table.columns = [str(name).strip() for name in table.columns]
     if lacking := [name for name in ("observer", *SHOWN, *CHOSEN) if name not in table]:
         raise ValueError(
             f"The answers {path} lack the columns {lacking}; they have {list(table)[:12]}."
+        )
+    if table.observer.nunique() < 2:
+        raise ValueError(
+            f"The answers {path} are of {table.observer.nunique()} observer; intervals come from "
+            "how two or more differ. In Python, ew.fit_choices finds the weights of one."
         )
     return table
 

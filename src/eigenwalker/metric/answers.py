@@ -216,11 +216,16 @@ def count_pairs(
 
 def as_name(said: object) -> str:
     """Return a walker's name; 3.0, as columns of numbers with an empty cell are written, is 3."""
-    return _WHOLE.sub(r"\1", str(said))
+    return _WHOLE.sub(r"\1", str(said).strip())
 
 
 def _names_in(answers: pd.DataFrame, columns: Sequence[str]) -> np.ndarray:
     return np.column_stack([answers[name].map(as_name).to_numpy(dtype=str) for name in columns])
+
+
+def _few(names: Sequence[str], most: int = 20) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{list(names[:most])}{more}"
 
 
 def _refuse_empty(given: np.ndarray, columns: list[str], lines: np.ndarray) -> None:
@@ -246,10 +251,10 @@ def _check_trials(
         if not set(four) <= known:
             raise ValueError(
                 f"Line {line} of the answers shows {sorted(set(four) - known)}, which are not "
-                f"among the walkers {sorted(known)[:20]}."
+                f"among the walkers {_few(sorted(known))}."
             )
         if len(set(two)) < 2 or not set(two) <= set(four):
             raise ValueError(
                 f"Line {line} of the answers shows {four}, of which {two} cannot be the pair "
-                "chosen."
+                "chosen. Where there was no answer, leave both cells of the choice empty."
             )

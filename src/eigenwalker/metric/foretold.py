@@ -14,7 +14,6 @@ from eigenwalker.metric.choices import (
     ChoiceProblem,
     choice_probabilities,
     expected_differences,
-    fit_choices,
 )
 from eigenwalker.metric.fit_quality import goodness
 
@@ -91,13 +90,15 @@ def compare_by_choices(
     rows = {}
     for done, (name, table) in enumerate(tables.items(), start=1):
         X = np.asarray(table, dtype=float).reshape(len(observed), -1)
-        fitted = fit_choices(X, trials)
-        expected = expected_differences(X @ fitted.weights, trials)
+        problem = ChoiceProblem.of(X, trials)
+        fitted = problem.fit(np.ones(len(trials.chosen)))
+        weights = problem.weights(fitted)
+        expected = expected_differences(X @ weights, trials)
         unseen = unseen_differences(X, trials)
         known = np.isfinite(unseen) & seen
-        gain = fitted.log_likelihood / fitted.n_trials + np.log(trials.shown.shape[1])
+        gain = np.log(trials.shown.shape[1]) - fitted.surprise / len(trials.chosen)
         rows[name] = {
-            "n_weights": int((fitted.weights > 0).sum()),
+            "n_weights": int((weights > 0).sum()),
             "bits": gain / np.log(2),
             "pearson": goodness(observed[seen], expected[seen])["pearson"],
             "cv_pearson": goodness(observed[known], unseen[known])["pearson"],

@@ -109,7 +109,7 @@ class FrameMetric:
             if wrong:
                 amiss.append(f"weights must be finite and 0 or more; got {wrong}")
         if amiss:
-            raise ValueError("This compares no frames: " + "; ".join(amiss) + ".")
+            raise ValueError("This is no metric of frames: " + "; ".join(amiss) + ".")
 
     def weights_for(self, names: Sequence[str]) -> np.ndarray:
         """Return a weight for each named point, 0 or more; they sum to 1.

@@ -56,6 +56,8 @@ def group_table(
     ['clavicle']
 
     """
+    if not metrics:
+        raise ValueError("Name what to compare by: group_table(clips, 'positions-sigmoid').")
     asked = [metric_named(metric) for metric in metrics]
     prepared = prepare_alike(clips)
     mannequin = on_mannequin(prepared.values())

@@ -114,7 +114,7 @@ def prepare_alike(
 
     Parameters
     ----------
-    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
+    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence, or Population
         Clips that are given in order are called "0", "1" and so on.
     done : callable, optional
         Called after each clip.
@@ -125,6 +125,7 @@ def prepare_alike(
         If they have no points in common.
 
     """
+    clips = getattr(clips, "walkers", clips)
     if not isinstance(clips, Mapping):
         clips = {str(number): clip for number, clip in enumerate(clips)}
     plain = {

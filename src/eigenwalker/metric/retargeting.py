@@ -8,9 +8,15 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
+from eigenwalker.gait.low_pass import low_passed
 from eigenwalker.metric.body_frames import SIDES, body_frame
 from eigenwalker.skeleton import JOINTS
-from eigenwalker.trajectories import check_trajectories, missing_markers, trajectories_at
+from eigenwalker.trajectories import (
+    check_trajectories,
+    missing_markers,
+    sampling_rate,
+    trajectories_at,
+)
 
 HEIGHT_MM = 1693.0
 """Mid-way between the mean woman and the mean man of ANSUR II (Gordon et al. 2014)."""
@@ -49,7 +55,9 @@ _LIMBS = {
 """Joints with the joint that carries them and the length between, from the trunk outwards."""
 
 LOW_SHARE = 0.05
-"""Share of frames in which an ankle or toe is lower than what counts as standing, against noise."""
+"""Share of frames in which the lower ankle is lower than what counts as standing, against noise."""
+SMOOTH_HZ = 3.0
+"""Frequency above which the mannequin's body rises and falls as the walker's, whatever its legs."""
 FLAT_SHARE = 0.2
 """Share of frames in which a foot surely stands flat: it does so for a third of the stride."""
 SOFTNESS = 0.01
@@ -63,8 +71,9 @@ def retarget(walk: xr.DataArray) -> xr.DataArray:
     spine, neck, arms, hands, thighs and calves are kept in every frame, as are the turns of pelvis
     and shoulders; widths, lengths, and where shoulders and hips sit, are the mannequin's. Feet turn
     as the walker's do from where they stand flat: how steep the line from ankle to toe is then, is
-    a matter of build and of where the points sit. What the body does on the whole is scaled by the
-    length of the legs, and it is as high over the ground as its lowest ankle or toe asks for.
+    a matter of build and of where the points sit; and no further than the floor lets them. What the
+    body does on the whole is scaled by the length of the legs, and it is as high over the ground as
+    its lower ankle asks for.
 
     Parameters
     ----------
@@ -101,9 +110,14 @@ def retarget(walk: xr.DataArray) -> xr.DataArray:
         )
     seen = {str(name): walk.values[:, i] for i, name in enumerate(walk.marker.values)}
     placed = _placed(seen)
-    root = _root(seen, placed)
-    names = [*JOINTS.markers, *(name for name in placed if name not in JOINTS.markers)]
-    positions = np.stack([placed[name] for name in names], axis=1) + root[:, None]
+    root = _root(seen, placed, sampling_rate(walk) if walk.sizes["time"] > 1 else 0.0)
+    standing = {name: place + root for name, place in placed.items()}
+    for side in SIDES:
+        if f"{side}_toe" in standing:
+            ankle, toe = (standing[f"{side}_{joint}"] for joint in ("ankle", "toe"))
+            standing[f"{side}_toe"] = _out_of_the_floor(ankle, toe)
+    names = [*JOINTS.markers, *(name for name in standing if name not in JOINTS.markers)]
+    positions = np.stack([standing[name] for name in names], axis=1)
     result = trajectories_at(walk.time.values, positions, names)
     result.attrs = walk.attrs | {"retargeted": True}
     return _with_rotations(result, walk)
@@ -158,23 +172,23 @@ def _along(way: np.ndarray, part: str) -> np.ndarray:
     return _length(part) * np.divide(way, length, out=np.full_like(way, np.nan), where=length > 0)
 
 
-def _root(seen: Mapping[str, np.ndarray], placed: Mapping[str, np.ndarray]) -> np.ndarray:
+def _root(
+    seen: Mapping[str, np.ndarray], placed: Mapping[str, np.ndarray], rate_hz: float
+) -> np.ndarray:
     """Return where the mannequin's pelvis is: it moves as the walker's, on legs of its own.
 
-    It is as high as its feet ask for: the lowest of ankles and toes is as far above where it stands
-    as the walker's lowest is, legs alike.
+    What these ask for beside the walker's own rise and fall is smoothed: its body is no less smooth
+    than the walker's, and its feet give way by some millimetres.
     """
     scale = (_length("thigh") + _length("calf")) / _leg(seen)
-    softness = SOFTNESS * scale * _leg(seen)
     root = scale * seen["pelvis"]
-    walker, mannequin = [], []
-    for part in ("ankle", "toe"):
-        for joint in (f"{side}_{part}" for side in SIDES):
-            if joint in seen and np.isfinite(seen[joint]).any():
-                height = scale * seen[joint][:, 2]
-                walker.append(height - np.nanquantile(height, LOW_SHARE))
-                mannequin.append(placed[joint][:, 2] - _length(f"{part}_height"))
-    root[:, 2] = _lowest(walker, softness) - _lowest(mannequin, softness)
+    lower = scale * _lower_ankle(seen, softness=SOFTNESS * _leg(seen))
+    lifted = lower - np.nanquantile(lower, LOW_SHARE)
+    over_ankle = _lower_ankle(placed, softness=SOFTNESS * scale * _leg(seen))
+    higher = _length("ankle_height") + lifted - over_ankle - root[:, 2]
+    if rate_hz > 2 * SMOOTH_HZ:
+        higher = low_passed(higher[:, None, None], rate_hz, SMOOTH_HZ)[:, 0, 0]
+    root[:, 2] += higher
     return root
 
 
@@ -187,12 +201,23 @@ def _leg(places: Mapping[str, np.ndarray]) -> float:
     return float(np.nanmean(lengths) * 2)
 
 
-def _lowest(heights: list[np.ndarray], softness: float) -> np.ndarray:
-    """Return the least height, with no kink where another becomes the least; NaN is none."""
-    near = np.nan_to_num(-np.array(heights) / softness, nan=-np.inf)
-    n_seen = np.isfinite(near).sum(axis=0)
-    least = -softness * (np.logaddexp.reduce(near) - np.log(np.maximum(n_seen, 1)))
-    return np.where(n_seen, least, np.nan)
+def _lower_ankle(places: Mapping[str, np.ndarray], *, softness: float) -> np.ndarray:
+    """Return the height of the lower ankle, with no kink where the other becomes the lower one."""
+    left, right = (-places[f"{side}_ankle"][:, 2] / softness for side in SIDES)
+    return -softness * (np.logaddexp(left, right) - np.log(2))
+
+
+def _out_of_the_floor(ankle: np.ndarray, toe: np.ndarray) -> np.ndarray:
+    """Return a toe that the floor holds: a foot that would go through it is less steep instead."""
+    length, floor = _length("foot"), _length("toe_height")
+    softness = SOFTNESS * (_length("thigh") + _length("calf"))
+    way = toe - ankle
+    with np.errstate(invalid="ignore"):  # of toes that were not seen
+        height = floor + softness * np.logaddexp(0, (toe[:, 2] - floor) / softness)
+    rise = np.clip(height - ankle[:, 2], -length, length)
+    level = np.linalg.norm(way[:, :2], axis=1)
+    wider = np.divide(np.sqrt(length**2 - rise**2), level, out=np.ones_like(rise), where=level > 0)
+    return ankle + np.column_stack([way[:, :2] * wider[:, None], rise])
 
 
 def _with_rotations(result: xr.DataArray, walk: xr.DataArray) -> xr.DataArray:

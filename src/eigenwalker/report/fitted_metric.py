@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from scipy.spatial.distance import pdist
+from scipy.stats import chi2
 from sklearn.model_selection import cross_val_predict
 
 from eigenwalker.display.fitted_weights import figure_predictions, figure_weights
@@ -34,6 +35,10 @@ from eigenwalker.report.two_walks import CITE, in_plain
 from eigenwalker.space import WalkerSpace
 
 FITTED = "fitted to these answers"
+FEW_OBSERVERS = 10
+"""Below so many, intervals from drawing observers hold planted weights much too seldom."""
+AGREED = 0.3
+"""Correlation of halves of the observers above which they are of one mind about something."""
 PAIRS_NAME, COMPARED_NAME = "pairs.csv", "metrics.csv"
 
 
@@ -60,6 +65,8 @@ class FittedMetric:
         As `compare_metrics` gives it, and ``choices_`` before the columns of `compare_by_choices`.
     reliability : Reliability
         Of the answers.
+    n_silent : int
+        Trials without an answer.
 
     """
 
@@ -71,6 +78,7 @@ class FittedMetric:
     pairs: pd.DataFrame
     compared: pd.DataFrame
     reliability: Reliability
+    n_silent: int = 0
 
 
 def fit_answers(
@@ -150,6 +158,7 @@ def fit_answers(
             compare_by_choices(tables, trials, progress=progress).add_prefix("choices_")
         ),
         reliability=split_half(chosen, shown),
+        n_silent=len(answers) - len(trials.chosen),
     )
 
 
@@ -173,23 +182,53 @@ def _named_as(answers: pd.DataFrame, names: list[str]) -> pd.DataFrame:
 
 def in_words(found: FittedMetric) -> list[str]:
     """Return what a fit says, in sentences."""
-    fitted = found.compared.loc[FITTED]
+    fitted = _of_fitted(found)
     others = found.compared.drop(index=FITTED)
+    silent = f" ({found.n_silent} more trials had none)" if found.n_silent else ""
+    n_observers = len(found.counts.observers)
     said = [
-        f"{len(found.counts.observers)} observers, {found.counts.chosen.sum():.0f} answers, "
-        f"{len(found.pairs)} pairs. Halves of the observers agree with r = "
-        f"{found.reliability.halves:.2f}; no metric can be expected above "
-        f"{found.reliability.ceiling:.2f}.",
+        f"{n_observers} observers, {found.counts.chosen.sum():.0f} answers{silent}, "
+        f"{len(found.pairs)} pairs.",
         f"Fitted to the choices, relative weights are: {_shares_in_words(found.by_choices)}. They "
-        f"foretell the differences of these pairs with r = {fitted.choices_pearson:.2f}, "
-        f"{_of_unseen(float(fitted.choices_cv_pearson))}.",
+        f"predict the differences of these pairs with r = {fitted['choices_pearson']:.2f}, "
+        f"{_of_unseen(fitted['choices_cv_pearson'])}.",
         f"Fitted to the differences, as in the paper: {_shares_in_words(found.weights)}, constant "
-        f"{found.model.constant_:.2f}; r = {fitted.pearson:.2f}, {_of_unseen(float(fitted.cv_pearson))}.",
+        f"{found.model.constant_:.2f}; r = {fitted['pearson']:.2f}, "
+        f"{_of_unseen(fitted['cv_pearson'])}.",
+        f"Halves of the observers agree with r = {found.reliability.halves:.2f}, so that no fit to "
+        f"the differences can be expected above {found.reliability.ceiling:.2f}.",
     ]
-    best = others[["choices_cv_pearson", "cv_pearson"]].max(axis=1)
+    best = others.choices_cv_pearson
     if best.notna().any():
-        said.append(f"Best of the others is {best.idxmax()}, r = {best.max():.2f} unseen.")
-    return said
+        said.append(
+            f"Of the published metrics, {best.idxmax()} predicts choices best, r = "
+            f"{best.max():.2f} unseen."
+        )
+    return said + _doubts(found)
+
+
+def _of_fitted(found: FittedMetric) -> dict[str, float]:
+    return {str(name): float(found.compared[name][FITTED]) for name in found.compared}
+
+
+def _doubts(found: FittedMetric) -> list[str]:
+    """Return what speaks against trusting the weights, in sentences; nothing if nothing does."""
+    fitted, doubts = _of_fitted(found), []
+    n_trials, n_groups = found.counts.chosen.sum(), len(found.by_choices)
+    gain = 2 * n_trials * fitted["choices_bits"] * np.log(2)
+    if not found.by_choices.weight.any() and found.reliability.halves > AGREED:
+        doubts.append(
+            "Observers agree with each other, but against all these distances: was the most "
+            "different pair to be chosen? This fit takes the chosen pair for the most similar one."
+        )
+    elif gain < chi2.ppf(0.95, n_groups):
+        doubts.append("These answers cannot be told from guessing, so the weights say nothing.")
+    if len(found.counts.observers) < FEW_OBSERVERS:
+        doubts.append(
+            f"With {len(found.counts.observers)} observers the intervals are too narrow: they rest "
+            "on how observers differ."
+        )
+    return doubts
 
 
 def _of_unseen(correlation: float) -> str:
@@ -353,6 +392,7 @@ def _method(found: FittedMetric) -> list[str]:
         "Unseen are pairs of walkers to whose other pairs no weight was fitted. For choices none "
         "of the trials counted that showed one of the two. For differences other pairs' shares "
         "come in part from such trials.",
-        "The ceiling is the square root of the answers' reliability (split-half, Spearman and "
-        "Brown).",
+        "What no fit to the differences can be expected to exceed is the square root of their "
+        "reliability (split-half, Spearman and Brown). Choices are predicted knowing what else was "
+        "shown, which differences do not, so that they can be predicted better.",
     ]
