@@ -26,7 +26,7 @@ from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.report.compared_walks import Walks
-from eigenwalker.report.fitted_metric import fit_answers
+from eigenwalker.report.fitted_metric import fit_answers, in_words
 
 N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
 PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
@@ -430,3 +430,24 @@ def test_pairs_that_were_never_shown_together_are_left_out_of_the_fit_and_it_is_
     assert len(found.pairs) == 14
     assert ("w0", "w1") not in found.pairs.index
     assert np.isfinite(found.pairs.drop(columns="expected_unseen")).all(axis=None)
+
+
+@pytest.mark.parametrize(
+    ("liking", "said"),
+    [(-6.0, "was the most different pair"), (0.0, "cannot be told from guessing"), (6.0, "")],
+)
+def test_what_speaks_against_a_fit_is_said(mannequins, liking, said):
+    clips = dict(itertools.islice(mannequins.items(), 7))
+    renamed = {f"w{i}": clip for i, clip in enumerate(clips.values())}
+    apart = pair_components(renamed, metric="positions-absolute").mean(axis=1)
+    apart = (liking * apart / apart.std()).to_dict()
+    rng = np.random.default_rng(0)
+    rows = []
+    for trial in range(480):
+        four = sorted(rng.permutation(list(renamed))[:4])
+        felt = {pair: apart[pair] - rng.gumbel() for pair in itertools.combinations(four, 2)}
+        rows.append([f"o{trial % 12}", *four, *min(felt, key=felt.__getitem__)])
+    table = pd.DataFrame(rows, columns=["observer", *"abcd", "chosen_1", "chosen_2"])
+    found = " ".join(in_words(fit_answers(Walks(renamed), table, "positions-absolute")))
+    doubts = ["was the most different pair", "cannot be told from guessing", "too narrow"]
+    assert [doubt for doubt in doubts if doubt in found] == ([said] if said else [])

@@ -34,7 +34,7 @@ from eigenwalker.report.page import write_report
 from eigenwalker.report.two_walks import CITE, in_plain
 from eigenwalker.space import WalkerSpace
 
-FITTED = "fitted to these answers"
+FITTED, AS_PUBLISHED = "fitted to these answers", ", as published"
 FEW_OBSERVERS = 10
 """Below so many, intervals from drawing observers hold planted weights much too seldom."""
 AGREED = 0.3
@@ -123,7 +123,7 @@ def fit_answers(
         )
     table = group_table(walks.clips, metric, progress=progress)
     published = by_metric(walks.clips, list(PUBLISHED))
-    others = {f"{name}, as published": published[name].to_numpy() for name in PUBLISHED}
+    others = {name + AS_PUBLISHED: published[name].to_numpy() for name in PUBLISHED}
     tables = {FITTED: table.to_numpy(), **others}
     if walks.vectors:
         vectors = np.stack([walks.vectors[name] for name in names])
@@ -201,8 +201,8 @@ def in_words(found: FittedMetric) -> list[str]:
     best = others.choices_cv_pearson
     if best.notna().any():
         said.append(
-            f"Of the published metrics, {best.idxmax()} predicts choices best, r = "
-            f"{best.max():.2f} unseen."
+            f"Of the others, {str(best.idxmax()).removesuffix(AS_PUBLISHED)} predicts choices "
+            f"best, r = {best.max():.2f} unseen."
         )
     return said + _doubts(found)
 
@@ -216,12 +216,13 @@ def _doubts(found: FittedMetric) -> list[str]:
     fitted, doubts = _of_fitted(found), []
     n_trials, n_groups = found.counts.chosen.sum(), len(found.by_choices)
     gain = 2 * n_trials * fitted["choices_bits"] * np.log(2)
-    if not found.by_choices.weight.any() and found.reliability.halves > AGREED:
+    tells_nothing = gain < chi2.ppf(0.95, n_groups)
+    if tells_nothing and found.reliability.halves > AGREED:
         doubts.append(
-            "Observers agree with each other, but against all these distances: was the most "
-            "different pair to be chosen? This fit takes the chosen pair for the most similar one."
+            "Observers agree with each other, but these distances tell nothing of what they chose: "
+            "was the most different pair to be chosen? This fit takes the pair for the most similar."
         )
-    elif gain < chi2.ppf(0.95, n_groups):
+    elif tells_nothing:
         doubts.append("These answers cannot be told from guessing, so the weights say nothing.")
     if len(found.counts.observers) < FEW_OBSERVERS:
         doubts.append(
