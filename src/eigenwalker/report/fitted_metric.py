@@ -220,7 +220,7 @@ def _doubts(found: FittedMetric) -> list[str]:
     if tells_nothing and found.reliability.halves > AGREED:
         doubts.append(
             "Observers agree with each other, but these distances tell nothing of what they chose: "
-            "was the most different pair to be chosen? This fit takes the pair for the most similar."
+            "was the most different pair to be chosen? This fit takes it for the most similar one."
         )
     elif tells_nothing:
         doubts.append("These answers cannot be told from guessing, so the weights say nothing.")
