@@ -20,6 +20,7 @@ from eigenwalker.gait.passage import Passage, find_passage
 from eigenwalker.gait.steady import SteadyPart, body_relative, steady_part
 from eigenwalker.mending import mend
 from eigenwalker.mocap.marker_names import side_pairs
+from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 _WHOLE = 0.05
@@ -129,7 +130,10 @@ def in_place(
 
 
 def _of_the_body(walk: xr.DataArray) -> xr.DataArray:
-    """Return a capture without points that stay in the room while the others go through it."""
+    """Return a capture without points that stay in the room while the others go through it.
+
+    A joint that stays is none of these: something is wrong with it, which `assess` is to find.
+    """
     if walk.sizes["time"] < 2 or walk.sizes["marker"] < 2:
         return walk
     low, high = (np.where(np.isnan(walk), edge, walk).T for edge in (np.inf, -np.inf))
@@ -137,7 +141,7 @@ def _of_the_body(walk: xr.DataArray) -> xr.DataArray:
     seen = ~np.isnan(walk.values).any(axis=(0, 2))
     body = walk.values[:, seen].mean(axis=1) if seen.any() else np.zeros((1, 3))
     travelled = float(np.ptp(body, axis=0).max())
-    still = (way >= 0) & (way < _STAYS_SHARE * travelled)
+    still = (way >= 0) & (way < _STAYS_SHARE * travelled) & ~np.isin(walk.marker, JOINTS.markers)
     if not travelled > _TRAVELS_MM or not still.any():
         return walk
     names = walk.marker.values[still].tolist()
