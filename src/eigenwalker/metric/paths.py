@@ -57,7 +57,7 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     if not n or not m:
         raise ValueError(f"A path needs frames on both sides; there are {n} and {m}.")
     cost = np.ascontiguousarray(cost, dtype=float)
-    if np.isnan(cost).any():
+    if np.isnan(cost.min()):
         raise ValueError("Cells of this map are missing, so no path leads through it; fill gaps.")
     if slope_limit is None:
         return _warped(cost)
