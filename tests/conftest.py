@@ -8,6 +8,7 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import c3d
 import numpy as np
@@ -18,6 +19,9 @@ from eigenwalker.simulation import simulate_walk
 from eigenwalker.skeleton import JOINTS
 from eigenwalker.trajectories import sampling_rate
 from eigenwalker.walker import Form, Walker
+
+if TYPE_CHECKING:
+    from eigenwalker.metric.prepared import PreparedClip
 
 _KERNELS = sorted((Path(__file__).parents[1] / "src" / "eigenwalker" / "metric").glob("*.py"))
 _VERSION = hashlib.sha256(b"".join(path.read_bytes() for path in _KERNELS)).hexdigest()[:16]
@@ -35,6 +39,18 @@ def captures() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no real captures in {folder}; name their folder in EIGENWALKER_DATA")
     return folder
+
+
+@pytest.fixture(scope="session")
+def mannequins() -> dict[str, PreparedClip]:
+    """21 of the built-in people, ready to be compared, on the neutral mannequin."""
+    from eigenwalker.datasets import load_population  # these load numba, which is told above
+    from eigenwalker.metric.prepared import prepare
+    from eigenwalker.metric.retargeting import retarget
+
+    walkers = load_population().walkers[:21]
+    walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
+    return {f"walker {i}": prepare(retarget(walk)) for i, walk in enumerate(walks)}
 
 
 def _orthogonal_walker(

@@ -10,7 +10,6 @@ import pytest
 from scipy.optimize import minimize
 from sklearn.linear_model import LogisticRegression
 
-from eigenwalker.datasets import load_population
 from eigenwalker.metric.answers import Trials, count_pairs, read_trials
 from eigenwalker.metric.choices import (
     bootstrap_choices,
@@ -21,20 +20,10 @@ from eigenwalker.metric.choices import (
 from eigenwalker.metric.foretold import compare_by_choices, unseen_differences
 from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.perceptual import PerceptualMetric
-from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.metric.retargeting import retarget
 
 N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
 PAIRS = pd.MultiIndex.from_tuples(itertools.combinations(range(N_WALKERS), 2))
-
-
-@pytest.fixture(scope="module")
-def mannequins():
-    """21 of the built-in people, ready to be compared, on the neutral mannequin."""
-    walkers = load_population().walkers[:N_WALKERS]
-    walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
-    return {f"walker {i}": prepare(retarget(walk)) for i, walk in enumerate(walks)}
 
 
 def planted_in(X: pd.DataFrame, name: str) -> np.ndarray:

@@ -14,7 +14,6 @@ from scipy.optimize import lsq_linear
 from scipy.spatial.distance import pdist
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from eigenwalker.datasets import load_population
 from eigenwalker.metric.answers import count_pairs
 from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.fit_quality import compare_metrics, goodness, leave_walkers_out
@@ -22,9 +21,7 @@ from eigenwalker.metric.group_tables import by_group, group_table
 from eigenwalker.metric.observers import bootstrap_weights, difference, split_half
 from eigenwalker.metric.outer_search import fit_from_random_starts, search_shape
 from eigenwalker.metric.perceptual import PerceptualMetric
-from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.metric.retargeting import retarget
 from eigenwalker.report.compared_walks import Walks
 from eigenwalker.report.fitted_metric import fit_answers, in_words
 
@@ -88,14 +85,6 @@ def test_planted_weights_are_found_from_as_many_answers_as_the_paper_had(tempera
         within += [(intervals.relative_low <= planted) & (planted <= intervals.relative_high)]
         assert (intervals.relative_high - intervals.relative_low).mean() < 0.2
     assert np.mean(within) >= 0.95  # intervals of 95 per cent, and wider than need be
-
-
-@pytest.fixture(scope="module")
-def mannequins():
-    """21 of the built-in people, ready to be compared, on the neutral mannequin."""
-    walkers = load_population().walkers[:N_WALKERS]
-    walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
-    return {f"walker {i}": prepare(retarget(walk)) for i, walk in enumerate(walks)}
 
 
 def planted_in(X: pd.DataFrame, name: str) -> np.ndarray:

@@ -157,7 +157,7 @@ def _counts_of_pairs(
 
 
 class Reliability(NamedTuple):
-    """How well halves of the observers agree, all of them, and the best that a metric can do."""
+    """How well halves of the observers agree, all of them, and the best a fit to them can do."""
 
     halves: float
     whole: float
@@ -173,7 +173,8 @@ def split_half(
     mean correlation r is that of half the data. All observers together would agree with as many
     others by 2 r / (1 + r) (Spearman and Brown), or not at all where r is below 0. Since half of
     that unreliability is not the metric's to explain, even the true differences correlate with the
-    table by its square root only.
+    table by its square root only. What is expected of choices, knowing what else each trial showed
+    (`expected_differences`), can come nearer.
 
     Parameters
     ----------
