@@ -17,7 +17,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
-PAGE = ROOT / "src" / "eigenwalker" / "page"
+PAGE = ROOT / "src" / "eigenwalker" / "stimulus" / "built"
 BUILT = [PAGE / name for name in ("player.html", "interactive.html", "mannequin.js", "widget.js")]
 STIMULUS = ROOT / "src" / "eigenwalker" / "stimulus"
 SHARED = [STIMULUS / name for name in ("schema.json", "mannequin.json")]

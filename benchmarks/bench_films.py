@@ -24,9 +24,10 @@ from matplotlib.figure import Figure
 from side_by_side import machine, print_table, seconds
 
 import eigenwalker as ew
-from eigenwalker.stimulus import Stimulus, make_stimulus
 from eigenwalker.stimulus.drawing import places_px
-from eigenwalker.stimulus.write import write_stimulus
+from eigenwalker.stimulus.make import make_stimulus
+from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.write_stimulus import write_stimulus
 
 WIDTH, HEIGHT, DPI = 1920, 1080, 100
 

@@ -11,8 +11,8 @@ from collections.abc import Iterable
 import numpy as np
 from side_by_side import machine, print_table, seconds
 
-from eigenwalker.folds import LeaveOut, discriminant_sums
-from eigenwalker.jackknife import jackknife_curves
+from eigenwalker.analysis._leave_out import LeaveOut, discriminant_sums
+from eigenwalker.analysis.jackknife import jackknife_curves
 
 N_FEATURES = 229
 

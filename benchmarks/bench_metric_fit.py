@@ -13,10 +13,10 @@ from scipy.optimize import minimize
 from scipy.spatial.distance import pdist
 from side_by_side import machine, print_table, seconds
 
-from eigenwalker.metric.fit_quality import goodness
-from eigenwalker.metric.observers import bootstrap_weights
-from eigenwalker.metric.outer_search import fit_from_random_starts, search_shape
-from eigenwalker.metric.perceptual import PerceptualMetric, non_negative_fit
+from eigenwalker.psychophysics.cross_validation import goodness
+from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric, non_negative_fit
+from eigenwalker.psychophysics.reliability import bootstrap_weights
+from eigenwalker.psychophysics.shape_search import fit_from_random_starts, search_shape
 
 N_WALKERS, N_STARTS, N_SLSQP = 21, 1000, 50
 PAIRS = list(itertools.combinations(range(N_WALKERS), 2))

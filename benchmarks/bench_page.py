@@ -19,8 +19,8 @@ from playwright.sync_api import CDPSession, Page, sync_playwright
 from side_by_side import machine
 
 import eigenwalker as ew
-from eigenwalker.page.interactive import interactive_page
-from eigenwalker.page.model import page_model
+from eigenwalker.explorer.interactive_page import interactive_page
+from eigenwalker.explorer.model import page_model
 
 SECONDS = 5.0
 SCENES = {

@@ -7,12 +7,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 
-from eigenwalker.decomposition import decompose_fourier
-from eigenwalker.display.bodies import draw_body
-from eigenwalker.display.projection import observer_axes, project
-from eigenwalker.display.style import BLUE, GREY, INK, PALE, RED, USUAL, bare, new_figure
-from eigenwalker.simulation import simulate_walk
-from eigenwalker.skeleton import JOINTS
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.decomposition.decomposition import decompose_fourier
+from eigenwalker.plotting.projection import observer_axes, project
+from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, USUAL, bare, new_figure
+from eigenwalker.plotting.walkers import draw_body
+from eigenwalker.simulation.walk import simulate_walk
 
 VIEW, ELEVATION = 35.0, 18.0
 AXES = (("x", "forward", RED), ("y", "left", "#009988"), ("z", "up", BLUE))

@@ -9,15 +9,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from eigenwalker.stimulus import Stimulus
-from eigenwalker.stimulus.write import write_stimulus
+from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.write_stimulus import write_stimulus
 
 DOCS = Path(__file__).parent
 PICTURES = DOCS / "images" / "gallery"
 SETTING = """\
 import eigenwalker as ew
 from eigenwalker.stimulus import Figure, make_stimulus
-from eigenwalker.stimulus.information import with_information
+from eigenwalker.stimulus.walker_information import with_information
 
 people = ew.load_population()
 average = people.walker(people.average)
@@ -360,7 +360,7 @@ def page() -> str:
             "```",
             "",
             'Each line gives a stimulus; `.save("stim.json")` keeps it, '
-            "`eigenwalker.stimulus.write.write_stimulus`",
+            "`eigenwalker.stimulus.write_stimulus.write_stimulus`",
             "makes it a film. The options do the same, as in",
             "",
             "```sh",

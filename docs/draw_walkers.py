@@ -13,5 +13,5 @@ if __name__ == "__main__":
     walkers = {
         title: people.walker(people.average + alpha * sex.step) for title, alpha in alphas.items()
     }
-    figure = ew.figure_walkers(walkers)
+    figure = ew.plotting.figure_walkers(walkers)
     figure.savefig(Path(__file__).parent / "images" / "walkers.png", dpi=150)

@@ -19,5 +19,5 @@ curves = {
     title: ew.jackknife_curves(people.part(part), people.traits["sex"])
     for title, part in parts.items()
 }
-figure = ew.figure_curves(curves, n_walkers=len(people), n_columns=2)
+figure = ew.plotting.figure_curves(curves, n_walkers=len(people), n_columns=2)
 figure.savefig("classifier_curves.png")

@@ -10,15 +10,15 @@ each other at such moments.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.display.difference_maps import (
+from eigenwalker.metric.comparison import compare_walks
+from eigenwalker.metric.motion_maps import motion_map
+from eigenwalker.metric.retargeting import retarget
+from eigenwalker.plotting.difference_maps import (
     MapPicture,
     figure_maps,
     figure_two_walks,
     picture_of_strides,
 )
-from eigenwalker.metric.comparison import compare_walks
-from eigenwalker.metric.motion_maps import motion_map
-from eigenwalker.metric.retargeting import retarget
 
 people = ew.load_population()
 step = ew.trait_axis(people, "happy").step

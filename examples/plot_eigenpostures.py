@@ -9,5 +9,5 @@ import eigenwalker as ew
 
 walk = ew.simulate_walk(seed=1)
 walker = ew.decompose_pca(walk)
-figure = ew.figure_eigenpostures(walker)
+figure = ew.plotting.figure_eigenpostures(walker)
 figure.savefig("eigenpostures.png")

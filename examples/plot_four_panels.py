@@ -12,7 +12,7 @@ is_man = (people.traits["sex"] == "male").to_numpy()
 women, men = people.X[~is_man].mean(axis=0), people.X[is_man].mean(axis=0)
 middle, half = (women + men) / 2, (men - women) / 2
 
-figure = ew.figure_walkers(
+figure = ew.plotting.figure_walkers(
     {
         "women": people.walker(women),
         "men": people.walker(men),

@@ -19,7 +19,7 @@ else:
 walk = ew.in_place(capture)
 walker = ew.decompose_fourier(walk)
 lasts_s = float(walk.time[-1] - walk.time[0])
-ew.write_film(
+ew.plotting.write_film(
     [walk, walker],
     "own_capture.mp4",
     duration_s=min(lasts_s, 5),

@@ -8,7 +8,7 @@ import eigenwalker as ew
 
 people = ew.load_population()
 sex = ew.trait_axis(people, "sex")
-figure = ew.figure_space(
+figure = ew.plotting.figure_space(
     ew.WalkerSpace().fit(people.X),
     people.X,
     people.traits["sex"],

@@ -8,5 +8,5 @@ import eigenwalker as ew
 
 walk = ew.simulate_walk(seed=4, noise_mm=1)
 walker = ew.decompose_pca(walk)
-figure = ew.figure_scores(walk, walker)
+figure = ew.plotting.figure_scores(walk, walker)
 figure.savefig("scores_and_sines.png")

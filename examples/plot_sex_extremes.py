@@ -15,10 +15,10 @@ walkers = {
     for alpha in (-6, -3, 0, 3, 6)
 }
 
-figure = ew.figure_walkers(walkers)
+figure = ew.plotting.figure_walkers(walkers)
 figure.savefig("sex_extremes.png")
 
-ew.write_film(
+ew.plotting.write_film(
     list(walkers.values()),
     "sex_extremes.mp4",
     n_strides=2,

@@ -8,17 +8,12 @@ planted is found again. Nothing in the simulation was tuned to the first table.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.correspondence import matched_by_sign_and_order, posture_correlations
-from eigenwalker.simulation import (
-    EFFECTS,
-    PARAMETERS,
-    draw_people,
-    random_pattern,
-    true_direction,
-    truth_of,
-)
+from eigenwalker.population.correspondence import matched_by_sign_and_order, posture_correlations
 from eigenwalker.simulation.foot import TOE_BEND
-from eigenwalker.simulation.parameters import ANSUR, PINZONE, SCHWARTZ, TROJE
+from eigenwalker.simulation.person import ANSUR, PARAMETERS, PINZONE, SCHWARTZ, TROJE
+from eigenwalker.simulation.planted_effect import random_pattern
+from eigenwalker.simulation.trait_effects import EFFECTS, draw_people
+from eigenwalker.simulation.truth import true_direction, truth_of
 
 SHORT = {
     ANSUR: "ANSUR II",

@@ -49,7 +49,7 @@ const MODULES: Record<string, string> = {
 };
 
 const shared: BuildEnvironmentOptions = {
-  outDir: inFolder("../src/eigenwalker/page"),
+  outDir: inFolder("../src/eigenwalker/stimulus/built"),
   emptyOutDir: false,
   target: "es2022",
   modulePreload: false,

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from eigenwalker.simulation import simulate_walk
-from eigenwalker.skeleton import JOINTS
-from eigenwalker.trajectories import sampling_rate
-from eigenwalker.walker import Form, Walker
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.core.walker import Form, Walker
+from eigenwalker.simulation.walk import simulate_walk
 
 if TYPE_CHECKING:
     from eigenwalker.metric.prepared import PreparedClip
@@ -44,7 +44,9 @@ def captures() -> Path:
 @pytest.fixture(scope="session")
 def mannequins() -> dict[str, PreparedClip]:
     """21 of the built-in people, ready to be compared, on the neutral mannequin."""
-    from eigenwalker.datasets import load_population  # these load numba, which is told above
+    from eigenwalker.datasets.built_in import (
+        load_population,  # these load numba, which is told above
+    )
     from eigenwalker.metric.prepared import prepare
     from eigenwalker.metric.retargeting import retarget
 

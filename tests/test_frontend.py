@@ -47,7 +47,7 @@ def test_the_pages_of_the_package_are_built_from_these_sources(tmp_path: Path, n
     mode = name.partition(".")[0]
     answer = npm("exec", "--", "vite", "build", "--mode", mode, "--outDir", str(tmp_path))
     assert answer.returncode == 0, answer.stdout + answer.stderr
-    page = files("eigenwalker.page").joinpath(name)
+    page = files("eigenwalker.stimulus").joinpath("built", name)
     built = (tmp_path / name).read_text(encoding="utf-8")
     assert page.read_text(encoding="utf-8") == built, "run 'npm run build' in frontend/"
 

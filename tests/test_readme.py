@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from eigenwalker.simulation import simulate_captures
+from eigenwalker.simulation.people import simulate_captures
 
 README = Path(__file__).resolve().parents[1] / "README.md"
 BLOCKS = re.findall(r"^```python\n(.*?)^```", README.read_text(), re.DOTALL | re.MULTILINE)

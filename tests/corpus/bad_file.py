@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from corpus.sound_files import Files, sound_files
-from eigenwalker.simulation import simulate_walk
+from eigenwalker.simulation.walk import simulate_walk
 
 Door = Literal["capture", "table of traits", "population", "mat", "walkers.mat", "bml"]
 Ending = Literal["refused", "flagged"]

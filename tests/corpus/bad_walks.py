@@ -10,9 +10,9 @@ import xarray as xr
 
 from corpus.bad_file import BadFile, person, written
 from corpus.sound_files import c3d_file, sound_files
-from eigenwalker.skeleton import JOINTS
-from eigenwalker.trajectories import label_trajectories
-from eigenwalker.writing import write_mocap
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.io.write import write_mocap
 
 
 def _changed(change: Callable[[np.ndarray], np.ndarray | None], **options: object) -> xr.DataArray:

@@ -19,10 +19,11 @@ import numpy as np
 import xarray as xr
 from scipy.io import savemat
 
-from eigenwalker.mocap.pose_json import MEDIAPIPE
-from eigenwalker.population import Population
-from eigenwalker.simulation import simulate_population, simulate_walk
-from eigenwalker.writing import write_mocap
+from eigenwalker.io.readers.pose_json import MEDIAPIPE
+from eigenwalker.io.write import write_mocap
+from eigenwalker.population.population import Population
+from eigenwalker.simulation.people import simulate_population
+from eigenwalker.simulation.walk import simulate_walk
 
 Files = dict[str, bytes]
 """Files that belong together by name; the first is the one to read."""

@@ -34,13 +34,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 
 from corpus.sound_files import KINDS, Files, sound_files, walk_of
-from eigenwalker.attempts import walker_from_file
-from eigenwalker.bml import read_bml_axes
-from eigenwalker.inspection import inspect_file
-from eigenwalker.mocap import RateAssumed, UnitGuessed, UnreadableFile, read_mocap
-from eigenwalker.mocap.mat_arrays import mat_arrays
-from eigenwalker.population import Population
-from eigenwalker.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.datasets.bml import read_bml_axes
+from eigenwalker.io.assumed_rate import RateAssumed
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.read import read_mocap
+from eigenwalker.io.readers.mat_arrays import mat_arrays
+from eigenwalker.io.up_axis_and_unit import UnitGuessed
+from eigenwalker.population.population import Population
+from eigenwalker.study.inspect import inspect_file
+from eigenwalker.study.walker_from_file import walker_from_file
 from fuzz.mutations import mutated
 
 SECONDS = 10

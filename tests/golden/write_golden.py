@@ -15,14 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from eigenwalker.stimulus import Figure, Stimulus, drawing, make_stimulus
-from eigenwalker.stimulus.chance import normals, permutation, random_words, uniforms
-from eigenwalker.stimulus.content import schema
-from eigenwalker.stimulus.figure import walker_from_dict
+from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.core.walker import Walker
+from eigenwalker.stimulus import drawing
+from eigenwalker.stimulus.figure import Figure, walker_from_dict
+from eigenwalker.stimulus.make import make_stimulus
 from eigenwalker.stimulus.mannequin import body_heights
-from eigenwalker.stimulus.playing import scene
-from eigenwalker.trajectories import label_trajectories
-from eigenwalker.walker import Walker
+from eigenwalker.stimulus.player import scene
+from eigenwalker.stimulus.random_streams import normals, permutation, random_words, uniforms
+from eigenwalker.stimulus.schema import schema
+from eigenwalker.stimulus.stimulus import Stimulus
 
 FOLDER = Path(__file__).parent
 SCHEMA = FOLDER.parents[1] / "src" / "eigenwalker" / "stimulus" / "schema.json"

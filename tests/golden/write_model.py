@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from eigenwalker.caricature import position_in_space
-from eigenwalker.measures import walker_measures
-from eigenwalker.page.mixing import mixed_vector, model_layout
-from eigenwalker.page.model import page_model
-from eigenwalker.simulation import simulate_population
-from eigenwalker.space import WalkerSpace
+from eigenwalker.analysis.direction import position_in_space
+from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.explorer.mixing import mixed_vector, model_layout
+from eigenwalker.explorer.model import page_model
+from eigenwalker.gait.appearance import walker_measures
+from eigenwalker.simulation.people import simulate_population
 
 PATH = Path(__file__).parent / "model.json"
 CYCLES = (0.0, 0.1, 0.35, 0.8)

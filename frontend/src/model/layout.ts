@@ -1,4 +1,4 @@
-/** Which number of a feature vector is what, as `eigenwalker.features` has it (J11, A2). */
+/** Which number of a feature vector is what, as `eigenwalker.population.features` has it (J11, A2). */
 
 import type { Model, Span } from "./model";
 

@@ -1,4 +1,4 @@
-/** What the eye takes in of a walk, in numbers, as `eigenwalker.measures` has them (J32, W11). */
+/** What the eye takes in of a walk, in numbers, as `eigenwalker.gait.appearance` has them (J32, W11). */
 
 import type { Walker } from "../core/stimulus";
 import { stanceSpeed, type Path } from "./stance";

@@ -1,8 +1,5 @@
-"""From a capture to a steady walk in place: frequency, gaps, steady strides, heading, events."""
+"""One walk as a periodic movement: frequency, steady strides, in place, events, parameters."""
 
-from eigenwalker.gait.events import gait_events as gait_events
-from eigenwalker.gait.frequency import frequency_of_scores as frequency_of_scores
-from eigenwalker.gait.frequency import fundamental_frequency as fundamental_frequency
-from eigenwalker.gait.heading import stance_speed as stance_speed
-from eigenwalker.gait.parameters import gait_parameters as gait_parameters
-from eigenwalker.gait.placement import in_place as in_place
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

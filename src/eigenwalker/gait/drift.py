@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenwalker.gait.harmonics import harmonic_basis, regress
-from eigenwalker.gait.steady import closing_step
+from eigenwalker.core.fourier import harmonic_basis, regress
+from eigenwalker.gait.steady_strides import closing_step
 
 DRIFT_BELOW = 0.4
 """Cycles a stride below which movement of the whole body is drift and no part of the gait."""

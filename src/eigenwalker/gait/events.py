@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.gait.frequency import fundamental_frequency
 from eigenwalker.gait.heading import SIDES
-from eigenwalker.trajectories import check_trajectories
 
 HEEL_STRIKE = "heel strike"
 TOE_OFF = "toe off"

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.gait.harmonics import share_explained
-from eigenwalker.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.fourier import share_explained
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
 
 class NoStrideError(ValueError):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
 SIDES = ("left", "right")
 

@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.trajectories import check_trajectories
+from eigenwalker.core.walker import Walker
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF, gait_events
 from eigenwalker.gait.frequency import fundamental_frequency
 from eigenwalker.gait.heading import SIDES, stance_speed
-from eigenwalker.gait.placement import in_place
-from eigenwalker.trajectories import check_trajectories
-from eigenwalker.walker import Walker
+from eigenwalker.gait.in_place import in_place
 
 _STRIDES_PLAYED = 3
 _TRAVELS_MM = 800.0

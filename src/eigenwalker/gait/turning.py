@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eigenwalker.gait.heading import SIDES
-from eigenwalker.gait.steady import steady_part
+from eigenwalker.gait.steady_strides import steady_part
 
 TURNED = np.deg2rad(25)
 """A capture in which the heading changes by less goes straight: of 175 acted straight

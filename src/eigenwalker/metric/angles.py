@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.kinematics import shortest_turn
+from eigenwalker.core.kinematics import shortest_turn
+from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.metric.body_frames import LEAST_MM, SIDES, body_frame
 from eigenwalker.metric.groups import BONES
-from eigenwalker.trajectories import check_trajectories
 
 AngleDistance = Literal["angle", "one_minus_dot", "as_printed"]
 BEND_AS_SURE_AS_REST = np.sin(np.deg2rad(15))

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
+from eigenwalker.core.trajectories import DIMS
 from eigenwalker.metric.angles import BONE
-from eigenwalker.trajectories import DIMS
 
 RIGID_MM = 1.0
 """How much a point may move, root mean square, in the frame of a body it is part of."""

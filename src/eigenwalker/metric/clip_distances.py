@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from eigenwalker.metric.all_pairs import compared_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
-from eigenwalker.metric.prepared import Clip as Clip
-from eigenwalker.metric.prepared import Clips, prepare_alike
-from eigenwalker.metric.prepared import PreparedClip as PreparedClip
-from eigenwalker.metric.prepared import prepare as prepare
-from eigenwalker.metric.prepared import registration_of as registration_of
+from eigenwalker.metric.pairwise import compared_pairs
+from eigenwalker.metric.prepared import (
+    Clip as Clip,
+    Clips,
+    PreparedClip as PreparedClip,
+    prepare as prepare,
+    prepare_alike,
+    registration_of as registration_of,
+)
 from eigenwalker.metric.published import metric_named
 
 if TYPE_CHECKING:
-    from eigenwalker.folds import Progress  # which loads scikit-learn
+    from eigenwalker.core.progress import Progress
 
 
 def clip_distance(a: Clip, b: Clip, *, metric: str | ComparesFrames = POSITIONS) -> float:

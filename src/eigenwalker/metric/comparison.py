@@ -25,7 +25,7 @@ from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
 from eigenwalker.metric.registration import Registration
 
 if TYPE_CHECKING:
-    from eigenwalker.folds import Progress  # which loads scikit-learn
+    from eigenwalker.core.progress import Progress
 
 PLAIN: Mapping[By, FrameMetric] = {
     by: FrameMetric(by=by) for by in ("positions", "velocities", "angles")

@@ -7,17 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.quaternions import quaternions_at, vectors_of
+from eigenwalker.core.trajectories import trajectories_at
 from eigenwalker.metric.frame_metrics import ComparesFrames, shape_parameter
-from eigenwalker.metric.kernels import (
-    SHAPE_CODES,
-    compiled,
-    mean_along_path,
-)
+from eigenwalker.metric.kernels import SHAPE_CODES, compiled, mean_along_path
 from eigenwalker.metric.loops import Loop
 from eigenwalker.metric.paths import SLOPE_LIMIT, closed_path
 from eigenwalker.metric.threads import in_threads
-from eigenwalker.metric.turns_between import quaternions_at, vectors_of
-from eigenwalker.trajectories import trajectories_at
 
 CYCLE_FRAMES = 120
 """Frames of a stride on the common clock: about a hundred a second."""

@@ -14,7 +14,7 @@ from eigenwalker.metric.prepared import Clips, on_mannequin, prepare_alike
 from eigenwalker.metric.published import metric_named
 
 if TYPE_CHECKING:
-    from eigenwalker.folds import Progress  # which loads scikit-learn
+    from eigenwalker.core.progress import Progress
 
 ALIKE = 0.95
 """Correlation above which two columns of a table can hardly be told apart by a fit."""
@@ -51,7 +51,7 @@ def group_table(
     >>> X = group_table(walks, "positions-sigmoid", "velocities-absolute")
     >>> X.shape, X.columns[3], X.columns[-1]
     ((3, 16), 'positions forearm', 'velocities toe')
-    >>> neutral = {name: ew.retarget(walk) for name, walk in walks.items()}
+    >>> neutral = {name: ew.metric.retarget(walk) for name, walk in walks.items()}
     >>> group_table(neutral, "positions-absolute").attrs["left_out"]
     ['clavicle']
 

@@ -9,12 +9,12 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from eigenwalker.gait import in_place
+from eigenwalker.core.quaternions import between, quaternions_at, vectors_of
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate, trajectories_at
 from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
-from eigenwalker.gait.steady import closes, closing_step
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.gait.steady_strides import closes, closing_step
 from eigenwalker.metric.points import refuse_names_twice
-from eigenwalker.metric.turns_between import between, quaternions_at, vectors_of
-from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
 
 REPEATS_BELOW = 0.4
 """Mean squared distance of postures a period apart, as a share of that of any two: above this

@@ -8,12 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.metric.alignment import align_windows, aligned_map
-from eigenwalker.metric.frame_metrics import (
-    POSITIONS,
-    ComparesFrames,
-    shape_parameter,
-)
+from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames, shape_parameter
 from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.point_maps import point_map
 from eigenwalker.metric.points import (
@@ -26,7 +23,6 @@ from eigenwalker.metric.points import (
 )
 from eigenwalker.metric.published import metric_named
 from eigenwalker.metric.resampling import SAME_RATE
-from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 MOST_CELLS = 60_000_000
 """Cells of the largest map: half a gigabyte. Two clips of a minute at 120 Hz stay below."""

@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eigenwalker.metric.frame_metrics import SHAPES, Shape
-from eigenwalker.metric.kernels import (
-    SHAPE_CODES,
-    rows_of_map,
-    squares_of_point,
-    turns_of_point,
-)
+from eigenwalker.metric.kernels import SHAPE_CODES, rows_of_map, squares_of_point, turns_of_point
 from eigenwalker.metric.threads import in_threads
 
 _ROWS = 32

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.metric.angles import joint_quaternions
 from eigenwalker.metric.frame_metrics import By
-from eigenwalker.trajectories import sampling_rate
 
 UNITS: dict[By, str] = {"positions": "mm", "velocities": "mm/s", "angles": "rad"}
 """Unit of the distance of two points."""

@@ -9,14 +9,14 @@ from functools import reduce
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.walker import Walker
 from eigenwalker.gait.frequency import NoStrideError
 from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.loops import loop
 from eigenwalker.metric.points import common_names, refuse_names_twice
 from eigenwalker.metric.registration import Registration, register, register_strides
-from eigenwalker.trajectories import check_trajectories, sampling_rate
-from eigenwalker.walker import Walker
 
 RATE_HZ = 100.0
 """Frames a second at which walkers are played, as the paper's clips were."""

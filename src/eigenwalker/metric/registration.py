@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.trajectories import sampling_rate, trajectories_at
 from eigenwalker.metric.alignment import Alignment, align_steps
 from eigenwalker.metric.cycles import CYCLE_FRAMES, common_clock, register_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, By, ComparesFrames
@@ -17,7 +18,6 @@ from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
 from eigenwalker.metric.point_maps import point_distances
 from eigenwalker.metric.points import common_names, common_positions, picked, points_of, told_alike
 from eigenwalker.metric.resampling import at_one_rate, length_s, played
-from eigenwalker.trajectories import sampling_rate, trajectories_at
 
 WINDOW_S = 0.1
 """Seconds about each frame that decide how it is turned and moved, and over which maps average."""

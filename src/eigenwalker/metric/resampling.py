@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from eigenwalker.metric.turns_between import quaternions_at, vectors_of
-from eigenwalker.trajectories import check_trajectories, sampling_rate, trajectories_at
+from eigenwalker.core.quaternions import quaternions_at, vectors_of
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate, trajectories_at
 
 SAME_RATE = 0.01
 """Relative difference of frame rates up to which as many frames last as long."""

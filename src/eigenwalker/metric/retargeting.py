@@ -8,15 +8,15 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.gait.low_pass import low_passed
-from eigenwalker.metric.body_frames import SIDES, body_frame
-from eigenwalker.skeleton import JOINTS
-from eigenwalker.trajectories import (
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import (
     check_trajectories,
     missing_markers,
     sampling_rate,
     trajectories_at,
 )
+from eigenwalker.gait.filtering import low_passed
+from eigenwalker.metric.body_frames import SIDES, body_frame
 
 HEIGHT_MM = 1693.0
 """Mid-way between the mean woman and the mean man of ANSUR II (Gordon et al. 2014)."""

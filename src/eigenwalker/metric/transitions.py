@@ -7,11 +7,11 @@ import pandas as pd
 import xarray as xr
 from scipy.ndimage import minimum_filter
 
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.metric.alignment import align_steps
 from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.points import common_positions
-from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 WINDOW_S = 1 / 3
 """Seconds over which clips are blended in Kovar, Gleicher & Pighin (2002)."""

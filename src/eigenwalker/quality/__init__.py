@@ -1,5 +1,5 @@
-"""What a capture is worth: what is in it, what is wrong with it, and the verdict."""
+"""What is wrong with a capture, and the verdict on the walk that is used."""
 
-from eigenwalker.quality.findings import Quality as Quality
-from eigenwalker.quality.findings import assess as assess
-from eigenwalker.quality.verdict import Verdict as Verdict
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -9,11 +9,20 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from eigenwalker.gait import in_place
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.gait.heading import sides_swapped
-from eigenwalker.mending import FLICKER, JUMPS, SWAPS, markers_of, mend, samples_of, told
-from eigenwalker.mocap.marker_names import side_pairs
-from eigenwalker.quality.body import bone_length_variation, height_of, lean_of
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.markers.label_repair import (
+    FLICKER,
+    JUMPS,
+    SWAPS,
+    markers_of,
+    mend,
+    samples_of,
+    told,
+)
+from eigenwalker.markers.marker_sets import side_pairs
+from eigenwalker.quality.body_size import bone_length_variation, height_of, lean_of
 from eigenwalker.quality.steadiness import steadiness_of
 from eigenwalker.quality.verdict import (
     Verdict,
@@ -23,7 +32,6 @@ from eigenwalker.quality.verdict import (
     faults_of_walk,
     verdict_of,
 )
-from eigenwalker.trajectories import check_trajectories, sampling_rate
 
 
 @dataclass(frozen=True)

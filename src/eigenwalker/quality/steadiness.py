@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.gait.harmonics import share_explained
-from eigenwalker.gait.steady import body_relative
+from eigenwalker.core.fourier import share_explained
+from eigenwalker.gait.steady_strides import body_relative
 
 LEVEL_CLIMB = 0.10
 """Rise over run of a path that is no longer level: the steepest ramps built for wheelchairs have

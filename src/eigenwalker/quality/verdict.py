@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from eigenwalker.mending import markers_of
+from eigenwalker.markers.label_repair import markers_of
 from eigenwalker.quality.steadiness import Steadiness
 
 Verdict = Literal["use", "use with care", "do not use"]

@@ -1,1 +1,5 @@
-"""Report pages: one file of HTML that needs nothing else."""
+"""Report pages: blocks in, HTML out."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eigenwalker.folds import one_blas_thread
-from eigenwalker.simulation.body import body_of
+from eigenwalker.core.blas_threads import one_blas_thread
+from eigenwalker.simulation.cadence import pace_of
 from eigenwalker.simulation.ground import Ground
-from eigenwalker.simulation.pace import pace_of
+from eigenwalker.simulation.segment_lengths import body_of
 
 _MOST_STEPS = 30
 _ENOUGH = 1.0

@@ -12,17 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from eigenwalker.simulation.body import Body
-from eigenwalker.simulation.drawn import (
+from eigenwalker.simulation.cadence import Pace
+from eigenwalker.simulation.norms import basis
+from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
+from eigenwalker.simulation.prior_curves import (
     LEG_HARMONICS,
     PELVIS_HARMONICS,
     leg_curves,
     pelvis_paths,
     trunk_curves,
 )
-from eigenwalker.simulation.norms import basis
-from eigenwalker.simulation.pace import Pace
-from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
+from eigenwalker.simulation.segment_lengths import Body
 
 _FRAMES = 96
 _LEG = 2 * LEG_HARMONICS + 1

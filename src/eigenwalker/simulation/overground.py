@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eigenwalker.simulation.body import Body
-from eigenwalker.simulation.pace import Pace
-from eigenwalker.simulation.playing import Angles
+from eigenwalker.simulation.cadence import Pace
+from eigenwalker.simulation.segment_lengths import Body
+from eigenwalker.simulation.walk_cycle_frames import Angles
 
 _SETTING_OFF_S = 1.0
 """From standing to full speed takes about a stride."""

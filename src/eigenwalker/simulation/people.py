@@ -10,16 +10,16 @@ import pandas as pd
 import xarray as xr
 from joblib import Parallel, delayed
 
-from eigenwalker.decomposition import decompose_pca
-from eigenwalker.folds import one_blas_thread
-from eigenwalker.gait import in_place
-from eigenwalker.mocap import virtual_markers
-from eigenwalker.population import Population
-from eigenwalker.simulation.planting import Pattern, plant
-from eigenwalker.simulation.recipe import CAPTURE, Recipe
-from eigenwalker.simulation.traits import EFFECTS, TRAITS, Effects, draw_people
-from eigenwalker.simulation.walking import simulate_walk
-from eigenwalker.walker import Walker
+from eigenwalker.core.blas_threads import one_blas_thread
+from eigenwalker.core.walker import Walker
+from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.population.population import Population
+from eigenwalker.simulation.planted_effect import Pattern, plant
+from eigenwalker.simulation.provenance import CAPTURE, Recipe
+from eigenwalker.simulation.trait_effects import EFFECTS, TRAITS, Effects, draw_people
+from eigenwalker.simulation.walk import simulate_walk
 
 _SHARE = 100
 

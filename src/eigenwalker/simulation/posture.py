@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.simulation.body import Body
 from eigenwalker.simulation.foot import TOE_BEND
+from eigenwalker.simulation.segment_lengths import Body
 
 SIDES = {"left": 1, "right": -1}
 """Each side with the sign of its lateral axis."""

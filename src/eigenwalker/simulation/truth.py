@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from eigenwalker.decomposition import decompose_pca
-from eigenwalker.folds import one_blas_thread
-from eigenwalker.gait import in_place
-from eigenwalker.population import Population
-from eigenwalker.simulation.parameters import PARAMETERS
-from eigenwalker.simulation.planting import Pattern, plant
-from eigenwalker.simulation.recipe import read_recipe
-from eigenwalker.simulation.traits import EFFECTS, Effects, draw_people
-from eigenwalker.simulation.walking import simulate_walk
+from eigenwalker.core.blas_threads import one_blas_thread
+from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.population.population import Population
+from eigenwalker.simulation.person import PARAMETERS
+from eigenwalker.simulation.planted_effect import Pattern, plant
+from eigenwalker.simulation.provenance import read_recipe
+from eigenwalker.simulation.trait_effects import EFFECTS, Effects, draw_people
+from eigenwalker.simulation.walk import simulate_walk
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,5 @@
-"""Point-light stimuli: figures, transforms in a chain, one file that Python and a page play alike.
+"""Point-light stimuli: figures, transforms, one file that Python and the browser play alike."""
 
-Made with `make_stimulus`, changed with `Stimulus.then`.
-"""
+import lazy_loader
 
-from eigenwalker.stimulus.figure import Figure as Figure
-from eigenwalker.stimulus.making import make_stimulus as make_stimulus
-from eigenwalker.stimulus.stimulus import Display as Display
-from eigenwalker.stimulus.stimulus import Stimulus as Stimulus
-from eigenwalker.stimulus.stimulus import Timing as Timing
-from eigenwalker.stimulus.stimulus import View as View
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.skeleton import JOINTS
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.io.writers.bvh import constant_bones
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.trajectories import label_trajectories
-from eigenwalker.writing.bvh import constant_bones
 
 ANKLES = ("left_ankle", "right_ankle")
 SOFT_MM = 8.0

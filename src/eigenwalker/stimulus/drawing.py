@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eigenwalker.display.encoding import shades_between
-from eigenwalker.display.raster import draw_discs, draw_lines
-from eigenwalker.skeleton import Skeleton
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.plotting.encoding import shades_between
+from eigenwalker.plotting.raster import draw_discs, draw_lines
 from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
-from eigenwalker.stimulus.moving import Moving
-from eigenwalker.stimulus.playing import Played, scene
+from eigenwalker.stimulus.mannequin_palette import put_wood, wood_shades
+from eigenwalker.stimulus.moving_dots import Moving
+from eigenwalker.stimulus.player import Played, scene
 from eigenwalker.stimulus.solids import Look, draw_hulls
-from eigenwalker.stimulus.wood import put_wood, wood_shades
 
 if TYPE_CHECKING:
     from eigenwalker.stimulus.stimulus import Stimulus

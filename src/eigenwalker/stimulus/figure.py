@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from eigenwalker.display.links import LINKS
-from eigenwalker.skeleton import Skeleton
-from eigenwalker.trajectories import check_trajectories, label_trajectories, sampling_rate
-from eigenwalker.walker import Walker
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.trajectories import check_trajectories, label_trajectories, sampling_rate
+from eigenwalker.core.walker import Walker
+from eigenwalker.plotting.links import LINKS
 
 DECIMALS = 6
 """Of sampled trajectories in files, in mm."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 from matplotlib.image import imsave
 
-from eigenwalker.display.encoding import encode_film, film_format, frame_delays
+from eigenwalker.core.progress import Progress
+from eigenwalker.plotting.encoding import encode_film, film_format, frame_delays
 from eigenwalker.stimulus.drawing import (
     drawn_frames,
     drawn_shades,
@@ -18,10 +18,8 @@ from eigenwalker.stimulus.drawing import (
     places_px,
 )
 from eigenwalker.stimulus.outlines import svg_hulls
-from eigenwalker.stimulus.playing import scene
+from eigenwalker.stimulus.player import scene
 from eigenwalker.stimulus.stimulus import Stimulus
-
-Progress = Callable[[int, int], object]
 
 
 def write_film(stimulus: Stimulus, path: Path, progress: Progress | None = None) -> None:

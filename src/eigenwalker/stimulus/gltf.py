@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-import eigenwalker
-from eigenwalker.mocap.upright import turn_upright
-from eigenwalker.writing.bvh import Bones, fit_bones
+from eigenwalker._version import __version__
+from eigenwalker.io.up_axis_and_unit import turn_upright
+from eigenwalker.io.writers.bvh import Bones, fit_bones
 
 FLOAT, SHORT, VERTICES = 5126, 5123, 34962
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -88,7 +88,7 @@ def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = 
     content = {
         "asset": {
             "version": "2.0",
-            "generator": f"eigenwalker {eigenwalker.__version__}",
+            "generator": f"eigenwalker {__version__}",
             **({"extras": about} if about else {}),
         },
         "scene": 0,

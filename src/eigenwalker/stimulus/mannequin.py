@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eigenwalker.display.projection import observer_axes
-from eigenwalker.skeleton import Skeleton
-from eigenwalker.stimulus.playing import NEAREST_MM, figure_of
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.plotting.projection import observer_axes
+from eigenwalker.stimulus.player import NEAREST_MM, figure_of
 
 UNSIDED = ("head", "sternum", "pelvis")
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eigenwalker.stimulus.mannequin import Hulls
+from eigenwalker.stimulus.mannequin_palette import lit_colour
 from eigenwalker.stimulus.solids import LIGHT, Look, brightness
-from eigenwalker.stimulus.wood import lit_colour
 
 ACROSS = np.linspace(-1, 1, 9)
 """Places across a hull, from edge to edge, where its shade is worked out."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from eigenwalker.stimulus.position_tables import write_npz
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.tables import write_npz
 
 SCRIPT = '''"""Shows {name} in PsychoPy; made by {program}. Needs {table} beside this file.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.stimulus.mannequin import Hulls
-from eigenwalker.stimulus.playing import NEAREST_MM
+from eigenwalker.stimulus.player import NEAREST_MM
 
 LIGHT = np.array([-0.44, 0.67, 0.6]) / np.sqrt(0.44**2 + 0.67**2 + 0.6**2)
 """Where the light comes from, seen by the observer: right, up, towards him."""

@@ -12,11 +12,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eigenwalker.mocap.unreadable import UnreadableFile
-from eigenwalker.stimulus import content as file
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.stimulus import schema as file
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.json_text import MOST_BYTES, parsed, plain, written
-from eigenwalker.stimulus.playing import Played, in_picture, play, scene
+from eigenwalker.stimulus.player import Played, in_picture, play, scene
 
 Style = Literal["dots", "sticks", "mannequin"]
 
@@ -134,7 +134,7 @@ class Stimulus:
         'scramble'
 
         """
-        from eigenwalker.stimulus.wishes import granted
+        from eigenwalker.stimulus.transform_defaults import granted
 
         step = granted(self, name, parameters)
         return replace(self, transforms=(*self.transforms, step))

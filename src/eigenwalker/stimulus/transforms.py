@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from eigenwalker.stimulus import body, clocks, scattered, space
+from eigenwalker.stimulus import (
+    body_transforms as body,
+    dot_transforms as scattered,
+    spatial_transforms as space,
+    time_transforms as clocks,
+)
 from eigenwalker.stimulus.fields import (
     Boolean,
     Choice,
@@ -17,7 +22,7 @@ from eigenwalker.stimulus.fields import (
     Object,
     Text,
 )
-from eigenwalker.stimulus.moving import Moving
+from eigenwalker.stimulus.moving_dots import Moving
 
 MOST_MARKERS = 1000
 MOST_FIGURES = 64

@@ -1,0 +1,31 @@
+from .classification import (
+    Classification as Classification,
+    Input as Input,
+    Regression as Regression,
+    classify as classify,
+    regress as regress,
+)
+from .contrast import Contrast as Contrast, contrast as contrast
+from .direction import direction as direction
+from .discriminant import (
+    DiscriminantClassifier as DiscriminantClassifier,
+    DiscriminantRegressor as DiscriminantRegressor,
+)
+from .jackknife import (
+    JackknifeCurves as JackknifeCurves,
+    RegressionCurves as RegressionCurves,
+    jackknife_curves as jackknife_curves,
+    regression_curves as regression_curves,
+)
+from .plausibility import Plausibility as Plausibility, plausibility as plausibility
+from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
+from .validation import (
+    NestedErrors as NestedErrors,
+    NestedRegression as NestedRegression,
+    PermutationTest as PermutationTest,
+    nested_leave_one_out as nested_leave_one_out,
+    nested_regression as nested_regression,
+    permutation_test as permutation_test,
+    regression_permutation_test as regression_permutation_test,
+)
+from .walker_space import WalkerSpace as WalkerSpace

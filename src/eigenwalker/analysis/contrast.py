@@ -1,0 +1,194 @@
+"""What a trait asks of a population: which walkers take part, and what they should come out as."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.population.population import FLAG, Population
+
+PERSON = "person"
+"""Column of the traits that says whose trial a walk is."""
+_POLES = {
+    "age": ("young", "old"),
+    "weight": ("light", "heavy"),
+    "height": ("short", "tall"),
+    "happy": ("sad", "happy"),
+    "nervous": ("relaxed", "nervous"),
+}
+_NO_TRAITS = (FLAG, PERSON, "file")
+
+
+@dataclass(frozen=True, eq=False)
+class Contrast:
+    """A trait, as a classifier or a regression is asked to tell it.
+
+    Parameters
+    ----------
+    trait : str
+        Its column in the traits.
+    rows : array of int of shape (walker,)
+        The walkers that take part: unflagged, and with a value of the trait.
+    y : array of float of shape (walker,)
+        -1 and +1 for a trait of two classes (the row vector r of eq. 10), else its values.
+    negative, positive : str
+        Names of the two poles (A39).
+    two_classes : bool
+    persons : array of shape (walker,), or None
+        Whose trial each walk is, where some person has several.
+
+    """
+
+    trait: str
+    rows: np.ndarray
+    y: np.ndarray
+    negative: str
+    positive: str
+    two_classes: bool
+    persons: np.ndarray | None = None
+
+    @property
+    def labels(self) -> np.ndarray:
+        """What to fit a discriminant to: names of the poles, or the values of the trait."""
+        if not self.two_classes:
+            return self.y
+        return np.where(self.y > 0, self.positive, self.negative)
+
+
+def contrast(population: Population, trait: str) -> Contrast:
+    """Return which walkers a trait is known of, and what it is for each.
+
+    Parameters
+    ----------
+    population : Population
+    trait : str
+        A column of the traits, in full (``"weight_kg"``) or without its unit (``"weight"``).
+        ``"style=feminine:masculine"`` picks two of the values a trait in words may have; the second
+        is the positive pole. Of a trait of two values the second in sorted order is ("male").
+
+    Returns
+    -------
+    Contrast
+
+    Raises
+    ------
+    ValueError
+        If there is no such trait, or it does not tell walkers apart.
+
+    Examples
+    --------
+    >>> sex = contrast(ew.load_population(), "sex")
+    >>> sex.positive, len(sex.rows)
+    ('male', 40)
+    >>> contrast(ew.load_population(), "weight").positive
+    'heavy'
+
+    """
+    name, _, pair = trait.partition("=")
+    column = trait_column(population.traits, name)
+    values = population.traits[column]
+    if population.flagged.all():
+        raise ValueError(
+            f"All {len(population)} walkers are flagged, the first because: "
+            f"{population.traits[FLAG][0]} To use them all the same, take "
+            "population.trusting_all(), or --with-flagged on the command line."
+        )
+    known = values.notna() & (_words(values) != "") & ~population.flagged
+    if pair:
+        negative, positive = _two_poles(pair, column, values[known])
+        known &= _words(values).isin([negative, positive])
+    elif _is_continuous(values[known]):
+        return _continuous(population, column, np.flatnonzero(known))
+    else:
+        negative, positive = _both_values(column, values[known])
+    rows = np.flatnonzero(known)
+    y = np.where(_words(values.iloc[rows]) == positive, 1.0, -1.0)
+    return Contrast(column, rows, y, negative, positive, True, _persons(population, rows))
+
+
+def _words(values: pd.Series) -> pd.Series:
+    """Values as they are typed: 1 for 1.0, nothing for what is missing."""
+    if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):
+        return values.fillna("").astype(str)
+    return values.map(lambda value: "" if pd.isna(value) else f"{value:.15g}")
+
+
+def _sorted(values: pd.Series) -> list[str]:
+    """Each value once, in words; numbers in the order of numbers."""
+    return _words(values.drop_duplicates().sort_values()).tolist()
+
+
+def trait_column(traits: pd.DataFrame, name: str) -> str:
+    """Return the column of a trait, given in full or without its unit.
+
+    Raises
+    ------
+    ValueError
+        If there is none or more than one.
+
+    """
+    columns = [str(column) for column in traits if column not in _NO_TRAITS]
+    if name in columns:
+        return name
+    found = [column for column in columns if column.startswith(f"{name}_")]
+    if len(found) == 1:
+        return found[0]
+    raise ValueError(f"There is no trait {name!r}; the population has {columns}.")
+
+
+def _two_poles(pair: str, column: str, values: pd.Series) -> tuple[str, str]:
+    there = _sorted(values)
+    negative, positive = _split(pair, there)
+    if negative == positive or not {negative, positive} <= set(there):
+        raise ValueError(
+            f"{pair!r} does not name two values of {column}; it has {there}. "
+            f"Write, for instance, {column}={there[0]}:{there[-1]}."
+        )
+    return negative, positive
+
+
+def _split(pair: str, there: list[str]) -> tuple[str, str]:
+    """The two values of ``negative:positive``, which may themselves hold a colon."""
+    parts = pair.split(":")
+    ways = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
+    return next((way for way in ways if set(way) <= set(there)), (pair, pair))
+
+
+def _both_values(column: str, values: pd.Series) -> tuple[str, str]:
+    there = _sorted(values)
+    if len(there) == 2:
+        return there[0], there[1]
+    if len(there) < 2:
+        raise ValueError(
+            f"The trait {column} is the same, {there}, for all walkers that may be used, so there "
+            "is nothing to tell apart."
+        )
+    raise ValueError(
+        f"The trait {column} has {len(there)} values, {there}; choose two, for instance "
+        f"{column}={there[0]}:{there[1]}."
+    )
+
+
+def _is_continuous(values: pd.Series) -> bool:
+    return pd.api.types.is_numeric_dtype(values) and values.nunique() > 2
+
+
+def _continuous(population: Population, column: str, rows: np.ndarray) -> Contrast:
+    y = population.traits[column].to_numpy(dtype=float)[rows]
+    if np.isinf(y).any():
+        raise ValueError(f"The trait {column} is infinite for some walkers; leave it empty there.")
+    stem = column.split("_")[0]
+    negative, positive = _POLES.get(stem, (f"low {column}", f"high {column}"))
+    return Contrast(column, rows, y, negative, positive, False, _persons(population, rows))
+
+
+def _persons(population: Population, rows: np.ndarray) -> np.ndarray | None:
+    if PERSON not in population.traits:
+        return None
+    persons = population.traits[PERSON].iloc[rows]
+    named = persons.notna() & (persons.astype(str) != "")
+    # Walks of unnamed people are taken for one person's each.
+    persons = persons.astype(str).where(named, [f"\0{row}" for row in rows])
+    return persons.to_numpy(dtype=str) if persons.duplicated().any() else None

@@ -1,0 +1,5 @@
+"""The built-in population, published tables of walkers, and captures to download."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,0 +1,169 @@
+"""The model behind Troje's web demonstration: a mean walker, and steps along four axes (W10)."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eigenwalker.core.walker import Walker
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.sniff import content_of
+from eigenwalker.io.walker_tables import (
+    BML_MARKERS,
+    BML_RATE_HZ,
+    SIN_FIRST,
+    on_the_floor,
+    walker_from_mm,
+)
+
+POSITIVE_POLES = {"sex": "male", "weight": "heavy", "nervous": "nervous", "happy": "happy"}
+"""The axes and where + leads."""
+
+_KEYS = {"sex": "gender", "weight": "weight", "nervous": "nervous", "happy": "happy"}
+_MEAN_KEY = "walker"
+_N_ROWS = 3 * len(BML_MARKERS) + 1
+_N_NUMBERS = _N_ROWS * len(SIN_FIRST)
+_MOST_BYTES = 10**7
+_MOST_MM = 1e5
+
+
+@dataclass(frozen=True, eq=False)
+class BmlModel:
+    """A mean walker and axes of traits, as tables.
+
+    Parameters
+    ----------
+    mean : array of shape (46, 5)
+        Rows: 15 x, 15 y, 15 z in millimetres, and a last one with frames a stride at 120 Hz (first
+        column) and speed in millimetres a frame (third). Columns: mean, sin 1, cos 1, sin 2,
+        cos 2.
+    axes : mapping of str to array of shape (46, 5)
+        For each trait what one standard deviation adds to the mean, towards its pole in
+        `POSITIVE_POLES`.
+
+    Examples
+    --------
+    >>> model = BmlModel(np.ones((46, 5)), {"sex": np.full((46, 5), 0.5)})
+    >>> model.table(sex=2)[0, 0].item()
+    2.0
+
+    """
+
+    mean: np.ndarray
+    axes: Mapping[str, np.ndarray]
+
+    def table(self, **z: float) -> np.ndarray:
+        """Return ``mean + b * sex + w * weight + n * nervous + h * happy`` as a table.
+
+        Parameters
+        ----------
+        **z : float
+            How many standard deviations along each axis; those left out are 0. The demonstration
+            goes from -6 to 6.
+
+        Returns
+        -------
+        array of shape (46, 5)
+
+        Raises
+        ------
+        ValueError
+            If there is no such axis.
+
+        """
+        if unknown := sorted(set(z) - set(self.axes)):
+            raise ValueError(f"There are no axes {unknown}; there are {list(self.axes)}.")
+        return self.mean + sum((score * self.axes[name] for name, score in z.items()), np.zeros(1))
+
+    def walker(self, **z: float) -> Walker:
+        """Return the walker at a place on the axes: ``model.walker(sex=3, happy=-2)``.
+
+        Its frequency and speed are those that the table tells, and it stands with the origin on the
+        floor below its pelvis.
+
+        Returns
+        -------
+        Walker
+            In the Fourier form, of the 15 joints.
+
+        """
+        sine, cosine = SIN_FIRST.index("sin1"), SIN_FIRST.index("cos1")
+        mm = self.table(**z)
+        mm[:-1] = mm[:-1, [0, cosine, sine, cosine + 2, sine + 2]]
+        return on_the_floor(walker_from_mm(mm, rate_hz=BML_RATE_HZ))
+
+
+def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
+    """Return the mean walker and the axes of a file of the published BML tables.
+
+    Parameters
+    ----------
+    path : str or path
+        A JSON file with lists of 230 numbers called walker, gender, weight, nervous and happy (some
+        of the axes may be left out), as BioMotionLab2Blender has them; at any depth.
+
+    Returns
+    -------
+    BmlModel
+
+    Raises
+    ------
+    UnreadableFile
+        If the file is damaged or holds no such tables.
+
+    Examples
+    --------
+    >>> read_bml_axes("nowhere.json")
+    Traceback (most recent call last):
+    ...
+    eigenwalker.io.errors.UnreadableFile: nowhere.json: expected a file, but got nothing of
+    that name in '.'; check the path.
+
+    """
+    path = Path(path)
+    try:
+        content = json.loads(content_of(path, most_bytes=_MOST_BYTES), parse_int=float)
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, UnreadableFile):
+            raise
+        raise UnreadableFile(path.name, "a JSON file", f"an error: {error}") from error
+    tables = _tables(content)
+    if tables is None:
+        raise UnreadableFile(
+            path.name, f"a list {_MEAN_KEY!r} of {_N_NUMBERS} numbers", "none", "is it the file?"
+        )
+    axes = {axis: _table(tables[key], key, path) for axis, key in _KEYS.items() if key in tables}
+    model = BmlModel(_table(tables[_MEAN_KEY], _MEAN_KEY, path), axes)
+    try:
+        model.walker()
+    except ValueError as error:
+        raise UnreadableFile(path.name, "a mean walker that can walk", f"{error}") from error
+    return model
+
+
+def _tables(content: Any) -> dict[str, Any] | None:
+    """Return the first object that holds the mean walker."""
+    waiting = [content]
+    for item in waiting:
+        if isinstance(item, dict):
+            if isinstance(item.get(_MEAN_KEY), list):
+                return item
+            waiting += item.values()
+    return None
+
+
+def _table(numbers: Any, key: str, path: Path) -> np.ndarray:
+    sound = isinstance(numbers, list) and len(numbers) == _N_NUMBERS
+    if not sound or not all(isinstance(number, float) for number in numbers):
+        came = f"{len(numbers)}, or others" if isinstance(numbers, list) else "something else"
+        raise UnreadableFile(path.name, f"{_N_NUMBERS} numbers as {key!r}", came)
+    table = np.array(numbers, dtype=float).reshape(len(SIN_FIRST), _N_ROWS).T
+    if not (np.abs(table) < _MOST_MM).all():
+        raise UnreadableFile(path.name, f"{key!r} in millimetres", "numbers that are too large")
+    return table

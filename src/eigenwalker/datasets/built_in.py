@@ -1,0 +1,63 @@
+"""Populations to begin with: the built-in one, and those in files."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import xarray as xr
+
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.population.population import Population
+from eigenwalker.simulation.people import simulate_captures, simulate_population
+
+BUILT_IN = "the built-in population, simulated: 20 women and 20 men who do not exist"
+
+
+def load_population(path: str | Path | None = None) -> Population:
+    """Return the population of a file, or the built-in one.
+
+    Parameters
+    ----------
+    path : str or Path, optional
+        What ``Population.save`` or ``eigenwalker fit`` wrote. Left out, it is the built-in
+        population of 20 women and 20 men, who are simulated: good to learn and test with, no
+        evidence about people.
+
+    Returns
+    -------
+    Population
+
+    Raises
+    ------
+    UnreadableFile
+        If the file holds no population or is damaged.
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> len(people), people.X.shape
+    (40, (40, 229))
+
+    """
+    return _built_in() if path is None else Population.load(path)
+
+
+@cache
+def _built_in() -> Population:
+    return simulate_population(n_women=20, n_men=20, seed=0)
+
+
+def built_in_capture() -> xr.DataArray:
+    """Return the walk of the first woman of the built-in population.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        Steady strides of the 15 joints in place, at 120 Hz.
+
+    """
+    capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
+    walk = in_place(virtual_markers(capture))
+    return walk.assign_attrs(source="The first woman of the built-in population")

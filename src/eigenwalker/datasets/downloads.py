@@ -1,0 +1,262 @@
+"""Captures that others published, brought from where they are: asked for, licensed, and checked.
+
+Nothing is fetched unless asked for, nothing without consent to its terms, and nothing is kept whose
+SHA-256 is not the one that stands in ``downloads.tsv``.
+"""
+
+from __future__ import annotations
+
+import csv
+import logging
+import os
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote
+
+import pooch
+import requests
+
+SOURCE_URL = "https://raw.githubusercontent.com"
+"""Where the repositories' files are, as ``<repository>/<commit>/<path>``."""
+SOURCE_VARIABLE = "EIGENWALKER_DATA_URL"
+"""Environment variable that names a mirror of it."""
+PATIENCE_S = 30
+_CHUNK = 1 << 16
+
+
+class PublishedFile(NamedTuple):
+    """One file of a collection: its name here, its hash, and where it is published."""
+
+    name: str
+    sha256: str
+    repository: str
+    commit: str
+    path: str
+
+    def url(self, base_url: str) -> str:
+        """Return the address of the file."""
+        return f"{base_url.rstrip('/')}/{self.repository}/{self.commit}/{quote(self.path)}"
+
+
+@dataclass(frozen=True)
+class Collection:
+    """Captures that were published together.
+
+    Parameters
+    ----------
+    name : str
+        What to ask for.
+    about : str
+        What they are.
+    size_mb : float
+        How much there is to fetch.
+    licence : str
+        Its name.
+    terms : str
+        What it asks, and where to read it.
+    citation : str
+        What to cite with results.
+    files : tuple of PublishedFile
+        All its files, the text of the licence among them where one was published.
+
+    """
+
+    name: str
+    about: str
+    size_mb: float
+    licence: str
+    terms: str
+    citation: str
+    files: tuple[PublishedFile, ...]
+
+    def notice(self) -> str:
+        """Return what whoever fetches the collection must have seen."""
+        return (
+            f"{self.name}: {self.about}\n"
+            f"{len(self.files)} files, {self.size_mb:g} MB\n"
+            f"Licence: {self.licence}. {self.terms}\n"
+            f"Please cite: {self.citation}"
+        )
+
+
+@cache
+def collections() -> dict[str, Collection]:
+    """Return the collections that can be fetched, by name.
+
+    Examples
+    --------
+    >>> sorted(collections())
+    ['bandai-namco', 'cmu', 'delussanet', 'pycgm']
+    >>> collections()["cmu"].licence
+    'CMU terms'
+
+    """
+    package = files("eigenwalker.datasets")
+    described = tomllib.loads((package / "downloads.toml").read_text(encoding="utf-8"))
+    rows = csv.reader((package / "downloads.tsv").read_text(encoding="utf-8").splitlines()[1:],
+                      delimiter="\t")  # fmt: skip
+    found: dict[str, list[PublishedFile]] = {name: [] for name in described}
+    for file, *origin in rows:
+        collection, _, name = file.partition("/")
+        found[collection].append(PublishedFile(name, *origin))
+    return {
+        name: Collection(name=name, files=tuple(found[name]), **facts)
+        for name, facts in described.items()
+    }
+
+
+def collection_named(name: str) -> Collection:
+    """Return the collection of that name, or say which there are."""
+    if name not in collections():
+        raise ValueError(f"There is no collection {name!r}; there are {sorted(collections())}.")
+    return collections()[name]
+
+
+def fetch_captures(
+    name: str,
+    folder: str | os.PathLike[str] | None = None,
+    *,
+    accept_licence: bool = False,
+    base_url: str | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Return a folder with a collection of published captures, fetching what is not yet there.
+
+    Files appear whole or not at all; if it is interrupted, call it again and it goes on.
+
+    Parameters
+    ----------
+    name : str
+        One of `collections`.
+    folder : path, optional
+        Where to put the files; if left out, in this user's cache.
+    accept_licence : bool
+        That you have read the licence and keep to it. Not asked for what is there already.
+    base_url : str, optional
+        Mirror to take; else the one in the environment variable ``EIGENWALKER_DATA_URL``; else
+        where the files were published.
+    progress : callable, optional
+        Called with the number of files that are there and of all.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    ValueError
+        If there is no such collection, its licence is not accepted, or a file is not the one that
+        was published.
+    FileExistsError
+        If a file of that name is there which is another.
+    ConnectionError
+        If a file cannot be had.
+
+    Examples
+    --------
+    >>> fetch_captures("cmu", "captures")
+    Traceback (most recent call last):
+    ...
+    ValueError: cmu is not fetched before its licence is accepted, with accept_licence=True:
+    cmu: one walk each of four people...
+
+    """
+    collection = collection_named(name)
+    folder = folder_of(name) if folder is None else Path(folder)
+    missing = missing_files(collection, folder)
+    if missing and not accept_licence:
+        raise ValueError(
+            f"{name} is not fetched before its licence is accepted, with accept_licence=True:\n"
+            f"{collection.notice()}"
+        )
+    base_url = base_url or os.environ.get(SOURCE_VARIABLE) or SOURCE_URL
+    n_files = len(collection.files)
+    for done, file in enumerate(missing, start=n_files - len(missing)):
+        if progress is not None:
+            progress(done, n_files)
+        _fetch(file, folder, file.url(base_url), f"{done} of {n_files} files are there already")
+    if progress is not None:
+        progress(n_files, n_files)
+    return folder
+
+
+def folder_of(name: str) -> Path:
+    """Return the folder in this user's cache that a collection is kept in."""
+    return Path(pooch.os_cache("eigenwalker")) / name
+
+
+def missing_files(collection: Collection, folder: Path) -> list[PublishedFile]:
+    """Return the files of a collection that are not in a folder.
+
+    Raises
+    ------
+    FileExistsError
+        If one of its files is there with other content.
+
+    """
+    missing = []
+    for file in collection.files:
+        path = folder / file.name
+        if not path.exists():
+            missing.append(file)
+        elif pooch.file_hash(str(path)) != file.sha256:
+            raise FileExistsError(
+                f"{path} is not the file of that name in {collection.name}, and is left as it is; "
+                "move it away, or name another folder."
+            )
+    return missing
+
+
+def _fetch(file: PublishedFile, folder: Path, url: str, there: str) -> None:
+    downloader = pooch.HTTPDownloader(timeout=PATIENCE_S, chunk_size=_CHUNK)
+    try:
+        with _quiet(pooch.get_logger()):
+            pooch.retrieve(
+                url,
+                f"sha256:{file.sha256}",
+                file.name,
+                folder,
+                downloader=downloader,  # pyright: ignore[reportArgumentType] - its own names differ
+            )
+    except requests.RequestException as error:
+        raise ConnectionError(
+            f"Could not fetch {url}: {_reason(error)}. Check the network and try again; {there}."
+        ) from error
+    except ValueError as error:
+        raise ValueError(
+            f"{url} gave another file than was published (its SHA-256 is not "
+            f"{file.sha256[:12]}...), so nothing of it was kept. Try again; if it stays so, the "
+            "source has changed."
+        ) from error
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, requests.HTTPError) and error.response is not None:
+        return f"the server said {error.response.status_code} {error.response.reason}"
+    if isinstance(error, requests.Timeout):
+        return f"no answer within {PATIENCE_S} s"
+    if isinstance(error, requests.exceptions.ChunkedEncodingError):
+        return "the connection broke off"
+    if isinstance(error, requests.ConnectionError):
+        return "no connection to the server"
+    if isinstance(error, ValueError):
+        return "this is no address; check base_url"
+    return type(error).__name__
+
+
+@contextmanager
+def _quiet(logger: logging.Logger) -> Iterator[None]:
+    """Keep a library from telling of each file."""
+    level = logger.level
+    logger.setLevel(logging.WARNING)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)

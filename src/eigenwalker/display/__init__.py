@@ -1,1 +1,0 @@
-"""Figures and films of walkers: draws what it is given."""

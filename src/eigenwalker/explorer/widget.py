@@ -1,0 +1,229 @@
+"""A walker in a notebook that plays, turns, and follows Python as Python follows it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from eigenwalker.core.walker import Walker
+from eigenwalker.explorer.interactive_page import MANNEQUIN
+from eigenwalker.explorer.mixing import check_ranges, mixed_vector, mixed_walker
+from eigenwalker.explorer.model import page_model, walker_model
+from eigenwalker.population.population import Population
+from eigenwalker.stimulus.html_page import built
+from eigenwalker.stimulus.make import make_stimulus
+from eigenwalker.stimulus.stimulus import Stimulus
+
+try:
+    import anywidget
+    import traitlets
+except ImportError as error:
+    raise ImportError(
+        "Walkers in notebooks need anywidget; install it with: pip install 'eigenwalker[notebook]'"
+    ) from error
+
+_SCRIPT = "widget.js"
+_STYLES = ("dots", "sticks", "mannequin")
+_LIGHT, _DARK = "#ffffff", "#000000"
+
+
+def show(
+    shown: Walker | Stimulus | Population | None = None,
+    *,
+    population: Population | None = None,
+    **options: Any,
+) -> WalkerWidget:
+    """Return a walker for a notebook: it plays, turns when dragged, and is linked to Python.
+
+    Parameters
+    ----------
+    shown : Walker, Stimulus or Population, optional
+        A population has a slider for each trait, and begins with its average walker. Left out, it
+        is the built-in population.
+    population : Population, optional
+        Whose traits a `Walker` is to be moved along.
+    **options
+        What the widget begins with, as its attributes are called: ``azimuth_deg=90``.
+
+    Returns
+    -------
+    WalkerWidget
+
+    Raises
+    ------
+    ImportError
+        If anywidget is not installed.
+    ValueError
+        If a walker cannot be compared with the population.
+
+    Examples
+    --------
+    >>> widget = show(ew.load_population(), azimuth_deg=90)
+    >>> widget.alpha = {"sex": 2}  # the walker in the notebook moves too
+    >>> ew.load_population().vector(widget.walker).shape
+    (229,)
+
+    """
+    if shown is None and population is None:
+        from eigenwalker.datasets.built_in import load_population
+
+        shown = load_population()
+    if isinstance(shown, Stimulus):
+        return WalkerWidget(_stimulus=shown.to_dict(), **options)
+    if isinstance(shown, Walker) and population is None:
+        return WalkerWidget(_model=walker_model(shown), **options)
+    if isinstance(shown, Walker) and population is not None:
+        own = population.vector(shown).tolist()
+        given = {"_model": page_model(population), "_own": own, "start": "own"}
+        return WalkerWidget(**given, **options)
+    people = population if shown is None else shown
+    if not isinstance(people, Population):
+        raise ValueError(
+            f"A notebook shows a Walker, a Stimulus or a Population; got {type(shown).__name__}."
+        )
+    return WalkerWidget(_model=page_model(people), **options)
+
+
+class WalkerWidget(anywidget.AnyWidget):
+    """A walker on a page of a notebook; made by `show`.
+
+    Every attribute goes both ways: set in Python it changes what is seen, and what is changed by
+    hand can be read in Python, or watched with ``observe``. Values are new ones each time:
+    ``widget.alpha = {**widget.alpha, "sex": 2}``.
+
+    Attributes
+    ----------
+    alpha : dict of str to float
+        Standard deviations along each trait (A12), from -6 to 6. (``traits`` is what the
+        widget's own library calls its attributes.)
+    kind, part : str
+        As `trait_axis` takes them.
+    start : "average", "own" or int
+        Who is changed: the average walker, one's own, or a walker of the population by its number
+        among those that the page holds.
+    bias : dict or None
+        ``{"trait": "sex", "steps": 1}``: steps of half the difference of two classes, from -3 to 3.
+    strengths : list of float
+        Of each component: stride, sway, hop, bounce; 1 is as it is; from -2 to 2.
+    eigenwalkers : list of float
+        Standard deviations along each, from -6 to 6.
+    tempo : float
+        How many times as fast it is played.
+    azimuth_deg, elevation_deg, perspective
+        From where it is seen.
+    style : {"dots", "sticks", "mannequin"}
+    trails, dark, playing, controls : bool
+    cycle : float
+        Where in the stride it stands while it does not play, from 0 to 1.
+    height_px : int
+        Of the picture.
+
+    """
+
+    _model = traitlets.Dict(default_value=None, allow_none=True).tag(sync=True)
+    _stimulus = traitlets.Dict(default_value=None, allow_none=True).tag(sync=True)
+    _own = traitlets.List(traitlets.Float(), default_value=None, allow_none=True).tag(sync=True)
+    alpha = traitlets.Dict(value_trait=traitlets.CFloat(), key_trait=traitlets.Unicode()).tag(
+        sync=True
+    )
+    kind = traitlets.Enum(["discriminant", "mean_difference"], "discriminant").tag(sync=True)
+    part = traitlets.Unicode("all").tag(sync=True)
+    start = traitlets.Union(
+        [traitlets.Int(), traitlets.Enum(["average", "own"])], default_value="average"
+    ).tag(sync=True)
+    bias = traitlets.Dict(default_value=None, allow_none=True).tag(sync=True)
+    strengths = traitlets.List(traitlets.CFloat()).tag(sync=True)
+    eigenwalkers = traitlets.List(traitlets.CFloat()).tag(sync=True)
+    tempo = traitlets.CFloat(1.0, min=0.1, max=3.0).tag(sync=True)
+    azimuth_deg = traitlets.CFloat(30.0).tag(sync=True)
+    elevation_deg = traitlets.CFloat(0.0, min=-30.0, max=90.0).tag(sync=True)
+    perspective = traitlets.Bool(False).tag(sync=True)
+    style = traitlets.Enum(_STYLES, "dots").tag(sync=True)
+    trails = traitlets.Bool(False).tag(sync=True)
+    dark = traitlets.Bool(True).tag(sync=True)
+    playing = traitlets.Bool(True).tag(sync=True)
+    cycle = traitlets.CFloat(0.0, min=0.0, max=1.0).tag(sync=True)
+    controls = traitlets.Bool(True).tag(sync=True)
+    height_px = traitlets.Int(380, min=80, max=2000).tag(sync=True)
+
+    def __init__(self, **given: Any) -> None:
+        self._esm = built(_SCRIPT)
+        unknown = sorted(set(given) - set(self.trait_names()))
+        if unknown:
+            raise ValueError(f"A walker in a notebook has no {unknown}; see help(WalkerWidget).")
+        super().__init__(**given)
+        self.on_msg(_send_what_is_wanted)
+
+    @traitlets.validate("alpha", "bias", "strengths", "eigenwalkers", "part", "kind", "start")
+    def _makes_a_walker(self, proposal: Any) -> Any:
+        """Refuse what the model does not have, before it reaches the page."""
+        name = proposal["trait"].name
+        if self._model is not None:
+            try:
+                state = self._state() | self._named(name, proposal["value"])
+                check_ranges(state)
+                mixed_vector(self._model, state)
+            except (ValueError, TypeError, KeyError) as error:
+                raise traitlets.TraitError(str(error)) from None
+        return proposal["value"]
+
+    @staticmethod
+    def _named(name: str, value: Any) -> dict[str, Any]:
+        return {{"alpha": "traits", "start": "from"}.get(name, name): value}
+
+    def _state(self) -> dict[str, Any]:
+        names = ("alpha", "kind", "part", "start", "bias", "strengths", "eigenwalkers")
+        state = {"own": self._own}
+        for name in names:
+            state |= self._named(name, getattr(self, name))
+        return state
+
+    @property
+    def vector(self) -> np.ndarray:
+        """The features of the walker now shown: array of shape (feature,).
+
+        Raises
+        ------
+        ValueError
+            If a stimulus is shown.
+
+        """
+        return mixed_vector(self._known_model(), self._state())
+
+    @property
+    def walker(self) -> Walker:
+        """The walker now shown.
+
+        Raises
+        ------
+        ValueError
+            If a stimulus is shown, or the numbers chosen make nothing that could walk.
+
+        """
+        return mixed_walker(self._known_model(), self._state())
+
+    @property
+    def stimulus(self) -> Stimulus:
+        """What is now shown as a stimulus, to be saved, filmed or changed further."""
+        if self._stimulus is not None:
+            return Stimulus.from_dict(self._stimulus)
+        return make_stimulus(
+            self.walker,
+            view_deg=self.azimuth_deg,
+            elevation_deg=self.elevation_deg,
+            style=self.style,  # pyright: ignore[reportArgumentType] - one of the three
+            colour=_LIGHT if self.dark else _DARK,
+            background=_DARK if self.dark else _LIGHT,
+        )
+
+    def _known_model(self) -> dict[str, Any]:
+        if self._model is None:
+            raise ValueError("A stimulus is shown; its figures are in widget.stimulus.figures.")
+        return self._model
+
+
+def _send_what_is_wanted(widget: WalkerWidget, message: Any, _buffers: Any) -> None:
+    """Send the module that draws mannequins, half a megabyte, when it is first asked for."""
+    if message == {"wants": "mannequin"}:
+        widget.send({"mannequin": built(MANNEQUIN)})

@@ -1,0 +1,18 @@
+from .assumed_rate import RateAssumed as RateAssumed
+from .errors import UnreadableFile as UnreadableFile
+from .interchange import (
+    from_movement as from_movement,
+    from_pyomeca as from_pyomeca,
+    to_movement as to_movement,
+    to_pyomeca as to_pyomeca,
+)
+from .read import is_capture as is_capture, read_mocap as read_mocap
+from .readers.mat import read_mat as read_mat
+from .up_axis_and_unit import UnitGuessed as UnitGuessed
+from .walker_tables import (
+    walker_from_mm as walker_from_mm,
+    walker_from_table as walker_from_table,
+    walker_to_mm as walker_to_mm,
+    walker_to_table as walker_to_table,
+)
+from .write import write_mocap as write_mocap

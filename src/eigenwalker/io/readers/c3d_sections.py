@@ -1,0 +1,294 @@
+"""The three sections of a C3D file: header, parameters and samples, as numbers.
+
+Written after the format's manual (c3d.org), for the points alone: from Intel, DEC and MIPS
+machines, in integers or floats. Tolerant of what real files do against the manual (parameters given
+twice, counts that disagree), and strict with a file that holds fewer frames than it declares.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from eigenwalker.io.errors import UnreadableFile
+
+BLOCK = 512
+MAGIC = 0x50
+MOST_PARAMETER_BLOCKS = 255
+MOST_CONTINUED = 30
+MOST_DISTANT = 1e9
+"""No marker is further off than this, in whatever unit."""
+PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One entry of the parameter section, as it stands in the file."""
+
+    kind: int
+    dimensions: tuple[int, ...]
+    raw: bytes
+    processor: str
+
+    def numbers(self) -> list[float]:
+        """Return the value as numbers, whatever kind they are stored as."""
+        if self.kind not in (1, 2, 4):
+            return []
+        raw = self.raw[: len(self.raw) // self.kind * self.kind]
+        if self.kind == 4:
+            return _floats(raw, self.processor).tolist()
+        order = ">" if self.processor == "MIPS" else "<"
+        return np.frombuffer(raw, f"{order}u{self.kind}").tolist()
+
+    def texts(self) -> list[str]:
+        """Return the value as a list of texts without the blanks that pad them."""
+        width = self.dimensions[0] if self.dimensions else len(self.raw)
+        if self.kind != -1 or not width:
+            return []
+        words = (self.raw[at : at + width] for at in range(0, len(self.raw), width))
+        return [_text(word) for word in words]
+
+
+class Parameters(dict[str, Parameter]):
+    """The parameters of a file by ``GROUP:NAME``."""
+
+    def number(self, name: str) -> float | None:
+        """Return the first number of a parameter, if it has a finite one."""
+        numbers = self[name].numbers() if name in self else []
+        return float(numbers[0]) if numbers and np.isfinite(numbers[0]) else None
+
+    def texts(self, name: str) -> list[str]:
+        """Return the texts of a parameter and of those that continue it (LABELS, LABELS2, ...)."""
+        parts = [name, *(f"{name}{number}" for number in range(2, MOST_CONTINUED))]
+        return [text for part in parts if part in self for text in self[part].texts()]
+
+
+class Header(NamedTuple):
+    """The numbers of the first block that say where the samples are."""
+
+    processor: str
+    parameter_block: int
+    n_points: int
+    n_analog: int
+    first_frame: int
+    last_frame: int
+    scale: float
+    data_block: int
+    rate_hz: float
+
+
+class Sections(NamedTuple):
+    """What a file holds; positions (time, point, 3) in its own unit, NaN where missing."""
+
+    header: Header
+    parameters: Parameters
+    positions: np.ndarray
+
+
+def c3d_sections(content: bytes, source: str) -> Sections:
+    """Return the sections of a C3D file.
+
+    Raises
+    ------
+    UnreadableFile
+        If they do not fit each other or the length of the file.
+
+    """
+    header = _header(content, source)
+    parameters = _parameters(content, header, source)
+    return Sections(header, parameters, _samples(content, header, parameters, source))
+
+
+def _header(content: bytes, source: str) -> Header:
+    block = content[0] if content else 0
+    at = (block - 1) * BLOCK
+    if len(content) < BLOCK or not block or len(content) < at + 4:
+        raise UnreadableFile(
+            source,
+            "a header and parameters of 512 bytes each or more",
+            f"{len(content)} bytes: the file is cut short",
+        )
+    if content[at + 3] not in PROCESSORS:
+        raise UnreadableFile(
+            source,
+            "the mark of an Intel, DEC or MIPS file (84 to 86) at its parameters",
+            str(content[at + 3]),
+        )
+    processor = PROCESSORS[content[at + 3]]
+    order = ">" if processor == "MIPS" else "<"
+    words = struct.unpack(order + "12H", content[:24])
+    return Header(
+        processor=processor,
+        parameter_block=block,
+        n_points=words[1],
+        n_analog=words[2],
+        first_frame=words[3],
+        last_frame=words[4],
+        scale=float(_floats(content[12:16], processor)[0]),
+        data_block=words[8],
+        rate_hz=float(_floats(content[20:24], processor)[0]),
+    )
+
+
+def _floats(raw: bytes, processor: str) -> np.ndarray:
+    """Return 4-byte floats of any of the three machines."""
+    if processor != "DEC":
+        return _wide(np.frombuffer(raw, ">f4" if processor == "MIPS" else "<f4"))
+    # A VAX float has its 16-bit halves exchanged and an exponent that is larger by two.
+    halves = np.frombuffer(raw, "<u2").reshape(-1, 2)
+    swapped = np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0]
+    return _wide(swapped) / 4
+
+
+def _wide(floats: np.ndarray) -> np.ndarray:
+    """Return 4-byte floats as 8-byte ones, without a word on NaN that a processor would signal."""
+    with np.errstate(invalid="ignore"):
+        return floats.astype(float)
+
+
+def _parameters(content: bytes, header: Header, source: str) -> Parameters:
+    """Return the parameters by ``GROUP:NAME``; of one given twice, the first."""
+    at = (header.parameter_block - 1) * BLOCK + 4
+    end = min(len(content), at + MOST_PARAMETER_BLOCKS * BLOCK)
+    if header.data_block > header.parameter_block:
+        end = min(end, (header.data_block - 1) * BLOCK)
+    order = ">" if header.processor == "MIPS" else "<"
+    groups: dict[int, str] = {}
+    found: dict[tuple[int, str], Parameter] = {}
+    try:
+        while at + 2 <= end:
+            length, group = struct.unpack_from("bb", content, at)
+            if not length or not group:
+                break
+            name = _text(content[at + 2 : at + 2 + abs(length)]).upper()
+            at += 2 + abs(length)
+            (step,) = struct.unpack_from(order + "H", content, at)
+            record = content[at + 2 : at + step if step else end]
+            if group < 0:
+                groups.setdefault(-group, name)
+            else:
+                found.setdefault((group, name), _parameter(record, header.processor))
+            if not step:
+                break
+            at += step
+    except struct.error:
+        raise UnreadableFile(
+            source,
+            "whole parameters",
+            "an end within them: the file is cut short",
+        ) from None
+    return Parameters(
+        (f"{groups.get(group, group)}:{name}", parameter)
+        for (group, name), parameter in found.items()
+    )
+
+
+def _parameter(record: bytes, processor: str) -> Parameter:
+    kind, n_dimensions = struct.unpack_from("bB", record)
+    dimensions = struct.unpack_from(f"{n_dimensions}B", record, 2)
+    length = math.prod((abs(kind), *dimensions))
+    return Parameter(kind, dimensions, record[2 + n_dimensions :][:length], processor)
+
+
+def _text(raw: bytes) -> str:
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError:
+        text = raw.decode("latin-1")
+    return text.replace("\0", " ").strip()
+
+
+def _samples(content: bytes, header: Header, parameters: Parameters, source: str) -> np.ndarray:
+    """Return positions in the file's unit, array (time, point, 3), NaN where a point is missing."""
+    declared_points = parameters.number("POINT:USED")
+    if header.n_points == 0 or declared_points not in (None, header.n_points):
+        raise UnreadableFile(
+            source,
+            "the number of points in its header, one or more, to be that of its parameters",
+            f"{header.n_points} and {declared_points}",
+        )
+    scale = _scale(header, parameters, source)
+    words = 4 * header.n_points + header.n_analog
+    stride = words * (4 if scale < 0 else 2)
+    start = (max(header.data_block, 1) - 1) * BLOCK
+    available = max(len(content) - start, 0)
+    n_frames = _frames(header, parameters, stride, available, source)
+    raw = content[start : start + n_frames * stride]
+    if scale < 0:
+        table = _floats(raw, header.processor)
+    else:
+        table = np.frombuffer(raw, ">i2" if header.processor == "MIPS" else "<i2").astype(float)
+    points = table.reshape(n_frames, words)[:, : 4 * header.n_points]
+    points = points.reshape(n_frames, header.n_points, 4)
+    positions = points[..., :3] * (1.0 if scale < 0 else scale)
+    if (np.abs(positions) > MOST_DISTANT).any():
+        raise UnreadableFile(source, "finite positions", "infinite or absurd ones")
+    positions[(points[..., 3] < 0) | np.isnan(positions).any(axis=2)] = np.nan
+    return _without_zeros(positions)
+
+
+def _scale(header: Header, parameters: Parameters, source: str) -> float:
+    """Return the factor of integer samples, or a negative number for float samples."""
+    scale = parameters.number("POINT:SCALE")
+    scale = header.scale if scale is None else scale
+    agree = np.isfinite(header.scale) and np.sign(scale) == np.sign(header.scale)
+    if not np.isfinite(scale) or not scale or not agree:
+        raise UnreadableFile(
+            source,
+            "one scale of the samples in header and parameters",
+            f"{header.scale} and {scale}",
+        )
+    if scale > 0 and abs(scale - header.scale) > 1e-4 * scale:
+        raise UnreadableFile(
+            source,
+            f"the scale {header.scale} of the header",
+            f"{scale} in its parameters",
+        )
+    return scale
+
+
+def _frames(
+    header: Header, parameters: Parameters, stride: int, available: int, source: str
+) -> int:
+    """Return the number of frames: the one declared, if all were delivered.
+
+    The header counts to 65535; longer files, and those of some programs, declare the number
+    in parameters. Where declarations differ, that one counts which the length of the file bears
+    out.
+    """
+    counts = [header.last_frame - header.first_frame + 1]
+    fields = [parameters.get(f"TRIAL:ACTUAL_{which}_FIELD") for which in ("START", "END")]
+    first, last = (field.numbers() if field else [] for field in fields)
+    if len(first) > 1 and len(last) > 1:
+        counts.append(int(last[0] + 65536 * last[1] - first[0] - 65536 * first[1]) + 1)
+    for name in ("POINT:LONG_FRAMES", "POINT:FRAMES"):
+        if (number := parameters.number(name)) is not None:
+            counts.append(int(number))
+    counts = [count for count in counts if count > 0]
+    delivered = available // stride
+    fitting = [n for n in counts if 0 <= available - n * stride < BLOCK]
+    declared = fitting[0] if fitting else max(counts, default=0)
+    if not declared:
+        raise UnreadableFile(source, "one frame or more", "none")
+    if delivered < declared:
+        raise UnreadableFile(
+            source,
+            f"{declared} frames, as it declares",
+            f"{delivered}: the file is cut short",
+        )
+    return declared
+
+
+def _without_zeros(positions: np.ndarray) -> np.ndarray:
+    """Return positions with NaN where a marker that is elsewhere sits at 0, 0, 0 exactly.
+
+    Some programs mark so what was not seen.
+    """
+    at_zero = (positions == 0).all(axis=2)
+    some = at_zero.any(axis=0) & ~(at_zero | np.isnan(positions).any(axis=2)).all(axis=0)
+    positions[at_zero & some] = np.nan
+    return positions

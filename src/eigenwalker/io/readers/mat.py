@@ -1,0 +1,134 @@
+"""Captures in MATLAB files: plain arrays, which say nothing of themselves."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_rows
+from eigenwalker.core.trajectories import DIMS, label_trajectories
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.readers.mat_arrays import mat_arrays
+from eigenwalker.io.sandbox import arrays_from_child
+from eigenwalker.io.sniff import content_of
+
+_SHOWN = 10
+
+
+def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
+    """Return the arrays of numbers in a MATLAB file, whatever they mean.
+
+    Parameters
+    ----------
+    path : str or path
+        A MATLAB file of version 4, 5 or 7.3. It is read in a process of its own, within 10 s and
+        1 GiB, as readers of such files may break down on damaged ones.
+
+    Returns
+    -------
+    dict of str to array
+        Fields of structs as ``struct.field``; texts and cells are left out.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is no MATLAB file, damaged, or needs too much.
+
+    """
+    path = Path(path)
+    content_of(path)
+    return arrays_from_child(mat_arrays, path, expected="a MATLAB file")
+
+
+def read_mat(
+    path: str | os.PathLike[str],
+    variable: str | None = None,
+    *,
+    markers: Sequence[str],
+    rate_hz: float,
+    unit: str = "mm",
+    dims: Sequence[str] = DIMS,
+    layout: Layout = "interleaved",
+    axes: Sequence[str] = FORWARD_LEFT_UP,
+) -> xr.DataArray:
+    """Return an array of a MATLAB file as trajectories.
+
+    Parameters
+    ----------
+    path : str or path
+        A MATLAB file.
+    variable : str, optional
+        Name of the array, ``struct.field`` for one in a struct; may be left out if there is one.
+    markers : sequence of str
+        One name a marker.
+    rate_hz : float
+        Frames a second.
+    unit : {"um", "mm", "cm", "dm", "m", "in", "ft"}
+        Unit of the array.
+    dims : sequence of str
+        What the dimensions of the array are: ``"time"``, ``"marker"`` and ``"axis"`` in any order,
+        or ``"time"`` and ``"column"`` if markers and axes stand in columns.
+    layout : {"interleaved", "planar"}
+        Whether columns go x y z x y z ... or x x x ... y y y ... z z z.
+    axes : sequence of str
+        Where the three axes point: ``"forward"``, ``"left"``, ``"up"``, or the opposite of one. For
+        a walk through a room, forward is any level direction.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        In millimetres, z up; NaN where a marker was not seen.
+
+    Raises
+    ------
+    UnreadableFile
+        If the file is damaged, or the array is not there or of another shape.
+    ValueError
+        If what is told of it makes no sense.
+
+    Examples
+    --------
+    >>> read_mat("nowhere.mat", "walk", markers=["head"], rate_hz=120)
+    Traceback (most recent call last):
+    ...
+    eigenwalker.io.errors.UnreadableFile: nowhere.mat: expected a file, but got nothing of
+    that name in '.'; check the path.
+
+    """
+    turn = axes_matrix(axes)
+    if sorted(dims) not in (sorted(DIMS), ["column", "time"]):
+        raise ValueError(
+            f"dims={tuple(dims)} are not known; give {DIMS} in any order, or ('time', 'column')."
+        )
+    path = Path(path)
+    array = _chosen(read_mat_arrays(path), variable, path.name)
+    sizes = {"marker": len(markers), "axis": 3, "column": 3 * len(markers)}
+    wanted = tuple(sizes.get(dim, "time") for dim in dims)
+    if array.ndim != len(dims) or any(
+        size not in (given, "time") for size, given in zip(wanted, array.shape, strict=True)
+    ):
+        raise UnreadableFile(
+            path.name, f"an array of shape {wanted}", f"{array.shape}", "check markers and dims"
+        )
+    if np.isinf(array).any():
+        raise UnreadableFile(path.name, "finite numbers", "infinite ones", "mark gaps by NaN")
+    if len(dims) == 2:
+        positions = from_rows(array if dims[0] == "time" else array.T, layout)
+    else:
+        positions = array.transpose([list(dims).index(dim) for dim in DIMS])
+    walk = label_trajectories(positions @ turn, markers=markers, rate_hz=rate_hz, unit=unit)
+    walk.attrs.update(source=path.name, format="MAT", unit=unit, unit_guessed=False)
+    return walk
+
+
+def _chosen(arrays: dict[str, np.ndarray], variable: str | None, source: str) -> np.ndarray:
+    name = next(iter(arrays)) if variable is None and len(arrays) == 1 else variable
+    if name not in arrays:
+        held = {key: array.shape for key, array in list(arrays.items())[:_SHOWN]}
+        wanted = "one array" if variable is None else f"an array {variable!r}"
+        raise UnreadableFile(source, wanted, f"{held}", "name one of them: variable=...")
+    return arrays[name]

@@ -1,0 +1,121 @@
+"""NetCDF files of version 3: trajectories as `write_mocap` keeps them, read without a C library."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.trajectories import AXES, DIMS, sampling_rate, trajectories_at
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.numbers import MOST_DISTANT
+from eigenwalker.io.up_axis_and_unit import Unit
+
+FORMAT = "eigenwalker trajectories"
+VERSION = 1
+_EXPECTED = "trajectories as write_mocap writes them"
+_OPEN = "open it with xarray and label it with label_trajectories()"
+
+
+def looks_like_netcdf(content: bytes) -> bool:
+    """Return whether a file begins as NetCDF files of version 3 do."""
+    return content[:4] in (b"CDF\x01", b"CDF\x02")
+
+
+def holds_trajectories(beginning: bytes, _path: Path) -> bool:
+    """Return whether a file is of ours, and no population."""
+    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
+
+
+def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.DataArray:
+    """Return the trajectories of a NetCDF file.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole file.
+    source : str
+        Its name, for messages.
+    unit : Unit, optional
+        Unit of its lengths, if it is not the millimetres that it says.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        In millimetres, with what was known of the capture: ``attrs["original_source"]`` is the name
+        of the file it came from first.
+
+    Raises
+    ------
+    UnreadableFile
+        If the file holds anything else, or is damaged or cut short.
+
+    """
+    dataset = dataset_of(content, source, expected=_EXPECTED)
+    if str(dataset.attrs.get("format")) != FORMAT:
+        raise UnreadableFile(source, _EXPECTED, "a NetCDF file that holds other things", _OPEN)
+    if str(version := dataset.attrs.get("format_version")) != str(VERSION):
+        raise UnreadableFile(
+            source, f"version {VERSION} of the format", f"version {version}", "update eigenwalker"
+        )
+    try:
+        walk = _trajectories(dataset, 1.0 if unit is None else unit.millimetres)
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise UnreadableFile(source, _EXPECTED, f"a damaged file ({error})") from error
+    known = {
+        str(name).removeprefix("capture_"): value
+        for name, value in dataset.attrs.items()
+        if str(name).startswith("capture_")
+    }
+    if "source" in known:
+        known.setdefault("original_source", known["source"])
+    walk.attrs.update(
+        known,
+        source=source,
+        format="NetCDF",
+        up_axis="z",
+        up_axis_known=True,
+        unit="mm" if unit is None else unit.name,
+        unit_guessed=False,
+        unit_reason="" if unit is None else unit.reason,
+    )
+    return walk
+
+
+def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
+    """Return what a NetCDF file of version 3 holds, whoever wrote it.
+
+    No C library is needed for it: a damaged file can raise, but not crash the program.
+    """
+    file = io.BytesIO(content)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what damage does to names and numbers
+            with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
+                return opened.load()
+    except Exception as error:  # a damaged file fails anywhere in the library, in many ways
+        raise UnreadableFile(source, expected, "a NetCDF file that is damaged") from error
+
+
+def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
+    position = dataset["position"].transpose(*DIMS)
+    if position["axis"].values.tolist() != list(AXES) or position.attrs.get("units") != "mm":
+        raise ValueError("axes or units are none of ours")
+    values = np.asarray(position.values, dtype=float)
+    if (np.abs(values) > MOST_DISTANT).any():
+        raise ValueError("infinite or absurd positions")
+    with np.errstate(invalid="ignore"):  # of NaN that a processor would signal
+        values = values * millimetres
+    time = np.asarray(position["time"].values, dtype=float)
+    if len(time) < 1 or not (np.diff(time) > 0).all():
+        raise ValueError("times that do not go on")
+    walk = trajectories_at(time, values, [str(name) for name in position["marker"].values])
+    if len(time) > 1:
+        sampling_rate(walk)  # which refuses uneven times
+    if "rotation" in dataset:
+        rotation = np.asarray(dataset["rotation"].transpose(*DIMS).values, dtype=float)
+        walk = walk.assign_coords(rotation=(DIMS, rotation))
+    return walk

@@ -1,0 +1,66 @@
+"""C3D files: the samples of markers, as most laboratories keep them."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import c3d
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.trajectories import sampling_rate
+
+MOST_MARKERS = 255
+"""As many names as one list of the format holds."""
+LONGEST_NAME = 127
+
+
+def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
+    """Write a C3D file of 4-byte floats, Intel.
+
+    The first frame is that of the capture's clock, frame 1 being at 0 s; a time between two frames,
+    or before 0 s, the format cannot hold.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        In `unit`, with the axis `up` upwards; NaN is written as not seen.
+    unit, up : str
+        Named in the file.
+    path : Path
+        File to write.
+
+    Raises
+    ------
+    ValueError
+        If there are more markers, or longer names, than the format holds.
+
+    """
+    names = [str(name).encode() for name in walk.marker.values]
+    width = max(map(len, names))
+    if len(names) > MOST_MARKERS or width > LONGEST_NAME:
+        raise ValueError(
+            f"A C3D file is written with {MOST_MARKERS} markers at most, whose names have up to "
+            f"{LONGEST_NAME} bytes; here are {len(names)}, with up to {width}. "
+            "Take some of them, or rename them, or write .csv or .nc."
+        )
+    rate_hz = sampling_rate(walk)
+    writer = c3d.Writer(point_rate=round(rate_hz, 6), point_units=unit)
+    writer.point_group.add_param(
+        "LABELS",
+        desc="Marker names",
+        bytes_per_element=-1,
+        dimensions=[width, len(names)],
+        bytes=b"".join(name.ljust(width) for name in names),
+    )
+    writer.set_screen_axis("+X", f"+{up.upper()}")
+    writer.set_start_frame(max(1, 1 + round(float(walk.time.values[0]) * rate_hz)))
+    missing = np.asarray(np.isnan(walk.values).any(axis=2))
+    points = np.zeros((*missing.shape, 5), dtype=np.float32)
+    points[..., :3] = np.where(missing[..., None], 0.0, walk.values)
+    points[..., 3] = np.where(missing, -1.0, 0.0)
+    writer.add_frames([(frame, np.empty((0, 0))) for frame in points])
+    with path.open("wb") as file, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "No analog data")  # there is none, on purpose
+        writer.write(file)

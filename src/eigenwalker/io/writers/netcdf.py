@@ -1,0 +1,69 @@
+"""NetCDF files: trajectories as they are, with names, units and what is known of the capture.
+
+Of version 3 (64-bit offset), which every NetCDF library reads, and which is read back without one
+written in C.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker._version import __version__
+
+FORMAT = "eigenwalker trajectories"
+VERSION = 1
+
+
+def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
+    """Write a NetCDF file: a variable ``position`` (time, marker, axis), and ``rotation`` if known.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        In millimetres, z up.
+    unit, up : str
+        Must be ``"mm"`` and ``"z"``: what xarray opens is to be trajectories.
+    path : Path
+        File to write.
+
+    Raises
+    ------
+    ValueError
+        If another unit or axis is asked for.
+
+    """
+    if (unit, up) != ("mm", "z"):
+        raise ValueError(
+            f"NetCDF holds trajectories in millimetres, z up, not unit={unit!r}, up={up!r}; leave "
+            "these out, or write another format."
+        )
+    dataset = walk.drop_vars("rotation", errors="ignore").to_dataset(name="position")
+    dataset["position"].attrs = {"units": "mm"}
+    dataset["time"].attrs = {"units": "s"}
+    if "rotation" in walk.coords:
+        rotation = walk.coords["rotation"].values
+        dataset["rotation"] = (walk.dims, rotation, {"units": "rad"})
+    known = {name: _storable(value) for name, value in walk.attrs.items() if name != "units"}
+    dataset.attrs = {
+        "format": FORMAT,
+        "format_version": VERSION,
+        "program": f"eigenwalker {__version__}",
+        **{f"capture_{name}": value for name, value in known.items() if value is not None},
+    }
+    dataset.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
+
+
+def _storable(value: object) -> str | int | float | None:
+    """Return an attribute as NetCDF holds it: a word, a number, or names in one line."""
+    if isinstance(value, bool | np.bool_):
+        return str(bool(value))
+    if isinstance(value, str | int | float):
+        return value
+    if isinstance(value, np.number):
+        return value.item()
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value))
+    return None

@@ -1,0 +1,104 @@
+"""Walks laid out in time, as files hold them: a walker played, forward progress put back."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.trajectories import AXES
+from eigenwalker.core.walker import Walker
+
+RATE_HZ = 120.0
+"""Frames a second where none are asked for, those of the captures in Troje (2002)."""
+N_STRIDES = 4
+MOST_FRAMES = 10_000_000
+
+
+def played(
+    walker: Walker,
+    *,
+    n_strides: int | None = None,
+    duration_s: float | None = None,
+    rate_hz: float = RATE_HZ,
+    overground: bool = False,
+) -> xr.DataArray:
+    """Return a walker's trajectories from the moment its first phase is 0, which becomes 0 s.
+
+    Parameters
+    ----------
+    walker : Walker
+        Who walks.
+    n_strides : int, optional
+        How long, to the nearest frame; 4 if neither this nor `duration_s` is given.
+    duration_s : float, optional
+        The same in seconds.
+    rate_hz : float
+        Frames a second.
+    overground : bool
+        Whether it walks forward with its ``speed_mm_s``, or in place.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        Millimetres; attribute ``speed_mm_s``.
+
+    Raises
+    ------
+    ValueError
+        If a number makes no sense, or the walker is to walk forward and has no speed.
+
+    Examples
+    --------
+    >>> walker = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 2.0, speed_mm_s=1000)
+    >>> walk = played(walker, n_strides=1, rate_hz=8, overground=True)
+    >>> walk.sel(marker="foot", axis="x").values.tolist()
+    [0.0, 125.0, 250.0, 375.0]
+
+    """
+    if n_strides is not None and duration_s is not None:
+        raise ValueError("n_strides and duration_s are both given; give one.")
+    if duration_s is None:
+        n_strides = N_STRIDES if n_strides is None else n_strides
+        duration_s = n_strides * walker.period_s
+    if not duration_s > 0 or not rate_hz > 0 or not 2 <= duration_s * rate_hz <= MOST_FRAMES:
+        raise ValueError(
+            f"{duration_s:g} s at {rate_hz:g} Hz are {duration_s * rate_hz:g} frames; "
+            f"choose 2 to {MOST_FRAMES} of them."
+        )
+    time = np.arange(round(duration_s * rate_hz)) / rate_hz
+    walk = walker.trajectories(walker.time_origin_s + time).assign_coords(time=time)
+    walk.attrs["speed_mm_s"] = walker.speed_mm_s
+    return captured(walk, overground=overground)
+
+
+def captured(walk: xr.DataArray, *, overground: bool = False) -> xr.DataArray:
+    """Return trajectories in place as they are, or walking forward with their ``speed_mm_s``.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        Millimetres.
+    overground : bool
+        Whether to put the progress back that `in_place` took out.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+
+    Raises
+    ------
+    ValueError
+        If progress is to be put back and the speed is not known.
+
+    """
+    if not overground:
+        return walk
+    speed = float(walk.attrs.get("speed_mm_s", np.nan))
+    if not np.isfinite(speed):
+        raise ValueError(
+            "overground=True puts forward progress back, but the speed of this walk is not known; "
+            "give a Walker its speed_mm_s, or trajectories attrs['speed_mm_s']."
+        )
+    forward = np.array([axis == AXES[0] for axis in AXES], dtype=float)
+    travelled = speed * (walk.time.values - walk.time.values[0])
+    return walk.copy(data=walk.values + travelled[:, None, None] * forward)

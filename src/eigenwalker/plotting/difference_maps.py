@@ -1,0 +1,297 @@
+"""Motion maps drawn, and two walks over each other (Pražák et al. 2010, fig. 1 and 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.plotting.difference_tables import short_names
+from eigenwalker.plotting.links import LINKS
+from eigenwalker.plotting.projection import project
+from eigenwalker.plotting.style import (
+    BLUE,
+    GREY,
+    INK,
+    PALE,
+    RED,
+    SMALL,
+    USUAL,
+    bare,
+    head_line,
+    new_figure,
+    panels,
+)
+from eigenwalker.plotting.walkers import HEAD_MM, INCH_MM, draw_body
+
+STEEPEST = 1.6
+"""How tall a map may make its row of the figure, for its width."""
+
+
+@dataclass(frozen=True)
+class MapPicture:
+    """A motion map and what to draw on it.
+
+    Parameters
+    ----------
+    values : array of shape (time_a, time_b)
+        How different each frame of a is from each of b.
+    times_a, times_b : array
+        Seconds of the frames.
+    title, unit : str
+        What is compared, and the unit of the values.
+    path : array of shape (step, 2), optional
+        Corresponding moments of a and b in seconds: the blending line, red.
+    period : tuple of float, optional
+        Beginnings on a and b, and lengths, of one period of either: a blue frame.
+    marks : array of shape (moment, 2), optional
+        Moments of a and b to mark by a ring.
+    names : tuple of str
+        What a and b are called.
+
+    """
+
+    values: np.ndarray
+    times_a: np.ndarray
+    times_b: np.ndarray
+    title: str
+    unit: str = ""
+    path: np.ndarray | None = None
+    period: tuple[float, float, float, float] | None = None
+    marks: np.ndarray | None = None
+    names: tuple[str, str] = ("first walk", "second walk")
+
+
+def picture_of_strides(
+    values: np.ndarray,
+    times_a: np.ndarray,
+    times_b: np.ndarray,
+    path: np.ndarray,
+    title: str,
+    *,
+    unit: str = "mm",
+    names: tuple[str, str] = ("first walk", "second walk"),
+) -> MapPicture:
+    """Return the map of two strides repeated, so that the path once round both is one line.
+
+    Parameters
+    ----------
+    values : array of shape (time_a, time_b)
+        Map of one stride with one stride.
+    times_a, times_b : array
+        Seconds of the frames, evenly spaced.
+    path : array of shape (step, 2)
+        Corresponding moments of a and b in seconds, which run on over the seams.
+    title, unit, names
+        As in `MapPicture`.
+
+    Returns
+    -------
+    MapPicture
+        Of two strides of either; one period is framed, at the path's beginning.
+
+    Examples
+    --------
+    >>> t = np.arange(0, 1, 0.1)
+    >>> path = np.stack([t + 0.5, t + 0.5], axis=1)
+    >>> picture_of_strides(np.zeros((10, 10)), t, t, path, "a stride").values.shape
+    (20, 20)
+
+    """
+    length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (times_a, times_b))
+    lengths = np.array([length_a, length_b])
+    path = path - np.floor(path.min(axis=0) / lengths) * lengths
+    return MapPicture(
+        np.tile(values, (2, 2)),
+        np.concatenate([times_a, times_a + length_a]),
+        np.concatenate([times_b, times_b + length_b]),
+        title,
+        unit,
+        path=path,
+        period=(float(path[0, 0]), float(path[0, 1]), float(length_a), float(length_b)),
+        names=names,
+    )
+
+
+def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure:
+    """Return motion maps side by side, dark where frames are alike (fig. 1 and 6).
+
+    Parameters
+    ----------
+    pictures : sequence of MapPicture
+        Each with a scale of its own.
+    n_columns : int
+        Maps in a row.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> t = np.arange(0, 2, 0.1)
+    >>> apart = np.abs(np.sin(np.pi * (t[:, None] - t)))
+    >>> figure = figure_maps([MapPicture(apart, t, t, "a sine and itself")])
+    >>> figure.axes[0].get_title(loc="left")
+    'a sine and itself'
+
+    """
+    n_columns = min(n_columns, len(pictures))
+    n_rows = -(-len(pictures) // n_columns)
+    wide = 2.7 if n_columns < 3 else 2.2
+    rows = [pictures[start : start + n_columns] for start in range(0, len(pictures), n_columns)]
+    tall = [0.75 + (wide - 0.8) * min(max(map(_slope, row)), STEEPEST) for row in rows]
+    figure = new_figure(0.3 + wide * n_columns, sum(tall))
+    laid_out = panels(figure, n_rows, n_columns, height_ratios=tall)
+    grid = [axes for row in laid_out for axes in row]
+    for axes, picture in zip(grid, pictures, strict=False):
+        _draw_map(figure, axes, picture)
+    for axes in grid[len(pictures) :]:
+        axes.remove()
+    return figure
+
+
+def _slope(picture: MapPicture) -> float:
+    """Return how tall a map is for its width, as seconds are as long either way."""
+    spans = [np.ptp(times) + 1e-9 for times in (picture.times_a, picture.times_b)]
+    return float(spans[0] / spans[1])
+
+
+def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
+    a, b = picture.times_a, picture.times_b
+    half_a, half_b = (0.5 * (t[-1] - t[0]) / max(len(t) - 1, 1) for t in (a, b))
+    drawn = axes.imshow(
+        picture.values,
+        cmap="gray",
+        origin="lower",
+        extent=(b[0] - half_b, b[-1] + half_b, a[0] - half_a, a[-1] + half_a),
+        interpolation="nearest",
+        aspect="equal",
+    )
+    if picture.period is not None:
+        start_a, start_b, length_a, length_b = picture.period
+        axes.add_patch(
+            Rectangle((start_b, start_a), length_b, length_a, fc="none", ec=BLUE, lw=1.4)
+        )
+    if picture.path is not None:
+        axes.plot(picture.path[:, 1], picture.path[:, 0], color=RED, lw=1.4)
+        axes.set_xlim(b[0] - half_b, b[-1] + half_b)
+        axes.set_ylim(a[0] - half_a, a[-1] + half_a)
+    if picture.marks is not None:
+        axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
+    scale = figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0, 0.05, 1)))
+    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
+    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
+    ordinate, abscissa = short_names(picture.names)
+    axes.set_ylabel(f"{ordinate} (s)", parse_math=False)
+    axes.set_xlabel(f"{abscissa} (s)", parse_math=False)
+    head_line(axes, picture.title)
+
+
+def figure_two_walks(
+    first: np.ndarray,
+    second: np.ndarray,
+    markers: Sequence[str],
+    *,
+    names: tuple[str, str] = ("first walk", "second walk"),
+    n_moments: int = 5,
+    skeleton: Skeleton = LINKS,
+) -> Figure:
+    """Return two registered walks over each other at moments of their stride, from two sides.
+
+    Parameters
+    ----------
+    first, second : array of shape (time, marker, axis)
+        Corresponding frames of one stride, in mm.
+    markers : sequence of str
+        Names of the markers.
+    names : tuple of str
+        What the walks are called.
+    n_moments : int
+        Evenly spaced moments to draw.
+    skeleton : Skeleton
+        Who is joined to whom.
+
+    Returns
+    -------
+    Figure
+        Seen from the side above, from the front below; the first walk blue, the second red, their
+        left limbs paler.
+
+    """
+    body = skeleton.restricted_to(markers)
+    frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)
+    views = (90.0, 0.0)
+    seen = {
+        view: [project(walk[frames], view_deg=view) for walk in (first, second)] for view in views
+    }
+    reach = max(np.abs(each[..., 0]).max() for both in seen.values() for each in both) + HEAD_MM
+    low = min(each[..., 1].min() for both in seen.values() for each in both)
+    top = max(each[..., 1].max() for both in seen.values() for each in both) + 1.5 * HEAD_MM
+    pitch, storey = 1.7 * reach, top - low + 150
+    width = pitch * (n_moments - 1) + 2 * reach
+    figure = new_figure(width / INCH_MM, (2 * storey + 250) / INCH_MM)
+    axes = bare(panels(figure, 1, 1)[0][0])
+    for row, view in enumerate(views):
+        for column in range(n_moments):
+            for walk, color in zip(seen[view], (BLUE, RED), strict=True):
+                at = (column * pitch, -row * storey)
+                draw_body(axes, walk[column], body, at=at, color=color, width=1.1, dots=False)
+    for column in range(n_moments):
+        share = f"{100 * column / n_moments:.0f} %"
+        axes.text(column * pitch, low - storey - 90, share, fontsize=SMALL, ha="center", color=GREY)
+    for place, (name, color) in enumerate(zip(names, (BLUE, RED), strict=True)):
+        axes.annotate(
+            name,
+            (0, 1),
+            xycoords="axes fraction",
+            xytext=(0, 2 + 10 * (1 - place)),
+            textcoords="offset points",
+            fontsize=USUAL,
+            color=color,
+            parse_math=False,
+        )
+    axes.set_xlim(-reach, (n_moments - 1) * pitch + reach)
+    axes.set_ylim(low - storey - 150, top)
+    return figure
+
+
+def figure_shares(shares: Mapping[str, float]) -> Figure:
+    """Return how much each part makes of a difference, the largest first.
+
+    Parameters
+    ----------
+    shares : mapping of str to float
+        Shares by name, 0 to 1.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> figure_shares({"calf": 0.2, "forearm": 0.8}).axes[0].get_yticklabels()[0].get_text()
+    'forearm'
+
+    """
+    ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
+    figure = new_figure(3.6, 0.6 + 0.2 * len(ordered))
+    axes = panels(figure, 1, 1)[0][0]
+    places = np.arange(len(ordered))
+    percent = [100 * share for share in ordered.values()]
+    axes.barh(places, percent, height=0.65, color=BLUE)
+    for place, value in enumerate(percent):
+        axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
+    axes.set_yticks(places, [name.replace("_", " ") for name in ordered])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.15 * max(percent))
+    axes.set_xlabel("Share of the difference (%)")
+    axes.spines["left"].set_color(PALE)
+    axes.tick_params(axis="y", length=0)
+    return figure

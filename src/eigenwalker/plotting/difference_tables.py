@@ -1,0 +1,181 @@
+"""Tables of differences drawn: as a picture in order, and as a map (Pražák et al. 2010, fig. 4)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from eigenwalker.plotting.style import BLUE, GREY, INK, RED, SMALL, new_figure, panels
+
+MOST_NAMED = 45
+"""Walks up to which each gets its name; more would stand over each other."""
+_LONGEST = 15
+_INKS = (BLUE, RED, "#009988", "#AA4499", GREY, "#DDAA33", "#882255", INK)
+_MARKS = "o^sDvPX>*"
+MOST_CLASSES = len(_INKS) * len(_MARKS)
+"""Classes that have a colour and a mark of their own."""
+
+
+def figure_difference_table(
+    table: ArrayLike,
+    names: Sequence[str],
+    *,
+    order: ArrayLike,
+    clusters: ArrayLike | None = None,
+    unit: str = "",
+) -> Figure:
+    """Return a table of differences as a picture, dark where walks are alike (fig. 4).
+
+    Parameters
+    ----------
+    table : array of shape (walk, walk)
+        Differences.
+    names : sequence of str
+        One name a walk.
+    order : array of int of shape (walk,)
+        Which walk comes first, second and so on.
+    clusters : array of int of shape (walk,), optional
+        Dashed lines stand where in that order another cluster begins.
+    unit : str
+        Unit of the differences.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> figure = figure_difference_table([[0, 1], [1, 0]], ["a", "b"], order=[1, 0])
+    >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    ['b', 'a']
+
+    """
+    values, order = np.asarray(table, dtype=float), np.asarray(order, dtype=int)
+    side = float(np.clip(0.13 * len(order), 2.4, 6.2))
+    figure = new_figure(side + 2.1, side + 1.1)
+    axes = panels(figure, 1, 1)[0][0]
+    drawn = axes.imshow(values[np.ix_(order, order)], cmap="gray", interpolation="nearest")
+    if clusters is not None:
+        sorted_clusters = np.asarray(clusters)[order]
+        for border in np.flatnonzero(np.diff(sorted_clusters)) + 0.5:
+            axes.axhline(border, color="#009988", lw=1.0, ls="--")
+            axes.axvline(border, color="#009988", lw=1.0, ls="--")
+    if len(order) <= MOST_NAMED:
+        short = short_names(names)
+        labels = [short[walk] for walk in order]
+        axes.set_xticks(range(len(order)), labels, rotation=90, parse_math=False)
+        axes.set_yticks(range(len(order)), labels, parse_math=False)
+    else:
+        axes.set_xlabel("Walk, in order")
+    scale = figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
+    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    scale.ax.set_title(unit, fontsize=SMALL, color=INK, parse_math=False)
+    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
+    return figure
+
+
+def figure_map_of_walks(
+    places: ArrayLike, classes: Sequence[str], *, names: Sequence[str] | None = None
+) -> Figure:
+    """Return walks as points, near each other if they are alike.
+
+    Parameters
+    ----------
+    places : array of shape (walk, 2)
+        As `map_of_walks` gives them.
+    classes : sequence of str
+        The cluster or label of each walk, told by colour and mark; of up to `MOST_CLASSES`.
+    names : sequence of str, optional
+        Written beside the points.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> figure = figure_map_of_walks([[0, 0], [1, 2]], ["slow", "fast"])
+    >>> [text.get_text() for text in figure.legends[0].get_texts()]
+    ['fast (1)', 'slow (1)']
+
+    """
+    places, of = np.asarray(places, dtype=float), np.asarray(classes)
+    figure = new_figure(4.8, 3.9)
+    axes = panels(figure, 1, 1)[0][0]
+    for number, name in enumerate(np.unique(of)):
+        color, mark = _INKS[number % len(_INKS)], _MARKS[number % len(_MARKS)]
+        chosen = places[of == name]
+        label = f"{name} ({len(chosen)})".replace("$", r"\$")  # words, not mathematics
+        axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)
+    for place, name in zip(places, short_names(names or []), strict=False):
+        axes.annotate(
+            name,
+            tuple(place),
+            xytext=(3, 3),
+            textcoords="offset points",
+            fontsize=SMALL - 1.5,
+            color=GREY,
+            parse_math=False,
+        )
+    figure.legend(
+        loc="outside upper left", ncols=4, fontsize=SMALL, frameon=False, handletextpad=0.1
+    )
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.12)
+    axes.set_xlabel("First dimension")
+    axes.set_ylabel("Second dimension")
+    return figure
+
+
+def short_names(names: Sequence[str]) -> list[str]:
+    """Return names that fit beside a picture, different ones as long as the names are different.
+
+    Of long ones, what all begin and end with is left out, up to a separator; what is still long is
+    told by its beginning and its end, and by a number where these do not tell names apart.
+
+    Examples
+    --------
+    >>> short_names(["dataset-2_walk_sad_001.bvh", "dataset-2_walk_happy_002.bvh"])
+    ['sad_001', 'happy_002']
+    >>> short_names(["dataset-2_walk_normal_001.bvh"])
+    ['datase…rmal_001']
+
+    """
+    names = [str(name) for name in names]
+    stems = [name.rpartition(".")[0] or name for name in names]
+    if max(map(len, stems), default=0) > _LONGEST:
+        stems = _without_shared(stems)
+    if len(set(stems)) < len(set(names)):
+        stems = names
+    for longest in range(_LONGEST, 2 * _LONGEST):
+        short = [_elided(stem, longest) for stem in stems]
+        if len(set(short)) == len(set(names)):
+            return short
+    return [f"{n}: {_elided(stem, _LONGEST)}" for n, stem in enumerate(stems, start=1)]
+
+
+def _without_shared(names: list[str]) -> list[str]:
+    """Return names without the words that all of them begin with, and end with."""
+    if len(set(names)) < 2:
+        return names
+    start = _words_shared(names)
+    end = _words_shared([name[start:][::-1] for name in names])
+    kept = [name[start : len(name) - end] for name in names]
+    return kept if all(kept) else names
+
+
+def _words_shared(names: list[str]) -> int:
+    """Return how many letters of whole words, with the separator after them, all begin with."""
+    shared = os.path.commonprefix(names)  # noqa: RUF071 - letters are what is wanted
+    return max(shared.rfind(mark) for mark in "/_- ") + 1
+
+
+def _elided(name: str, longest: int) -> str:
+    if len(name) <= longest:
+        return name
+    head = max(longest - 9, longest // 2 - 1)
+    return f"{name[:head]}\N{HORIZONTAL ELLIPSIS}{name[head + 1 - longest :]}"

@@ -1,0 +1,197 @@
+"""Films of walkers: point-light displays and stick figures as MP4, WebM or GIF."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.trajectories import check_trajectories
+from eigenwalker.core.walker import Walker
+from eigenwalker.plotting.encoding import (
+    FilmFormat,
+    encode_film,
+    film_format,
+    frame_delays,
+    shades_between,
+)
+from eigenwalker.plotting.layout import STYLES, Style, positions_at, stage
+from eigenwalker.plotting.links import LINKS
+
+Background = Literal["dark", "light"]
+COLOURS = {"dark": ("#000000", "#ffffff"), "light": ("#ffffff", "#191919")}
+"""Of the ground and of the walker."""
+USUAL_S = 4.0
+"""Seconds of a film whose duration is left open."""
+
+
+def write_film(
+    walks: Walker | xr.DataArray | Sequence[Walker | xr.DataArray],
+    path: str | Path,
+    *,
+    duration_s: float | None = None,
+    n_strides: int | None = None,
+    view_deg: float = 30.0,
+    elevation_deg: float = 0.0,
+    distance_mm: float = math.inf,
+    style: Style = "dots",
+    size_px: int | tuple[int, int] = 512,
+    rate_hz: float | None = None,
+    background: Background = "dark",
+    titles: Sequence[str] = (),
+    skeleton: Skeleton = LINKS,
+    progress: Callable[[int, int], object] | None = None,
+) -> Path:
+    """Write a film of one walker, or of several side by side, and return its path.
+
+    White dots on black as in J34, or a stick figure whose left limbs are the dimmer ones. All
+    walkers have one scale, at which all of them stay in the picture.
+
+    Parameters
+    ----------
+    walks : Walker, trajectories, or a sequence of them
+        Walkers begin where their first phase is 0, captures with their first frame, and walkers
+        beside a capture at the moment of its first frame, on its clock. Markers of a capture that
+        are missing at a moment are not drawn.
+    path : path
+        The suffix decides: ``.mp4``, ``.webm`` or ``.gif``. The file appears when it is whole.
+    duration_s : float, optional
+        Seconds of the film; left open, 4 for walkers, and what the shortest capture lasts.
+    n_strides : int, optional
+        Whole strides in place of a duration, so that the film repeats without a seam. Walkers of
+        different frequency then keep step, in the time of their mean frequency (M1).
+    view_deg, elevation_deg, distance_mm : float
+        0 is the frontal view, 90 in profile to the right; see `project`.
+    style : {"dots", "sticks"}
+        Point-light display or stick figure.
+    size_px : int or (width, height)
+        Height of the picture, the width being what the walkers need; or both. Odd ones get one
+        more.
+    rate_hz : float, optional
+        Frames a second; 60, and 50 for a GIF, whose delays are whole hundredths of a second: it
+        takes 50, 25 or 20.
+    background : {"dark", "light"}
+        White on black or black on white.
+    titles : sequence of str
+        Words over each walker.
+    skeleton : Skeleton
+        Which markers the sticks join.
+    progress : callable, optional
+        Called after each frame with the number of frames written and of all.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ValueError
+        If a choice is not known or does not go with another, saying what does.
+    FileNotFoundError
+        If the folder does not exist.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     film = write_film(hop, Path(folder) / "hop.gif", n_strides=2, size_px=64)
+    ...     film.stat().st_size > 0
+    True
+
+    """
+    path = Path(path)
+    shown = [walks] if isinstance(walks, Walker | xr.DataArray) else list(walks)
+    form = film_format(path, rate_hz)
+    _check(shown, duration_s, n_strides, style, background, titles)
+    delays, seconds = _moments(shown, duration_s, n_strides, rate_hz or form.rate_hz, form)
+    scene = stage(
+        [
+            positions_at(walk, _start(walk, shown) + moments)
+            for walk, moments in zip(shown, seconds, strict=True)
+        ],
+        view_deg=view_deg,
+        elevation_deg=elevation_deg,
+        distance_mm=distance_mm,
+        style=style,
+        size_px=size_px,
+        titles=titles,
+        skeleton=skeleton,
+    )
+    encode_film(
+        scene.frames(),
+        path,
+        shape=scene.shape,
+        form=form,
+        delays=delays,
+        shades=shades_between(*COLOURS[background]),
+        progress=progress,
+    )
+    return path
+
+
+def _check(
+    shown: list[Walker | xr.DataArray],
+    duration_s: float | None,
+    n_strides: int | None,
+    style: str,
+    background: str,
+    titles: Sequence[str],
+) -> None:
+    amiss = []
+    if not shown:
+        amiss.append("there is no walker to film")
+    if duration_s is not None and n_strides is not None:
+        amiss.append("duration_s and n_strides are both given; give one")
+    if duration_s is not None and not 0 < duration_s <= 3600:
+        amiss.append(f"duration_s={duration_s:g} must lie between 0 and 3600")
+    captures = [check_trajectories(walk) for walk in shown if not isinstance(walk, Walker)]
+    if n_strides is not None and (captures or n_strides < 1):
+        amiss.append("n_strides must be 1 or more, and is for walkers; a capture takes duration_s")
+    if style not in STYLES:
+        amiss.append(f"style={style!r} is none of {STYLES}")
+    if background not in COLOURS:
+        amiss.append(f"background={background!r} is none of {tuple(COLOURS)}")
+    if len(titles) not in (0, len(shown)):
+        amiss.append(f"there are {len(titles)} titles for {len(shown)} walkers")
+    if amiss:
+        raise ValueError("This film cannot be made: " + "; ".join(amiss) + ".")
+
+
+def _moments(
+    shown: list[Walker | xr.DataArray],
+    duration_s: float | None,
+    n_strides: int | None,
+    rate_hz: float,
+    form: FilmFormat,
+) -> tuple[list[Fraction], list[np.ndarray]]:
+    """How long each frame stays, and for each walker the seconds from its beginning it shows."""
+    walkers = [walk for walk in shown if isinstance(walk, Walker)]
+    if n_strides is not None:
+        lasts = [n_strides * walker.period_s for walker in walkers]
+        duration_s = n_strides / float(np.mean([walker.frequency_hz for walker in walkers]))
+    else:
+        if duration_s is None:
+            captured = [np.ptp(w.time.values) for w in shown if not isinstance(w, Walker)]
+            duration_s = float(min(captured, default=USUAL_S))
+        lasts = [duration_s] * len(shown)
+    delays = frame_delays(duration_s, rate_hz, form, whole=n_strides is not None)
+    starts = np.concatenate([[0.0], np.cumsum([float(delay) for delay in delays[:-1]])])
+    length = float(sum(delays)) if n_strides is not None else duration_s
+    return delays, [starts * (last / length) for last in lasts]
+
+
+def _start(walk: Walker | xr.DataArray, shown: list[Walker | xr.DataArray]) -> float:
+    """The moment at which a walk begins, on its own clock."""
+    if not isinstance(walk, Walker):
+        return float(walk.time.values[0])
+    beside = [float(other.time.values[0]) for other in shown if not isinstance(other, Walker)]
+    return beside[0] if beside else walk.time_origin_s

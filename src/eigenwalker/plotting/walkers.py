@@ -1,0 +1,246 @@
+"""Bodies drawn with links, standing still: the 15 joints, and walkers side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.walker import Walker
+from eigenwalker.plotting.links import LINKS
+from eigenwalker.plotting.projection import project
+from eigenwalker.plotting.style import GREY, INK, PALE, SMALL, USUAL, bare, new_figure, panels
+
+HEAD_MM = 95.0
+"""Radius of the head that is drawn about the marker of that name."""
+INCH_MM = 850.0
+"""Millimetres of a body that an inch of a figure shows."""
+
+
+def draw_body(
+    axes: Axes,
+    seen: np.ndarray,
+    body: Skeleton,
+    *,
+    at: tuple[float, float] = (0.0, 0.0),
+    color: str = INK,
+    width: float = 1.5,
+    dots: bool = True,
+    dashes: str | tuple = "-",
+    zorder: float = 2.0,
+) -> None:
+    """Draw a posture, its left limbs paler than its right ones.
+
+    Parameters
+    ----------
+    axes : Axes
+        What is drawn on, in millimetres.
+    seen : array of shape (marker, 2)
+        The posture in projection, as `project` gives it.
+    body : Skeleton
+        Names of the markers and who is joined to whom.
+    at : tuple of float
+        Where in the picture the posture's origin goes.
+    color, width, dots, dashes, zorder
+        Of the links, in points; and whether joints are marked.
+
+    """
+    seen = np.asarray(seen) + at
+    left = {marker for marker, _ in body.pairs}
+    for link in body.segments:
+        ends = seen[[body.index(marker) for marker in link]]
+        tone = 0.45 if left & set(link) else 1.0
+        axes.plot(
+            *ends.T,
+            color=_mixed(color, tone),
+            lw=width,
+            ls=dashes,
+            solid_capstyle="round",
+            zorder=zorder - (tone < 1),
+        )
+    for marker, place in zip(body.markers, seen, strict=True):
+        if dots and marker != "head":
+            ink = _mixed(color, 0.45 if marker in left else 1.0)
+            axes.plot(*place, "o", ms=1.9 * width, color=ink, mew=0, zorder=zorder + 0.1)
+    if "head" in body.markers:
+        head = Circle(
+            tuple(seen[body.index("head")]), HEAD_MM, fc="none" if not dots else "white", ec=color
+        )
+        head.set(lw=width, ls=dashes, zorder=zorder)
+        axes.add_patch(head)
+
+
+def _mixed(color: str, share: float) -> tuple[float, ...]:
+    """A colour on white, as if it covered a share of it."""
+    return tuple(1 - share * (1 - np.array(to_rgb(color))))
+
+
+def figure_joints(
+    walker: Walker, *, views_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = LINKS
+) -> Figure:
+    """Return the joints and links of a walker's mean posture from several sides (J fig. 1).
+
+    Names stand beside the joints of the first view.
+
+    Parameters
+    ----------
+    walker : Walker
+        Whose mean posture to draw.
+    views_deg : sequence of float
+        Views as `project` takes them; 0 is the front.
+    skeleton : Skeleton
+        Who is joined to whom.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> still = ew.Walker(["head"], [[0, 0, 1600]], [[[0, 0, 0]]], [1], [0], 1.0)
+    >>> [text.get_text() for text in figure_joints(still, views_deg=[0]).axes[0].texts]
+    ['head', 'front']
+
+    """
+    body = skeleton.restricted_to(walker.markers)
+    pictures = [project(walker.p0, view_deg=view) for view in views_deg]
+    reach = max(np.abs(picture[:, 0]).max() for picture in pictures) + HEAD_MM
+    pitch, names = 2 * reach + 120, 620.0
+    middles = np.arange(len(views_deg)) * pitch + np.where(np.arange(len(views_deg)) > 0, names, 0)
+    right = middles[-1] + reach + (50 if len(middles) > 1 else names)
+    top = max(picture[:, 1].max() for picture in pictures) + 1.5 * HEAD_MM
+    figure = new_figure((reach + names + right) / INCH_MM, (top + 230) / INCH_MM)
+    axes = bare(panels(figure, 1, 1)[0][0])
+    _name_joints(axes, pictures[0], body, reach)
+    for middle, view, picture in zip(middles, views_deg, pictures, strict=True):
+        draw_body(axes, picture, body, at=(middle, 0))
+        axes.text(middle, -170, view_name(view), fontsize=USUAL, ha="center", color=GREY)
+    axes.set_xlim(-reach - names, right)
+    axes.set_ylim(-230, top)
+    return figure
+
+
+def view_name(view_deg: float) -> str:
+    """Return a view in words: front, three-quarter, side, or its angle.
+
+    Examples
+    --------
+    >>> view_name(90), view_name(45)
+    ('side', '45°')
+
+    """
+    names: dict[float, str] = {0: "front", 30: "three-quarter", 90: "side"}
+    return names.get(view_deg, f"{view_deg:g}°")
+
+
+def _name_joints(axes: Axes, seen: np.ndarray, body: Skeleton, reach: float) -> None:
+    """Names of the joints at both sides of a body, joined to them by thin lines."""
+    left = {marker for marker, _ in body.pairs}
+    right = {marker for _, marker in body.pairs}
+    middle = [marker for marker in body.markers if marker not in left | right]
+    for side, members in ((1, left | set(middle[::2])), (-1, right | set(middle[1::2]))):
+        named = sorted((seen[body.index(marker)][1], marker) for marker in members)
+        heights = _apart([height for height, _ in named])
+        for (height, marker), place in zip(named, heights, strict=True):
+            x = seen[body.index(marker)][0]
+            corner, end = side * (reach + 15), side * (reach + 75)
+            axes.plot([x, corner, end], [height, height, place], color=PALE, lw=0.6, zorder=0)
+            axes.text(
+                side * (reach + 90),
+                place,
+                marker.replace("_", " "),
+                fontsize=SMALL,
+                color=INK,
+                va="center",
+                ha="left" if side > 0 else "right",
+            )
+
+
+def _apart(heights: Sequence[float], *, least: float = 95.0) -> np.ndarray:
+    """Heights in increasing order, moved until no two are closer than `least`."""
+    moved = np.array(heights, dtype=float)
+    for _ in range(200):
+        short = least - np.diff(moved)
+        if (short <= 1e-6).all():
+            break
+        push = np.maximum(short, 0) / 2
+        moved[:-1] -= push
+        moved[1:] += push
+    return moved
+
+
+def figure_walkers(
+    walkers: Mapping[str, Walker],
+    *,
+    views_deg: Sequence[float] = (0, 90),
+    phase: float = 0.25,
+    skeleton: Skeleton = LINKS,
+) -> Figure:
+    """Return walkers side by side at one scale, each over the paths of its joints.
+
+    For the extremes of a trait, and for Moler's four panels (M5): women, men, and both with their
+    difference tripled.
+
+    Parameters
+    ----------
+    walkers : mapping of str to Walker
+        Title of each, and the walker; from left to right.
+    views_deg : sequence of float
+        Views as `project` takes them, from above to below.
+    phase : float
+        Share of the stride at which the bodies are drawn, from the moment at which the first phase
+        is 0. At a quarter the legs of a walker of a population are furthest apart, the left one in
+        front.
+    skeleton : Skeleton
+        Who is joined to whom.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> sex = ew.trait_axis(people, "sex")
+    >>> poles = {"woman": people.average - sex.step, "man": people.average + sex.step}
+    >>> figure = figure_walkers({name: people.walker(each) for name, each in poles.items()})
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['woman', 'man']
+
+    """
+    if not walkers:
+        raise ValueError("There is no walker to draw; give one or more, by title.")
+    strides = {title: _one_stride(walker, phase) for title, walker in walkers.items()}
+    pictures = [[project(s, view_deg=view) for s in strides.values()] for view in views_deg]
+    seen = np.concatenate([picture.reshape(-1, 2) for row in pictures for picture in row])
+    pitch = 2 * np.abs(seen[:, 0]).max() + 160
+    bottom, top = seen[:, 1].min() - 40, seen[:, 1].max() + HEAD_MM
+    story = top - bottom + 130
+    figure = new_figure(
+        (len(walkers) * pitch + 100) / INCH_MM, (len(views_deg) * story + 170) / INCH_MM
+    )
+    axes = bare(panels(figure, 1, 1)[0][0])
+    bodies = [skeleton.restricted_to(walker.markers) for walker in walkers.values()]
+    for row, shown in enumerate(pictures):
+        for column, (picture, body) in enumerate(zip(shown, bodies, strict=True)):
+            at = (column * pitch, -row * story)
+            paths = picture + at
+            axes.plot(*np.moveaxis(paths, -1, 0), color=PALE, lw=0.7, zorder=0.5)
+            draw_body(axes, picture[0], body, at=at)
+    for column, title in enumerate(walkers):
+        where = (column * pitch, top + 60)
+        axes.text(*where, title, fontsize=USUAL, ha="center", color=INK, parse_math=False)
+    axes.set_xlim(-pitch / 2 - 50, (len(walkers) - 0.5) * pitch + 50)
+    axes.set_ylim(bottom - (len(views_deg) - 1) * story - 10, top + 170)
+    return figure
+
+
+def _one_stride(walker: Walker, phase: float) -> np.ndarray:
+    """Positions over one closed stride, array of shape (time, marker, axis)."""
+    cycle = phase + np.linspace(0, 1, 61)
+    return walker.trajectories(walker.time_origin_s + cycle * walker.period_s).values

@@ -1,0 +1,352 @@
+"""Many walkers made comparable: sign, order, axes and phase of their eigenpostures (A4 to A6).
+
+The principal components of one walk are settled up to sign, and where two of them explain nearly
+the same variance, up to any rotation; in real walks components 2 and 3 change places. Averages over
+walkers make sense only once eigenposture i of each shows the same thing. The papers are silent on
+how; here
+
+1. each walk gives the plane in which its postures move at each harmonic, by regression on the sine
+   and cosine of that harmonic, whatever the order of its components;
+2. the plane of the average walker has its own principal axes: its eigenpostures;
+3. each walker's axes are turned within its plane as near as can be to those (orthogonal
+   Procrustes), which also settles signs; phases follow from the axes;
+4. the first phase is set to 0, where the left ankle is ahead of the right.
+
+A walker whose eigenpostures still do not resemble the average's is flagged and left out of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from eigenwalker.core.walker import Walker, fourier_coefficients, shift_origin
+from eigenwalker.decomposition.decomposition import is_negative, origin_angle
+from eigenwalker.population.features import FeatureLayout, wrap_phase
+
+_MAX_ROUNDS = 50
+_SETTLED = 1e-10
+MIN_SIMILARITY = 0.3
+"""Least cosine between an eigenposture and the average walker's that counts as the same thing."""
+MIN_SHARE = 0.002
+"""Share of a walker's movement below which a posture may mean anything: the fourth of a usual
+walker has 0.01."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What walkers are brought into correspondence with.
+
+    Parameters
+    ----------
+    axes : array of shape (harmonic, 2, marker * axis)
+        Unit eigenpostures of the average walker.
+    average : array of shape (2 * harmonic, marker * axis)
+        Its movement as coefficients of sin 1, cos 1, sin 2, cos 2 ..., in millimetres.
+    form : {"eigenposture", "fourier"}
+    markers : tuple of str
+
+    """
+
+    axes: np.ndarray
+    average: np.ndarray
+    form: str
+    markers: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Correspondence:
+    """How far correspondence holds for some walkers.
+
+    Parameters
+    ----------
+    reference : Reference
+        The average walker's axes.
+    similarity : array of shape (walker, component)
+        Cosine between each eigenposture and the average walker's.
+    flags : tuple of str
+        For each walker, why correspondence does not hold; empty where it does.
+
+    """
+
+    reference: Reference
+    similarity: np.ndarray
+    flags: tuple[str, ...]
+
+
+class _Aligned(NamedTuple):
+    """Postures (walker, component, feature), phases and similarity (walker, component)."""
+
+    postures: np.ndarray
+    phases: np.ndarray
+    similarity: np.ndarray
+
+
+def correspond(
+    walkers: Sequence[Walker], *, leave_out: Sequence[bool] | None = None
+) -> tuple[tuple[Walker, ...], Correspondence]:
+    """Return walkers whose eigenpostures mean the same, and how far that holds.
+
+    Parameters
+    ----------
+    walkers : sequence of Walker
+        All of the same markers, form and number of harmonics.
+    leave_out : sequence of bool, optional
+        Walkers that must not shape the average, though they are brought into correspondence too.
+
+    Returns
+    -------
+    walkers : tuple of Walker
+    correspondence : Correspondence
+
+    Raises
+    ------
+    ValueError
+        If the walkers cannot be compared at all.
+
+    """
+    _check_alike(walkers)
+    trusted = np.ones(len(walkers), dtype=bool)
+    if leave_out is not None and not np.all(leave_out):
+        trusted = ~np.asarray(leave_out, dtype=bool)
+    coefficients, clocks = _canonical(walkers, _n_harmonics(walkers[0]))
+    reference = _average_axes(coefficients[trusted], walkers[0])
+    for _ in range(_MAX_ROUNDS):
+        aligned, later = _align(coefficients, reference)
+        coefficients = _on_later_clocks(coefficients, later)
+        clocks = clocks + later
+        flags = _flags(aligned, reference)
+        still = trusted & np.array([not flag for flag in flags])
+        trusted = still if still.any() else trusted
+        previous, reference = reference, _average_axes(coefficients[trusted], walkers[0])
+        if np.abs(reference.axes - previous.axes).max() < _SETTLED:
+            break
+    together = tuple(
+        _replaced(walker, aligned, number, clocks[number]) for number, walker in enumerate(walkers)
+    )
+    return together, Correspondence(previous, aligned.similarity, flags)
+
+
+def correspond_to(walker: Walker, reference: Reference) -> tuple[Walker, np.ndarray, str]:
+    """Return one walker in correspondence with a population.
+
+    Returns
+    -------
+    walker : Walker
+    similarity : array of shape (component,)
+        Cosine between its eigenpostures and the average walker's.
+    flag : str
+        Why correspondence does not hold; empty where it does.
+
+    """
+    if walker.markers != reference.markers or walker.form != reference.form:
+        raise ValueError(
+            f"The walker has {len(walker.markers)} markers in the {walker.form} form, the "
+            f"population {len(reference.markers)} in the {reference.form} form; decompose it "
+            "the same way, from the same joints."
+        )
+    coefficients, clocks = _canonical([walker], len(reference.axes))
+    aligned, later = _align(coefficients, reference)
+    (flag,) = _flags(aligned, reference)
+    return _replaced(walker, aligned, 0, clocks[0] + later[0]), aligned.similarity[0], flag
+
+
+def posture_correlations(postures: np.ndarray) -> np.ndarray:
+    """Return how alike postures are over all pairs of walkers (J12).
+
+    Parameters
+    ----------
+    postures : array of shape (walker, component, marker, axis)
+        Mean postures (one component) or eigenpostures.
+
+    Returns
+    -------
+    array of shape (component,)
+        Mean Pearson correlation over all pairs of walkers.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> same = rng.normal(size=(1, 1, 15, 3)) * [[[[1.0]]], [[[2.0]]]]
+    >>> posture_correlations(same).round(6).tolist()
+    [1.0]
+
+    """
+    n_walkers, n_components = postures.shape[:2]
+    flat = postures.reshape(n_walkers, n_components, -1)
+    centred = flat - flat.mean(axis=-1, keepdims=True)
+    length = np.linalg.norm(centred, axis=-1, keepdims=True)
+    unit = centred / np.where(length > 0, length, 1)
+    # The sum over all pairs is the square of the sum less the pairs of each with itself.
+    together = (unit.sum(axis=0) ** 2).sum(axis=-1) - (unit**2).sum(axis=(0, 2))
+    return together / (n_walkers * (n_walkers - 1))
+
+
+def matched_by_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
+    """Return the eigenpostures as first found, with only sign and order made to agree.
+
+    The paper's own reading of correspondence (J12): components sorted by their harmonic, then by
+    variance; signs turned to those of the first walker, then to those of the mean, until none
+    changes.
+
+    Returns
+    -------
+    array of shape (walker, component, marker, axis)
+
+    """
+    postures = []
+    for walker in walkers:
+        found = walker.fit if walker.fit is not None else None
+        p = found.eigenpostures if found is not None else walker.p
+        harmonics = found.harmonics if found is not None else walker.harmonics
+        postures.append(p[np.argsort(harmonics, kind="stable")])
+    stacked = np.stack(postures)
+    towards = stacked[0]
+    for _ in range(20):
+        sign = np.sign(np.einsum("wcma,cma->wc", stacked, towards))
+        stacked = stacked * np.where(sign == 0, 1, sign)[..., None, None]
+        towards = stacked.mean(axis=0)
+        if (sign >= 0).all():
+            break
+    return stacked
+
+
+def _check_alike(walkers: Sequence[Walker]) -> None:
+    if not walkers:
+        raise ValueError("A population needs one walker or more, got none.")
+    first = FeatureLayout.of(walkers[0])
+    for number, walker in enumerate(walkers):
+        same = walker.markers == first.markers and walker.form == first.form
+        if not same or len(walker.harmonics) != len(first.harmonics):
+            raise ValueError(
+                f"Walker {number} has {len(walker.markers)} markers and {len(walker.harmonics)} "
+                f"postures in the {walker.form} form, walker 0 has {len(first.markers)} and "
+                f"{len(first.harmonics)} in the {first.form} form; decompose all the same way."
+            )
+
+
+def _n_harmonics(walker: Walker) -> int:
+    return (len(walker.harmonics) + 1) // 2
+
+
+def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+    """Fourier coefficients on a clock that all share, and how far each clock was moved (A4).
+
+    Returns arrays of shape (walker, 2 * harmonic, feature) and (walker,), the latter in radians.
+    """
+    coefficients, clocks = [], []
+    for walker in walkers:
+        known = _movement(walker, n_harmonics)
+        clock = origin_angle(known, walker.markers)
+        coefficients.append(shift_origin(known, clock).reshape(2 * n_harmonics, -1))
+        clocks.append(clock)
+    return np.stack(coefficients), np.array(clocks)
+
+
+def _movement(walker: Walker, n_harmonics: int) -> np.ndarray:
+    """Fourier coefficients of a walker on its own clock.
+
+    For a walker as it was decomposed they are regressed on its capture, which holds whole planes
+    even where components mix harmonics (A5); for any other they are what it plays.
+    """
+    fit = walker.fit
+    as_decomposed = fit is not None and np.array_equal(walker.p, fit.eigenpostures)
+    if fit is not None and as_decomposed and len(fit.fourier) == 2 * n_harmonics:
+        return fit.fourier
+    return fourier_coefficients(walker, n_harmonics)
+
+
+def _on_later_clocks(coefficients: np.ndarray, later: np.ndarray) -> np.ndarray:
+    return np.stack(
+        [shift_origin(each, angle) for each, angle in zip(coefficients, later, strict=True)]
+    )
+
+
+def _average_axes(coefficients: np.ndarray, walker: Walker) -> Reference:
+    """Principal axes of the average walker at each harmonic.
+
+    The second of each pair leads the first by a quarter cycle, as phi_2 and phi_4 - phi_3 do in the
+    paper (J43).
+    """
+    average = coefficients.mean(axis=0)
+    axes = []
+    for harmonic, pair in enumerate(average.reshape(-1, 2, average.shape[-1])):
+        scores, _, unit = np.linalg.svd(pair, full_matrices=False)
+        anatomy = walker.markers if harmonic == 0 else ()
+        turn = -1 if is_negative(unit[0].reshape(-1, 3), anatomy) else 1
+        axes.append(np.stack([turn * unit[0], turn * np.linalg.det(scores) * unit[1]]))
+    return Reference(np.stack(axes), average, walker.form, walker.markers)
+
+
+def _align(coefficients: np.ndarray, reference: Reference) -> tuple[_Aligned, np.ndarray]:
+    """Postures of all walkers turned towards the average's, and the later clocks they ask for."""
+    if reference.form == "fourier":
+        towards = reference.average[:2]
+        later = np.where(np.einsum("whf,hf->w", coefficients[:, :2], towards) < 0, np.pi, 0.0)
+        postures = _on_later_clocks(coefficients, later)
+        phases = np.tile([0.0, np.pi / 2], (len(postures), len(reference.axes)))
+        return _Aligned(postures, phases, _cosines(postures, reference.average)), later
+    unit, scores = _turn_axes(coefficients, reference.axes)
+    amplitudes = np.linalg.norm(scores, axis=-2).reshape(len(coefficients), -1)
+    phases = np.arctan2(scores[..., 1, :], scores[..., 0, :]).reshape(len(coefficients), -1)
+    postures = amplitudes[..., None] * unit.reshape(len(coefficients), -1, unit.shape[-1])
+    later = -phases[:, 0]
+    harmonics = np.repeat(np.arange(1, len(reference.axes) + 1), 2)
+    phases = wrap_phase(phases + harmonics * later[:, None])
+    similarity = _cosines(postures, reference.axes.reshape(-1, unit.shape[-1]))
+    return _Aligned(postures, phases, similarity), later
+
+
+def _turn_axes(coefficients: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Each walker's unit eigenpostures, turned within their planes towards the average's.
+
+    Returns arrays of shape (walker, harmonic, 2, feature) and, the scores that go with them,
+    (walker, harmonic, 2 of sin and cos, 2).
+    """
+    pairs = coefficients.reshape(len(coefficients), -1, 2, coefficients.shape[-1])
+    scores, amplitude, unit = np.linalg.svd(pairs, full_matrices=False)
+    # Orthogonal Procrustes: the turn of the axes that brings them nearest to the average's.
+    left, _, right = np.linalg.svd(unit @ np.swapaxes(axes, -1, -2))
+    turn = np.swapaxes(left @ right, -1, -2)
+    return turn @ unit, (scores * amplitude[..., None, :]) @ np.swapaxes(turn, -1, -2)
+
+
+def _cosines(postures: np.ndarray, others: np.ndarray) -> np.ndarray:
+    lengths = np.linalg.norm(postures, axis=-1) * np.linalg.norm(others, axis=-1)
+    products = np.einsum("wcf,cf->wc", postures, others)
+    return products / np.where(lengths > 0, lengths, np.inf)
+
+
+def _flags(aligned: _Aligned, reference: Reference) -> tuple[str, ...]:
+    """Why correspondence does not hold for each walker; empty where it does."""
+    power = (aligned.postures**2).sum(axis=-1)
+    counts = power > MIN_SHARE * power.sum(axis=1, keepdims=True)
+    similarity = np.where(counts, aligned.similarity, 1.0)
+    name = "eigenposture" if reference.form == "eigenposture" else "Fourier posture"
+    return tuple(
+        ""
+        if row.min() >= MIN_SIMILARITY
+        else f"No correspondence: {name} {row.argmin() + 1} and the average walker's have a cosine "
+        f"of only {row.min():.2f}."
+        for row in similarity
+    )
+
+
+def _replaced(walker: Walker, aligned: _Aligned, number: int, clock: float) -> Walker:
+    """Return the walker with its postures in correspondence, its clock moved by an angle."""
+    n_components = aligned.postures.shape[1]
+    later_s = wrap_phase(np.array(clock)) / (2 * np.pi * walker.frequency_hz)
+    fit = walker.fit
+    if fit is not None:
+        fit = replace(fit, fourier=shift_origin(fit.fourier, clock))
+    return replace(
+        walker,
+        p=aligned.postures[number].reshape(n_components, -1, 3),
+        harmonics=np.repeat(np.arange(1, n_components // 2 + 1), 2),
+        phases=aligned.phases[number],
+        time_origin_s=walker.time_origin_s + float(later_s),
+        fit=fit,
+    )

@@ -1,0 +1,428 @@
+"""Walkers with their traits, in correspondence: the rows of a table of features (J11 to J13)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from html import escape
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker_svg import beside, html_table
+from eigenwalker.gait.heading import stance_speed
+from eigenwalker.population.correspondence import (
+    Correspondence,
+    correspond,
+    correspond_to,
+    matched_by_sign_and_order,
+    posture_correlations,
+)
+from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
+from eigenwalker.population.population_file import read_population, write_population
+
+FLAG = "flag"
+"""Column of the traits that says why a walker is left out of averages and curves; empty if not."""
+MOST_SHOWN = 12
+"""Traits that a notebook tells of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Walkers and what is known of them.
+
+    Making a population brings its walkers into correspondence (A4 to A6), which needs no traits and
+    is done once; a walker for which that fails is flagged. Flagged walkers stay, but shape no
+    average.
+
+    Parameters
+    ----------
+    walkers : sequence of Walker
+        All of the same markers, form and number of harmonics.
+    traits : DataFrame of shape (walker, trait)
+        What is known of each walker: sex, age, ratings, file ... A column ``flag`` says why a
+        walker should be left out, a column ``person`` whose trial it is.
+    correspondence : Correspondence, optional
+        How walkers that are in correspondence already were brought there; leave it out for others.
+    provenance : mapping of str to str
+        Where the walkers come from: kept with the file and shown in reports.
+
+    Raises
+    ------
+    ValueError
+        If the walkers cannot be compared, or there is not one row of traits for each.
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> people.X.shape
+    (40, 229)
+    >>> tall = people.select(people.traits["height_mm"] > 1700)
+    >>> strange = people.walker(3 * people.X[0] - 2 * people.X[1])
+
+    """
+
+    walkers: Sequence[Walker]
+    traits: pd.DataFrame
+    correspondence: Correspondence | None = None
+    provenance: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        walkers, traits = tuple(self.walkers), pd.DataFrame(self.traits).reset_index(drop=True)
+        if len(walkers) != len(traits):
+            raise ValueError(
+                f"There are {len(walkers)} walkers and {len(traits)} rows of traits; "
+                "give one row for each walker, in the same order."
+            )
+        flags = flags_of(traits)
+        if self.correspondence is None:
+            walkers, correspondence = correspond(walkers, leave_out=[flag != "" for flag in flags])
+            object.__setattr__(self, "correspondence", correspondence)
+            flags = joined_flags(flags, correspondence.flags)
+        object.__setattr__(self, "walkers", walkers)
+        object.__setattr__(self, "traits", traits.assign(**{FLAG: flags}))
+        object.__setattr__(self, "provenance", dict(self.provenance))
+
+    def __repr__(self) -> str:
+        traits = ", ".join(str(name) for name in self.traits if name != FLAG)
+        return (
+            f"Population({len(self)} walkers, {self.flagged.sum()} flagged, "
+            f"{len(self.feature_names)} features; traits: {traits})"
+        )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the average walker, and what is known of all of them."""
+        named = self.traits.drop(columns=FLAG)
+        rows = [
+            [escape(str(name)), escape(_summary(named[name])), str(int(named[name].notna().sum()))]
+            for name in list(named)[:MOST_SHOWN]
+        ]
+        if len(named.columns) > MOST_SHOWN:
+            rows.append([f"and {len(named.columns) - MOST_SHOWN} more", "", ""])
+        flagged = f", {self.flagged.sum()} flagged" if self.flagged.any() else ""
+        title = f"Population of {len(self)} walkers{flagged}, {len(self.feature_names)} features"
+        head = [["<i>trait</i>", "<i>values</i>", "<i>known of</i>"]] if rows else []
+        drawing = self.layout.walker(self.average).moving_svg()
+        return beside(drawing, html_table([*head, *rows], title=title))
+
+    def __len__(self) -> int:
+        return len(self.walkers)
+
+    @property
+    def layout(self) -> FeatureLayout:
+        """Which number of a feature vector is what."""
+        return FeatureLayout.of(self.walkers[0])
+
+    @property
+    def feature_names(self) -> tuple[str, ...]:
+        """Names of the columns of `X`."""
+        return self.layout.names
+
+    @property
+    def flagged(self) -> np.ndarray:
+        """Which walkers averages and curves leave out: array of bool of shape (walker,)."""
+        return (self.traits[FLAG] != "").to_numpy()
+
+    @cached_property
+    def X(self) -> np.ndarray:  # noqa: N802 - the name that scikit-learn gives such a table
+        """Features: array of shape (walker, feature), in mm, Hz and radians.
+
+        Phases are unwrapped around their circular mean, so that they can be averaged (A6).
+        """
+        table = np.stack([self.layout.vector(walker) for walker in self.walkers])
+        return _read_only(self._unwrapped(table))
+
+    @cached_property
+    def average(self) -> np.ndarray:
+        """The average walker as a vector (w_0 of eq. 5): array of shape (feature,)."""
+        return _read_only(self.X[self._trusted].mean(axis=0))
+
+    @cached_property
+    def sizes(self) -> np.ndarray:
+        """Size of each walker beside the average one (eq. 12, J25): array of shape (walker,).
+
+        The least-squares s_j in ``p_j0 = s_j * mean(p_0)``, positions taken from the point of the
+        floor below the pelvis (A15).
+        """
+        postures = self.part("p0")
+        mean = postures[self._trusted].mean(axis=0)
+        return _read_only(postures @ mean / (mean @ mean))
+
+    def part(self, name: str) -> np.ndarray:
+        """Return some of the features of all walkers, to train a classifier on (J18).
+
+        Parameters
+        ----------
+        name : str
+            ``"all"``, ``"structure"`` (p0), ``"dynamics"`` (p1, p2, ..., phases, frequency),
+            ``"p1"``, ``"p1+p2+p3"``, ``"phases"``, ``"frequency"``, or ``"size"``, which is no
+            feature but the s_j of eq. 12.
+
+        Returns
+        -------
+        array of shape (walker, feature)
+
+        Examples
+        --------
+        >>> people = ew.load_population()
+        >>> people.part("structure").shape, people.part("p1+p2").shape, people.part("size").shape
+        ((40, 45), (40, 90), (40, 1))
+
+        """
+        if name == "size":
+            return self.sizes[:, None]
+        return self.X[:, self.layout.columns(name)]
+
+    def walker(self, vector: np.ndarray) -> Walker:
+        """Return the walker that any point of the feature space describes (J29).
+
+        Parameters
+        ----------
+        vector : array of shape (feature,)
+            Such as ``people.average + 6 * direction``.
+
+        Returns
+        -------
+        Walker
+            Its speed is that of its own feet on the ground.
+
+        Raises
+        ------
+        ValueError
+            If the vector does not describe anything that could walk.
+
+        Examples
+        --------
+        >>> people = ew.load_population()
+        >>> between = people.walker((people.X[0] + people.X[1]) / 2)
+        >>> slower, faster = sorted(walker.frequency_hz for walker in people.walkers[:2])
+        >>> slower < between.frequency_hz < faster
+        True
+
+        """
+        walker = self.layout.walker(vector)
+        return replace(walker, speed_mm_s=_speed(walker))
+
+    def vector(self, walker: Walker) -> np.ndarray:
+        """Return any walker as a point of this population's feature space.
+
+        The walker is brought into correspondence with the population first, so it can be one's own
+        (W7).
+
+        Returns
+        -------
+        array of shape (feature,)
+
+        """
+        together, _, flag = correspond_to(walker, self._correspondence.reference)
+        if flag:
+            raise ValueError(f"This walker cannot be compared with the population: {flag}")
+        return self._unwrapped(self.layout.vector(together)[None])[0]
+
+    def hybrid(self, *, structure: np.ndarray, dynamics: np.ndarray) -> np.ndarray:
+        """Return the structure of one walker with the dynamics of another (J35).
+
+        The papers' stimuli have size divided out first (A17), ``people.size_normalised()``, and an
+        average is the mean of walkers where the paper prints their sum (A16).
+
+        Parameters
+        ----------
+        structure, dynamics : array of shape (feature,)
+            Vectors of the two walkers; either may be ``people.average``.
+
+        Returns
+        -------
+        array of shape (feature,)
+
+        Examples
+        --------
+        The body of the first walker, moving as walkers do on average:
+
+        >>> people = ew.load_population().size_normalised()
+        >>> mixed = people.walker(people.hybrid(structure=people.X[0], dynamics=people.average))
+        >>> bool((mixed.p0 == people.walkers[0].p0).all())
+        True
+
+        """
+        columns = self.layout.columns("structure")
+        mixed = np.array(dynamics, dtype=float)
+        mixed[columns] = np.asarray(structure)[columns]
+        return mixed
+
+    def size_normalised(self) -> Population:
+        """Return the population with the size of each walker divided out (J25).
+
+        Mean postures, eigenpostures and speed are divided by s_j, frequency and phases are not.
+        Correspondence stays as it is.
+        """
+        walkers = tuple(
+            replace(
+                walker,
+                p0=walker.p0 / size,
+                p=walker.p / size,
+                speed_mm_s=walker.speed_mm_s / size,
+            )
+            for walker, size in zip(self.walkers, self.sizes, strict=True)
+        )
+        return replace(self, walkers=walkers)
+
+    def select(self, keep: Sequence[bool] | Sequence[int] | pd.Series | np.ndarray) -> Population:
+        """Return some of the walkers, by a mask or by their numbers; correspondence stays."""
+        numbers = np.arange(len(self))[np.asarray(keep)]
+        if not len(numbers):
+            raise ValueError("No walker is left; a population needs one or more.")
+        found = self._correspondence
+        return replace(
+            self,
+            walkers=tuple(self.walkers[number] for number in numbers),
+            traits=self.traits.iloc[numbers],
+            correspondence=replace(
+                found,
+                similarity=found.similarity[numbers],
+                flags=tuple(found.flags[number] for number in numbers),
+            ),
+        )
+
+    def drop(self, numbers: Iterable[int]) -> Population:
+        """Return the population without the walkers of these numbers."""
+        return self.select(np.setdiff1d(np.arange(len(self)), list(numbers)))
+
+    def unflagged(self) -> Population:
+        """Return the population without flagged walkers."""
+        return self.select(~self.flagged)
+
+    def trusting_all(self) -> Population:
+        """Return the population with its flags taken off, so that flagged walkers count too."""
+        return replace(self, traits=self.traits.assign(**{FLAG: ""}))
+
+    def add(self, walkers: Sequence[Walker], traits: pd.DataFrame) -> Population:
+        """Return the population with more walkers, brought into correspondence with those here.
+
+        The numbers of the walkers that are here do not change.
+        """
+        if not walkers:
+            return self
+        found = self._correspondence
+        joined = [correspond_to(walker, found.reference) for walker in walkers]
+        traits = pd.DataFrame(traits).reset_index(drop=True)
+        if len(traits) != len(joined):
+            raise ValueError(f"There are {len(joined)} walkers and {len(traits)} rows of traits.")
+        flags = joined_flags(flags_of(traits), [flag for _, _, flag in joined])
+        newcomers = np.stack([similarity for _, similarity, _ in joined])
+        return replace(
+            self,
+            walkers=(*self.walkers, *(walker for walker, _, _ in joined)),
+            traits=pd.concat([self.traits, traits.assign(**{FLAG: flags})], ignore_index=True),
+            correspondence=replace(
+                found,
+                similarity=np.concatenate([found.similarity, newcomers]),
+                flags=(*found.flags, *(flag for _, _, flag in joined)),
+            ),
+        )
+
+    def posture_correlations(self) -> pd.DataFrame:
+        """Return how alike the postures of all pairs of walkers are (J12).
+
+        Returns
+        -------
+        DataFrame of shape (posture, 2)
+            Mean correlation over all pairs of unflagged walkers: of eigenpostures as found, with
+            only sign and order made to agree (as the paper's), and in correspondence.
+
+        """
+        walkers = [w for w, kept in zip(self.walkers, self._trusted, strict=True) if kept]
+        mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
+        as_found = posture_correlations(matched_by_sign_and_order(walkers))
+        together = posture_correlations(np.stack([walker.p for walker in walkers]))
+        return pd.DataFrame(
+            {
+                "sign and order": np.concatenate([mean, as_found]),
+                "in correspondence": np.concatenate([mean, together]),
+            },
+            index=[f"p{i}" for i in range(len(as_found) + 1)],
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the population to one self-describing NetCDF file."""
+        write_population(
+            Path(path), self.walkers, self.traits, self._correspondence, self.provenance
+        )
+
+    @classmethod
+    def load(cls, path: str | Path) -> Population:
+        """Return the population that `save` wrote.
+
+        Raises
+        ------
+        UnreadableFile
+            If the file holds no population or is damaged.
+
+        """
+        return cls(*read_population(Path(path)))
+
+    @property
+    def _correspondence(self) -> Correspondence:
+        assert self.correspondence is not None
+        return self.correspondence
+
+    @cached_property
+    def _trusted(self) -> np.ndarray:
+        return ~self.flagged if not self.flagged.all() else np.ones(len(self), dtype=bool)
+
+    @cached_property
+    def _phase_centre(self) -> np.ndarray:
+        phases = np.stack([walker.phases[1:] for walker in self.walkers])
+        return circular_mean(phases[self._trusted])
+
+    def _unwrapped(self, table: np.ndarray) -> np.ndarray:
+        if self.layout.form == "eigenposture":
+            columns = self.layout.columns("phases")
+            table[:, columns] = wrap_phase(table[:, columns], around=self._phase_centre)
+        return table
+
+
+def _summary(values: pd.Series) -> str:
+    """Values of a trait in a few words."""
+    known = values.dropna()
+    if pd.api.types.is_numeric_dtype(known) and not pd.api.types.is_bool_dtype(known):
+        if known.empty:
+            return ""
+        return f"{known.min():.4g} to {known.max():.4g}, mean {known.mean():.4g}"
+    counts = known.astype(str).value_counts()
+    said = ", ".join(f"{count} {str(value)[:40]}" for value, count in counts.head(4).items())
+    return said + (f", {len(counts) - 4} others" if len(counts) > 4 else "")
+
+
+def _read_only(values: np.ndarray) -> np.ndarray:
+    values.flags.writeable = False
+    return values
+
+
+def flags_of(traits: pd.DataFrame) -> list[str]:
+    """Return the flag of each row of traits, empty where there is none."""
+    flags = traits.get(FLAG, pd.Series("", index=traits.index))
+    return flags.fillna("").astype(str).tolist()
+
+
+def joined_flags(*flags: Iterable[str]) -> list[str]:
+    """Return all that several sources say of each walker, in one line a walker."""
+    return [" ".join(said for said in each if said) for each in zip(*flags, strict=True)]
+
+
+def _speed(walker: Walker) -> float:
+    """Speed of the feet on the ground, NaN for a body without ankles."""
+    if not {"left_ankle", "right_ankle"} <= set(walker.markers):
+        return float("nan")
+    return stance_speed(walker.trajectories(np.linspace(0, 2 * walker.period_s, 200)))
+
+
+def names_of(population: Population) -> list[str]:
+    """Return what to call each walker: its file, or its number in the population."""
+    numbers = [f"walker {row}" for row in range(len(population))]
+    if "file" not in population.traits:
+        return numbers
+    files = population.traits["file"].fillna("").astype(str)
+    return [file or number for file, number in zip(files, numbers, strict=True)]

@@ -1,0 +1,252 @@
+"""A population as one self-describing NetCDF file.
+
+Dimensions are ``walker, component, marker, axis``; every number has its unit beside it, and the
+file says its version, so that other programs can read it without this one. Nothing in it is code.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from eigenwalker._version import __version__
+from eigenwalker.core.trajectories import AXES
+from eigenwalker.core.walker import CaptureFit, Walker
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.file_types import kind_of
+from eigenwalker.io.readers.netcdf import dataset_of, looks_like_netcdf
+from eigenwalker.io.sniff import content_of
+from eigenwalker.population.correspondence import Correspondence, Reference
+
+FORMAT = "eigenwalker population"
+VERSION = 1
+_EXPECTED = "a population file"
+_MAKE = "make one with 'eigenwalker fit' or Population.save"
+_UNITS = {
+    "p0": "mm",
+    "p": "mm",
+    "phases": "rad",
+    "frequency_hz": "Hz",
+    "speed_mm_s": "mm/s",
+    "time_origin_s": "s",
+}
+_FIT_DIMS = {
+    "variance_share": ("walker", "share"),
+    "sine_r2": ("walker", "component"),
+    "fourier": ("walker", "coefficient", "marker", "axis"),
+    "eigenpostures": ("walker", "component", "marker", "axis"),
+    "harmonics": ("walker", "component"),
+    "phases": ("walker", "component"),
+}
+
+
+class Stored(NamedTuple):
+    """What a population file holds."""
+
+    walkers: tuple[Walker, ...]
+    traits: pd.DataFrame
+    correspondence: Correspondence
+    provenance: dict[str, str]
+
+
+def write_population(
+    path: Path,
+    walkers: Sequence[Walker],
+    traits: pd.DataFrame,
+    correspondence: Correspondence,
+    provenance: Mapping[str, str],
+) -> None:
+    """Write walkers in correspondence, with their traits, to a NetCDF file.
+
+    The file appears whole or not at all.
+    """
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"There is no folder {path.parent} to write {path.name} into.")
+    dataset = _dataset(walkers, traits, correspondence)
+    dataset.attrs = {
+        "format": FORMAT,
+        "format_version": VERSION,
+        "program": f"eigenwalker {__version__}",
+        "form": walkers[0].form,
+        "provenance": json.dumps(dict(provenance)),
+    }
+    handle, unfinished = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".nc")
+    os.close(handle)
+    try:
+        dataset.to_netcdf(unfinished, engine="scipy", format="NETCDF3_64BIT")
+        os.chmod(unfinished, 0o666 & ~_umask())
+        os.replace(unfinished, path)
+    finally:
+        Path(unfinished).unlink(missing_ok=True)
+
+
+def looks_like_population(path: Path) -> bool:
+    """Return whether a file is meant as a population."""
+    with path.open("rb") as file:
+        beginning = file.read(100_000)
+    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
+
+
+def read_population(path: Path) -> Stored:
+    """Read what `write_population` wrote.
+
+    Raises
+    ------
+    UnreadableFile
+        If the file is none of ours, is damaged, or comes from a newer version.
+
+    """
+    content = content_of(path, expected=_EXPECTED)
+    if not looks_like_netcdf(content):
+        raise UnreadableFile(path.name, _EXPECTED, kind_of(content), _MAKE)
+    dataset = dataset_of(content, path.name, expected=_EXPECTED)
+    if str(dataset.attrs.get("format")) != FORMAT:
+        came = "a NetCDF file that holds no walkers of eigenwalker"
+        raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
+    if str(version := dataset.attrs.get("format_version")) != str(VERSION):
+        raise UnreadableFile(
+            path.name,
+            f"version {VERSION} of the format",
+            f"version {version}",
+            "update eigenwalker",
+        )
+    try:
+        return _stored(dataset)
+    except (KeyError, ValueError, TypeError, IndexError) as error:
+        raise UnreadableFile(
+            path.name, _EXPECTED, f"a damaged one ({error})", "make or copy it again"
+        ) from error
+
+
+def _dataset(
+    walkers: Sequence[Walker], traits: pd.DataFrame, correspondence: Correspondence
+) -> xr.Dataset:
+    first = walkers[0]
+    dims = {
+        "p0": ("walker", "marker", "axis"),
+        "p": ("walker", "component", "marker", "axis"),
+        "phases": ("walker", "component"),
+        "frequency_hz": ("walker",),
+        "speed_mm_s": ("walker",),
+        "time_origin_s": ("walker",),
+    }
+    variables: dict[str, tuple] = {
+        name: (dim, np.stack([getattr(walker, name) for walker in walkers]), {"units": unit})
+        for (name, dim), unit in zip(dims.items(), _UNITS.values(), strict=True)
+    }
+    if all(walker.fit is not None for walker in walkers):
+        for entry in fields(CaptureFit):
+            stacked = np.stack([np.asarray(getattr(walker.fit, entry.name)) for walker in walkers])
+            variables[f"fit_{entry.name}"] = (_FIT_DIMS.get(entry.name, ("walker",)), stacked)
+    for number, name in enumerate(traits):
+        variables[f"trait_{number}"] = ("walker", _storable(traits[name]), {"trait": str(name)})
+    found = correspondence
+    variables["similarity"] = (("walker", "component"), found.similarity)
+    variables["correspondence_flag"] = ("walker", np.array(found.flags, dtype=object))
+    variables["reference_axes"] = (("harmonic", "pair", "feature"), found.reference.axes)
+    variables["reference_average"] = (("coefficient", "feature"), found.reference.average)
+    coords = {
+        "marker": list(first.markers),
+        "axis": list(AXES),
+        "harmonics": ("component", first.harmonics),
+    }
+    return xr.Dataset(variables, coords)
+
+
+def _storable(column: pd.Series) -> np.ndarray:
+    if pd.api.types.is_bool_dtype(column) or not pd.api.types.is_numeric_dtype(column):
+        return column.astype(object).where(column.notna(), "").astype(str).to_numpy(dtype=object)
+    whole = pd.api.types.is_integer_dtype(column) and not column.isna().any()
+    small = whole and column.abs().max() < 2**31
+    return column.to_numpy(dtype="int32" if small else float)
+
+
+def _stored(dataset: xr.Dataset) -> Stored:
+    if not dataset.sizes["walker"]:
+        raise ValueError("no walkers")
+    markers = tuple(str(name) for name in dataset["marker"].values)
+    harmonics = dataset["harmonics"].values
+    form = dataset.attrs["form"]
+    _check_layout(dataset, markers, harmonics, form)
+    arrays = {name: dataset[name].values for name in _UNITS}
+    fits = _fits(dataset) if "fit_r2" in dataset else [None] * dataset.sizes["walker"]
+    walkers = tuple(
+        Walker(
+            markers=markers,
+            harmonics=harmonics,
+            form=form,
+            fit=fits[number],
+            **{name: values[number] for name, values in arrays.items()},
+        )
+        for number in range(dataset.sizes["walker"])
+    )
+    traits = pd.DataFrame(
+        {
+            str(dataset[f"trait_{number}"].attrs["trait"]): dataset[f"trait_{number}"].values
+            for number in range(sum(str(name).startswith("trait_") for name in dataset))
+        }
+    )
+    reference = Reference(
+        dataset["reference_axes"].values, dataset["reference_average"].values, form, markers
+    )
+    flags = tuple(str(flag) for flag in dataset["correspondence_flag"].values)
+    provenance = json.loads(dataset.attrs["provenance"])
+    return Stored(
+        walkers,
+        traits,
+        Correspondence(reference, dataset["similarity"].values, flags),
+        {str(key): str(value) for key, value in dict(provenance).items()},
+    )
+
+
+def _check_layout(
+    dataset: xr.Dataset, markers: tuple[str, ...], harmonics: np.ndarray, form: str
+) -> None:
+    """Refuse a file whose parts do not fit each other, before anything is made of them."""
+    n_harmonics, odd = divmod(len(harmonics), 2)
+    if odd or harmonics.tolist() != np.repeat(np.arange(1, n_harmonics + 1), 2).tolist():
+        raise ValueError(f"harmonics {harmonics.tolist()[:8]} are not 1, 1, 2, 2, ...")
+    n_features = len(markers) * len(AXES)
+    for name, shape in (
+        ("reference_axes", (n_harmonics, 2, n_features)),
+        ("reference_average", (2 * n_harmonics, n_features)),
+    ):
+        if dataset[name].shape != shape:
+            raise ValueError(f"{name} has shape {dataset[name].shape}, not {shape}")
+    numbers = ["reference_axes", "reference_average", "similarity"]
+    numbers += [name for name in map(str, dataset) if name.startswith("fit_")]
+    for name in numbers:
+        if not np.isfinite(dataset[name].values).all():
+            raise ValueError(f"{name} holds what is no number")
+    if form == "eigenposture" and np.any(dataset["phases"].values[:, 0] != 0):
+        raise ValueError("the first phase of a walker is not 0")
+    traits = [dataset[name].attrs.get("trait") for name in map(str, dataset) if "trait_" in name]
+    if len(set(traits)) < len(traits):
+        raise ValueError("two traits have one name")
+
+
+def _fits(dataset: xr.Dataset) -> list[CaptureFit]:
+    names = [entry.name for entry in fields(CaptureFit)]
+    columns = {name: dataset[f"fit_{name}"].values for name in names}
+    columns = {
+        name: column.tolist() if column.ndim == 1 else column for name, column in columns.items()
+    }
+    return [
+        CaptureFit(**{name: column[number] for name, column in columns.items()})
+        for number in range(dataset.sizes["walker"])
+    ]
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,250 @@
+"""What so many answers can tell: intervals of the weights, and how well any metric could do."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit
+
+LEAST_PAIRS = 3
+"""Different pairs of walkers that a sample needs, to tell anything of weights."""
+_MOST_DRAWS = 50
+
+
+class Bootstrap(NamedTuple):
+    """Weights and constants fitted to resampled observers, one row a sample."""
+
+    weights: np.ndarray
+    constants: np.ndarray
+
+    @property
+    def relative_weights(self) -> np.ndarray:
+        """Weights divided by their sum, of shape (sample, group); 0 where all are."""
+        total = self.weights.sum(axis=1, keepdims=True)
+        return np.divide(self.weights, total, out=np.zeros_like(self.weights), where=total > 0)
+
+    def intervals(self, names: ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
+        """Return for each group the weight, relative too, that so many samples lie about.
+
+        A percentile interval of a weight near 0 begins at 0: no weight can be less.
+
+        Parameters
+        ----------
+        names : sequence of str
+            The groups.
+        level : float
+            Share of the samples within.
+
+        Returns
+        -------
+        DataFrame
+            Rows are groups; columns ``low``, ``high``, ``relative_low``, ``relative_high``, and
+            ``share_zero``, the share of samples in which the group weighs nothing.
+
+        """
+        tails = [(1 - level) / 2, (1 + level) / 2]
+        low, high = np.quantile(self.weights, tails, axis=0)
+        relative_low, relative_high = np.quantile(self.relative_weights, tails, axis=0)
+        return pd.DataFrame(
+            {
+                "low": low,
+                "high": high,
+                "relative_low": relative_low,
+                "relative_high": relative_high,
+                "share_zero": (self.weights == 0).mean(axis=0),
+            },
+            index=pd.Index(np.asarray(names), name="group"),
+        )
+
+
+def bootstrap_weights(
+    X: ArrayLike,
+    chosen: ArrayLike,
+    shown: ArrayLike,
+    *,
+    pairs: Sequence[tuple[object, object]] | None = None,
+    n_samples: int = 1000,
+    seed: int = 0,
+) -> Bootstrap:
+    """Return weights fitted anew to observers, and walkers, drawn with replacement.
+
+    Observers are drawn rather than answers, since those of one observer belong together; walkers
+    rather than pairs, for the same reason. With walkers the intervals are wider: they then tell
+    what might have come out with other walkers too, and where the metric does not quite fit.
+
+    Neither is calibrated. A walker drawn twice makes pairs count four times, so with walkers the
+    samples spread wider than studies do that are repeated, by about a half; with observers alone
+    they spread less than half as much as repeated studies with other walkers.
+
+    Parameters
+    ----------
+    X : array of shape (pair, group)
+        Mean F(d_k), as `PerceptualMetric` takes it.
+    chosen, shown : array of shape (observer, pair)
+        How often each observer chose a pair as the most similar, and was shown it.
+    pairs : sequence of pairs, optional
+        The two walkers of each pair; left out, walkers stay as they are.
+    n_samples : int
+        How often to draw.
+    seed : int
+        The same seed draws the same.
+
+    Returns
+    -------
+    Bootstrap
+        Pairs that the observers drawn were never shown are left out of that sample; samples of
+        fewer than `LEAST_PAIRS` different pairs are drawn anew.
+
+    Raises
+    ------
+    ValueError
+        If counts cannot be, or there are too few walkers or pairs to draw from.
+
+    Examples
+    --------
+    >>> X = np.array([[0.0], [1.0], [2.0]])
+    >>> shown = np.full((5, 3), 10)
+    >>> fitted = bootstrap_weights(X, [[6, 4, 2]] * 5, shown, n_samples=10)
+    >>> fitted.intervals(["calf"])[["low", "high"]].round(6).values.tolist()
+    [[0.2, 0.2]]
+
+    """
+    X, chosen, shown = (np.asarray(each, dtype=float) for each in (X, chosen, shown))
+    _check_counts(chosen, shown, n_pairs=len(X))
+    rng = np.random.default_rng(seed)
+    fits: list[Weights] = []
+    for _ in range(_MOST_DRAWS):
+        times = times_drawn(rng, len(shown), n_samples)
+        differences = difference(times @ chosen, times @ shown)
+        counts = np.ones_like(differences)
+        if pairs is not None:
+            counts = _counts_of_pairs(pairs, rng, n_samples)
+        for y, count in zip(differences, counts, strict=True):
+            kept = np.isfinite(y) & (count > 0)
+            if kept.sum() >= LEAST_PAIRS and len(fits) < n_samples:
+                fits.append(non_negative_fit(X[kept], y[kept], sample_weight=count[kept]))
+        if len(fits) == n_samples:
+            break
+    else:
+        raise ValueError(
+            f"Only {len(fits)} of {_MOST_DRAWS * n_samples} samples hold {LEAST_PAIRS} different "
+            f"pairs, of {len(X)} pairs; four walkers or more, each shown with each, are needed."
+        )
+    return Bootstrap(
+        np.array([fit.weights for fit in fits]), np.array([fit.constant for fit in fits])
+    )
+
+
+def times_drawn(rng: np.random.Generator, n: int, n_samples: int) -> np.ndarray:
+    """Return how often each of n is among n drawn with replacement, (sample, n)."""
+    return rng.multinomial(n, np.full(n, 1 / n), size=n_samples)
+
+
+def _counts_of_pairs(
+    pairs: Sequence[tuple[object, object]], rng: np.random.Generator, n_samples: int
+) -> np.ndarray:
+    """Return how often each pair of two different walkers is among those drawn, (sample, pair)."""
+    walkers, at = np.unique([[str(end) for end in pair] for pair in pairs], return_inverse=True)
+    times = times_drawn(rng, len(walkers), n_samples)
+    first, second = at.reshape(-1, 2).T
+    return (times[:, first] * times[:, second]).astype(float)
+
+
+class Reliability(NamedTuple):
+    """How well halves of the observers agree, all of them, and the best a fit to them can do."""
+
+    halves: float
+    whole: float
+    ceiling: float
+
+
+def split_half(
+    chosen: ArrayLike, shown: ArrayLike, *, n_splits: int = 200, seed: int = 0
+) -> Reliability:
+    """Return how reliable a table of differences is, and the noise ceiling of a metric.
+
+    Observers are split into random halves and the tables of the halves correlated over pairs; the
+    mean correlation r is that of half the data. All observers together would agree with as many
+    others by 2 r / (1 + r) (Spearman and Brown), or not at all where r is below 0. Since half of
+    that unreliability is not the metric's to explain, even the true differences correlate with the
+    table by its square root only. What is expected of choices, knowing what else each trial showed
+    (`expected_differences`), can come nearer.
+
+    Parameters
+    ----------
+    chosen, shown : array of shape (observer, pair)
+        How often each observer chose a pair as the most similar, and was shown it.
+    n_splits : int
+        Random splits.
+    seed : int
+        The same seed splits alike.
+
+    Returns
+    -------
+    Reliability
+        Correlations: ``halves`` (r), ``whole``, and ``ceiling``, which are 0 where halves do not
+        agree at all; NaN, with a warning, where halves have no differences that could be
+        correlated.
+
+    Examples
+    --------
+    Four observers who are of one mind:
+
+    >>> shown = np.full((4, 3), 10)
+    >>> round(split_half([[6, 4, 2]] * 4, shown, n_splits=5).ceiling, 6)
+    1.0
+
+    """
+    chosen, shown = np.asarray(chosen, dtype=float), np.asarray(shown, dtype=float)
+    _check_counts(chosen, shown)
+    rng = np.random.default_rng(seed)
+    half = len(shown) // 2
+    agreement = []
+    for _ in range(n_splits):
+        order = rng.permutation(len(shown))
+        first, second = (
+            difference(chosen[part].sum(axis=0), shown[part].sum(axis=0))
+            for part in (order[:half], order[half : 2 * half])
+        )
+        both = np.isfinite(first) & np.isfinite(second)
+        if both.sum() >= LEAST_PAIRS and np.ptp(first[both]) > 0 and np.ptp(second[both]) > 0:
+            agreement.append(np.corrcoef(first[both], second[both])[0, 1])
+    if not agreement:
+        warnings.warn(
+            f"How far halves of the {len(shown)} observers agree cannot be told: no two halves saw "
+            f"{LEAST_PAIRS} pairs alike, of which they chose some more often than others.",
+            stacklevel=2,
+        )
+        return Reliability(np.nan, np.nan, np.nan)
+    halves = float(np.mean(agreement))
+    agreeing = max(halves, 0.0)
+    whole = 2 * agreeing / (1 + agreeing)
+    return Reliability(halves, whole, float(np.sqrt(whole)))
+
+
+def difference(chosen: np.ndarray, shown: np.ndarray) -> np.ndarray:
+    """Return the share of times that pairs were shown and not chosen (P6); NaN if never shown."""
+    never = np.full(np.shape(shown), np.nan)
+    return 1 - np.divide(chosen, shown, out=never, where=np.asarray(shown) > 0)
+
+
+def _check_counts(chosen: np.ndarray, shown: np.ndarray, n_pairs: int | None = None) -> None:
+    amiss = []
+    if chosen.ndim != 2 or chosen.shape != shown.shape:
+        amiss.append(f"chosen has shape {chosen.shape} and shown {shown.shape}")
+    elif not (np.isfinite(chosen) & np.isfinite(shown) & (chosen >= 0) & (chosen <= shown)).all():
+        amiss.append("some pairs were chosen more often than shown, or counts are below 0 or NaN")
+    elif len(shown) < 2:
+        amiss.append(f"there are answers of {len(shown)} observer")
+    elif n_pairs not in (None, shown.shape[1]):
+        amiss.append(f"they count {shown.shape[1]} pairs, and X has {n_pairs}")
+    if amiss:
+        raise ValueError(
+            f"Expected counts of shape (observer, pair), of two observers or more: {amiss[0]}."
+        )

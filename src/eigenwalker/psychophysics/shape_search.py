@@ -1,0 +1,146 @@
+"""The one number of a shape of F, found around the exact fit; and the paper's random starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize, minimize_scalar
+
+from eigenwalker.core.blas_threads import one_blas_thread
+from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit
+
+
+class ShapeFit(NamedTuple):
+    """The best parameter of a shape, the weights there, and the errors on the way to it."""
+
+    parameter: float
+    weights: np.ndarray
+    constant: float
+    rss: float
+    tried: np.ndarray
+    tried_rss: np.ndarray
+
+
+def search_shape(
+    columns: Callable[[float], np.ndarray],
+    y: ArrayLike,
+    *,
+    bounds: tuple[float, float],
+    n_grid: int = 60,
+) -> ShapeFit:
+    """Return the power of F, or the scale of its sigmoid, with which the metric fits best.
+
+    Weights are exact for each value tried (`non_negative_fit`), so that one number alone is
+    searched for: on a grid of equal ratios, which no second valley escapes that is wider than its
+    steps, then by Brent's method about the best of them. Near 0.3 the paper found powers that fit
+    best, but its search over weights and power at once did not end reliably (P9).
+
+    Parameters
+    ----------
+    columns : callable
+        Given a parameter, returns the table of shape (pair, group) of mean F(d_k).
+    y : array of shape (pair,)
+        Perceived differences.
+    bounds : tuple of float
+        Least and greatest parameter, above 0.
+    n_grid : int
+        Values on the grid, 3 or more.
+
+    Returns
+    -------
+    ShapeFit
+        ``rss`` is the sum of squared errors. A parameter at a bound says that the data do not tell
+        it: ever smaller powers are a logarithm, ever larger scales of a sigmoid F(d) = d.
+
+    Examples
+    --------
+    >>> d = np.random.default_rng(0).uniform(10, 200, (40, 2))
+    >>> y = 0.1 + 0.05 * d[:, 0] ** 0.4
+    >>> found = search_shape(lambda n: d**n, y, bounds=(0.05, 3))
+    >>> round(found.parameter, 4), found.weights.round(4).tolist()
+    (0.4, [0.05, 0.0])
+
+    """
+    if not 0 < bounds[0] < bounds[1] < np.inf or n_grid < 3:
+        raise ValueError(
+            f"bounds={bounds} and n_grid={n_grid}: expected two numbers above 0, the least first, "
+            "and 3 values or more."
+        )
+    y = np.asarray(y, dtype=float)
+    tried = np.geomspace(*bounds, n_grid)
+    rss = np.array([_fit(columns(value), y)[1] for value in tried])
+    best = int(rss.argmin())
+    around = np.log(tried[[max(best - 1, 0), min(best + 1, n_grid - 1)]])
+    found = minimize_scalar(
+        lambda log: _fit(columns(np.exp(log)), y)[1],
+        bounds=tuple(around),
+        method="bounded",
+        options={"xatol": 1e-7},
+    )
+    parameter = float(np.exp(found.x)) if found.fun < rss[best] else float(tried[best])
+    (weights, constant), error = _fit(columns(parameter), y)
+    return ShapeFit(parameter, weights, constant, error, tried, rss)
+
+
+def _fit(X: np.ndarray, y: np.ndarray) -> tuple[Weights, float]:
+    fitted = non_negative_fit(X, y)
+    residual = y - fitted.constant - X @ fitted.weights
+    return fitted, float(residual @ residual)
+
+
+class RandomStarts(NamedTuple):
+    """The best weights that descent found, and the sum of squared errors from each start."""
+
+    weights: np.ndarray
+    constant: float
+    rss: np.ndarray
+
+
+def fit_from_random_starts(
+    X: ArrayLike, y: ArrayLike, *, n_starts: int = 1000, seed: int = 0
+) -> RandomStarts:
+    """Return the metric fitted as the paper did (P10): gradient descent from random weights.
+
+    There for comparison; `PerceptualMetric` finds the same optimum at once (A30).
+
+    Parameters
+    ----------
+    X : array of shape (pair, group)
+        Mean F(d_k).
+    y : array of shape (pair,)
+        Perceived differences.
+    n_starts : int
+        How often to start.
+    seed : int
+        The same seed gives the same starts.
+
+    Examples
+    --------
+    >>> X = np.random.default_rng(0).uniform(size=(30, 3))
+    >>> y = 0.2 + X @ [0.5, 0.0, 0.1]
+    >>> found = fit_from_random_starts(X, y, n_starts=5)
+    >>> found.weights.round(3).tolist(), round(found.constant, 3)
+    ([0.5, 0.0, 0.1], 0.2)
+
+    """
+    X, y = np.asarray(X, dtype=float), np.asarray(y, dtype=float)
+    rng = np.random.default_rng(seed)
+    size = np.linalg.norm(X, axis=0)
+    design = np.column_stack([np.ones(len(y)), X / np.where(size > 0, size, 1.0)])
+
+    def error(c_and_w: np.ndarray) -> tuple[float, np.ndarray]:
+        residual = design @ c_and_w - y
+        return float(residual @ residual), 2 * design.T @ residual
+
+    limits = [(None, None), *[(0, None)] * X.shape[1]]
+    how = {"ftol": 1e-15, "gtol": 1e-10, "maxiter": 10_000, "maxfun": 100_000}
+    scale = np.linalg.norm(y)
+    starts = scale * rng.uniform(size=(n_starts, design.shape[1]))
+    with one_blas_thread():  # more threads slow so small a problem down
+        ends = [minimize(error, at, jac=True, bounds=limits, options=how) for at in starts]
+    best = min(ends, key=lambda end: end.fun).x
+    weights = best[1:] / np.where(size > 0, size, 1.0)
+    return RandomStarts(weights, float(best[0]), np.array([end.fun for end in ends]))

@@ -1,0 +1,97 @@
+"""Effects planted in what a walk is described by, not in the body that walks.
+
+In a jointed body breadth also scales movement, so an effect set through the body reaches structure
+and dynamics alike. One planted here moves the mean posture alone, or the movement alone: what a
+classifier of the other must not see.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.simulation.norms import basis
+
+_N_JOINTS = len(JOINTS.markers)
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """What one unit of a trait adds to a walk of the 15 joints.
+
+    Parameters
+    ----------
+    structure : array of shape (marker, axis)
+        Added to the mean posture, in millimetres.
+    movement : array of shape (4, marker, axis)
+        Added to the coefficients of cos 1, sin 1, cos 2 and sin 2 over the stride, in millimetres.
+    frequency_hz : float
+        Added to the stride frequency.
+
+    """
+
+    structure: np.ndarray = field(default_factory=lambda: np.zeros((_N_JOINTS, 3)))
+    movement: np.ndarray = field(default_factory=lambda: np.zeros((4, _N_JOINTS, 3)))
+    frequency_hz: float = 0.0
+
+    def __post_init__(self) -> None:
+        shapes = np.shape(self.structure), np.shape(self.movement)
+        if shapes != ((_N_JOINTS, 3), (4, _N_JOINTS, 3)):
+            raise ValueError(
+                f"A pattern has a structure of shape {(_N_JOINTS, 3)} and a movement of shape "
+                f"{(4, _N_JOINTS, 3)}; got {shapes[0]} and {shapes[1]}."
+            )
+
+
+def random_pattern(
+    part: Literal["structure", "dynamics"], *, size_mm: float, seed: int = 0
+) -> Pattern:
+    """Return a pattern of random directions, all in one part of a walk.
+
+    Parameters
+    ----------
+    part : {"structure", "dynamics"}
+        The mean posture, or the movement about it. Ankles are not moved up and down: where they
+        stand is where `in_place` finds the floor, from which the mean posture is measured.
+    size_mm : float
+        Root mean square of what one unit of the trait adds to each coordinate.
+    seed : int
+
+    Returns
+    -------
+    Pattern
+
+    Examples
+    --------
+    >>> pattern = random_pattern("structure", size_mm=5, seed=1)
+    >>> bool(pattern.structure.any()), bool(pattern.movement.any())
+    (True, False)
+
+    """
+    if part not in ("structure", "dynamics"):
+        raise ValueError(f"part={part!r} is not known; give 'structure' or 'dynamics'.")
+    chance = np.random.default_rng([seed, 77])
+    shape = (_N_JOINTS, 3) if part == "structure" else (4, _N_JOINTS, 3)
+    direction = chance.standard_normal(shape)
+    direction[..., [JOINTS.index(f"{side}_ankle") for side in ("left", "right")], 2] = 0
+    direction *= size_mm / np.sqrt(np.mean(direction**2))
+    if part == "structure":
+        return Pattern(structure=direction)
+    return Pattern(movement=direction)
+
+
+def plant(walk: xr.DataArray, pattern: Pattern, amount: float) -> xr.DataArray:
+    """Return a simulated walk of the 15 joints with a pattern added, so many times.
+
+    The stride frequency is a matter of the person, not of the trajectories: see
+    `simulate_captures`.
+    """
+    if tuple(walk["marker"].values) != JOINTS.markers:
+        raise ValueError("Patterns are of the 15 joints; simulate the walk with markers='joints'.")
+    waves = basis(walk["phase"].values, 2)[:, 1:]
+    added = pattern.structure + np.tensordot(waves, pattern.movement, axes=1)
+    return walk.copy(data=walk.values + amount * added)

@@ -1,0 +1,205 @@
+"""Transforms of dots: scrambled places, dots that live for a moment, blobs, noise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.stimulus.moving_dots import Moments, Moving
+from eigenwalker.stimulus.random_streams import Purpose, permutation, uniforms
+from eigenwalker.stimulus.transform_context import Stage
+
+SHOWN_AXES = {"both": (1.0, 1.0), "horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
+
+
+def scramble(
+    moving: Moving,
+    stage: Stage,
+    *,
+    seed: int,
+    keep: str,
+    box_mm: Sequence[float],
+    directions: str,
+) -> Moving:
+    """Put the dots elsewhere in the picture; each moves as it did.
+
+    Seen by the observer of the stimulus' view, the mean place of each dot is moved, its depth is
+    not. ``keep="nothing"``: to a random place in a box around the figure's middle,
+    ``(u_1 - 1/2) width`` to the right and ``(u_2 - 1/2) height`` up, stream (SCRAMBLE, seed, dot,
+    figure), which breaks the structure (Cutting, 1981; Bertenthal and Pinto, 1994).
+    ``keep="structure"``: to the mean place of another dot, in a random order of dots, so that the
+    same places are taken by other motions. With ``directions`` of ``"horizontal"`` or
+    ``"vertical"`` places change in that direction alone. Keeps each dot's own motion exactly.
+    """
+    axes = stage.observer[:2]
+    seen = (moving.mean - moving.middle) @ axes.T
+    if keep == "structure":
+        order = permutation(Purpose.SCRAMBLE, seed, stage.figure, size=len(moving.dots))
+        wanted = seen[order]
+    else:
+        dots = np.arange(len(moving.dots))
+        drawn = uniforms(Purpose.SCRAMBLE, seed, dots, stage.figure, count=2).reshape(-1, 2)
+        wanted = (drawn - 0.5) * np.array(box_mm)
+    moved = ((wanted - seen) * SHOWN_AXES[directions]) @ axes
+
+    def at(time: np.ndarray) -> Moments:
+        positions, visible = moving.at(time)
+        return Moments(positions + moved, visible)
+
+    return replace(moving, at=at)
+
+
+def limb_dots(
+    moving: Moving,
+    stage: Stage,
+    *,
+    number: int,
+    lifetime_s: float | None,
+    asynchrony: float,
+    places: str,
+    seed: int,
+) -> Moving:
+    """Show dots that live for a moment at random places of the body in place of the joints.
+
+    Beintema and Lappe (2002): dots on the limbs, each of which, after its life, begins another one
+    elsewhere, so that no dot's motion tells about the walk. Dot d is in life
+    ``floor(t / lifetime + asynchrony d / number)``: with asynchrony 0 all begin anew at once, with
+    1 one after the other. Each life draws u_1, u_2 from stream (LIMB_DOTS, seed, d + 65536 figure,
+    life). On ``"limbs"``, u_1 chooses a segment in proportion to its length in the mean posture and
+    u_2 how far along it; on ``"joints"``, u_1 chooses a joint. With a lifetime of
+    null they live on. Keeps the posture that a frame shows, breaks the dots' paths.
+    """
+    ends, reach = _segments(moving)
+    dot_numbers = np.arange(number)
+    ahead = asynchrony * dot_numbers / number
+
+    def at(time: np.ndarray) -> Moments:
+        posture, seen = moving.at(time)
+        life = np.zeros((len(time), number))
+        if lifetime_s is not None:
+            life = np.floor(time[:, None] / lifetime_s + ahead)
+        index = np.broadcast_to(dot_numbers + 65536 * stage.figure, life.shape)
+        drawn = uniforms(Purpose.LIMB_DOTS, seed, index, life, count=2)
+        drawn = drawn.reshape(len(time), number, 2)
+        if places == "joints":
+            one = other = np.floor(drawn[..., 0] * len(moving.dots)).astype(int)
+        else:
+            chosen = np.searchsorted(reach, drawn[..., 0] * reach[-1], side="right")
+            one, other = ends[np.minimum(chosen, len(ends) - 1)].transpose(2, 0, 1)
+        moment = np.arange(len(time))[:, None]
+        share = drawn[..., 1, None]
+        positions = posture[moment, one] * (1 - share) + posture[moment, other] * share
+        return Moments(positions, seen[moment, one] & seen[moment, other])
+
+    return replace(moving, skeleton=Skeleton(_dot_names(number)), at=at)
+
+
+def _segments(moving: Moving) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of the segments, and the summed lengths up to the end of each in the mean posture."""
+    pairs = [(moving.dots.index(a), moving.dots.index(b)) for a, b in moving.skeleton.segments]
+    ends = np.array(pairs, dtype=int).reshape(-1, 2)
+    ways = moving.mean[ends[:, 0]] - moving.mean[ends[:, 1]]
+    return ends, np.cumsum(np.sqrt(np.sum(np.nan_to_num(ways) ** 2, axis=1)))
+
+
+def _dot_names(number: int) -> tuple[str, ...]:
+    return tuple(f"dot_{dot + 1}" for dot in range(number))
+
+
+def blur(moving: Moving, stage: Stage, *, sd_mm: float) -> Moving:
+    """Draw each dot as a Gaussian blob of this standard deviation.
+
+    Where blobs overlap their light adds up: with 80 mm and more the body is one blob that changes
+    its shape (Barclay, Cutting and Kozlowski, 1978, experiment 3). Keeps all places.
+    """
+    return replace(moving, blur_mm=sd_mm)
+
+
+def mask(
+    moving: Moving,
+    stage: Stage,
+    *,
+    kind: str,
+    number: int,
+    box_mm: Sequence[float],
+    centre_mm: Sequence[float],
+    lifetime_s: float | None,
+    speed_mm_s: float,
+    direction_deg: float | None,
+    phases: bool,
+    seed: int,
+) -> Moving:
+    """Return noise dots in a box that faces the observer, which become a figure of their own.
+
+    Dot d, in life ``floor(t / lifetime + d / number)`` (0 where lifetime is null), draws u_1 to u_3
+    from stream (MASK, seed, d, life) and is at ``centre + X right + Y up`` with
+    ``X = (u_1 - 1/2) width`` and ``Y = (u_2 - 1/2) height``.
+
+    - ``"random"``: it stays there for its life.
+    - ``"linear"``: it moves from there with the speed, in the direction given (0 to the right, 90
+      up) or, for null, by ``2 pi u_3``; leaving the box it comes in at the other side. The time
+      that counts is that since its life began, or since 0 s.
+    - ``"scrambled"``: from there it moves as a dot of the figure moves about its mean place: dot d
+      as the figure's dot ``d modulo n`` (Cutting, Moore and Morrison, 1988; Bertenthal and Pinto,
+      1994), and if ``phases``, as at ``t + u_3 period``, u_3 of its life 0. It is seen
+      when that is.
+    """
+    width, height = box_mm
+    right, up = stage.observer[:2]
+    dots = np.arange(number)
+    motion = _motions(moving, seed, number, phases) if kind == "scrambled" else None
+    given = None if direction_deg is None else np.deg2rad(direction_deg)
+
+    def at(time: np.ndarray) -> Moments:
+        life, age = np.zeros((len(time), number)), np.repeat(time[:, None], number, axis=1)
+        if lifetime_s is not None:
+            lived = time[:, None] / lifetime_s + dots / number
+            life = np.floor(lived)
+            age = (lived - life) * lifetime_s
+        drawn = uniforms(
+            Purpose.MASK, seed, np.broadcast_to(dots, life.shape), life, count=3
+        ).reshape(len(time), number, 3)
+        x, y = drawn[..., 0] * width, drawn[..., 1] * height
+        if kind == "linear":
+            heading = 2 * np.pi * drawn[..., 2] if given is None else given
+            x = _wrapped(x + speed_mm_s * np.cos(heading) * age, width)
+            y = _wrapped(y + speed_mm_s * np.sin(heading) * age, height)
+        x, y = (x - width / 2)[..., None], (y - height / 2)[..., None]
+        positions = np.array(centre_mm) + x * right + y * up
+        visible = np.ones(life.shape, dtype=bool)
+        if motion is not None:
+            moved = motion(time)
+            positions, visible = positions + moved.positions, moved.visible
+        return Moments(positions, visible)
+
+    names = tuple(f"noise_{dot + 1}" for dot in dots)
+    return Moving(Skeleton(names), at, moving.period_s, moving.blur_mm)
+
+
+def _wrapped(place: np.ndarray, size: float) -> np.ndarray:
+    return place - np.floor(place / size) * size
+
+
+def _motions(
+    moving: Moving, seed: int, number: int, phases: bool
+) -> Callable[[np.ndarray], Moments]:
+    """How noise dots move about their places: the figure's dots about their means."""
+    dots = np.arange(number)
+    source = dots % len(moving.dots)
+    mean = moving.mean[source]
+    drawn = uniforms(Purpose.MASK, seed, dots, 0, count=3).reshape(-1, 3)[:, 2]
+    ahead = drawn * moving.period_s
+
+    def at(time: np.ndarray) -> Moments:
+        if not phases:
+            positions, visible = moving.at(time)
+            return Moments(positions[:, source] - mean, visible[:, source])
+        shown = [moving.at(time + shift) for shift in ahead]
+        positions = np.stack([m.positions[:, s] for m, s in zip(shown, source, strict=True)], 1)
+        visible = np.stack([m.visible[:, s] for m, s in zip(shown, source, strict=True)], 1)
+        return Moments(positions - mean, visible)
+
+    return at

@@ -1,0 +1,180 @@
+"""A figure that moves: dots with names, as a function of time, which transforms change."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from eigenwalker.core.skeleton import Skeleton
+
+N_SAMPLES = 64
+"""Moments of the period over which means are taken: exact up to the 31st harmonic."""
+
+
+class Moments(NamedTuple):
+    """Dots at several moments.
+
+    Parameters
+    ----------
+    positions : array of shape (time, dot, 3)
+        Millimetres in the figure's own frame: x forward, y left, z up. NaN where not known.
+    visible : array of bool of shape (time, dot)
+
+    """
+
+    positions: np.ndarray
+    visible: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """A figure as a function of time.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        Names of the dots, who is joined to whom, and who is whose counterpart.
+    at : callable
+        Takes seconds, an array of shape (time,), and returns `Moments`.
+    period_s : float
+        Seconds after which it repeats; of sampled trajectories, how long they last.
+    blur_mm : float
+        Standard deviation of each dot's blob; 0 for discs.
+
+    """
+
+    skeleton: Skeleton
+    at: Callable[[np.ndarray], Moments]
+    period_s: float
+    blur_mm: float = 0.0
+
+    @property
+    def dots(self) -> tuple[str, ...]:
+        """Names of the dots."""
+        return self.skeleton.markers
+
+    @cached_property
+    def mean(self) -> np.ndarray:
+        """Mean place of each dot: array of shape (dot, 3).
+
+        Over 64 moments, evenly spaced from 0 s over the period; those at which it is not known are
+        left out.
+        """
+        moments = np.arange(N_SAMPLES) * self.period_s / N_SAMPLES
+        positions = self.at(moments).positions
+        known = ~np.isnan(positions)
+        total = np.where(known, positions, 0.0).sum(axis=0)
+        count = known.sum(axis=0)
+        return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """Middle between the least and the greatest mean place, on each axis: array (3,)."""
+        seen = self.mean[~np.isnan(self.mean).any(axis=1)]
+        return (seen.min(axis=0) + seen.max(axis=0)) / 2 if len(seen) else np.zeros(3)
+
+    @cached_property
+    def parents(self) -> tuple[int, ...]:
+        """For each dot the dot that carries it, -1 where nothing does (`parents_of`)."""
+        return parents_of(self.skeleton)
+
+
+def parents_of(skeleton: Skeleton) -> tuple[int, ...]:
+    """Return for each marker the one that carries it, along the segments from the root outwards.
+
+    The root is ``pelvis``, or the first marker where there is none. Markers are reached level by
+    level, segments being tried in their order; those that nothing joins to the root have no parent.
+
+    Examples
+    --------
+    >>> parents_of(ew.JOINTS)
+    (1, 8, 1, 2, 3, 1, 5, 6, -1, 8, 9, 10, 8, 12, 13)
+
+    """
+    markers = skeleton.markers
+    root = "pelvis" if "pelvis" in markers else markers[0]
+    parent = {root: -1}
+    waiting = deque([root])
+    while waiting:
+        carrier = waiting.popleft()
+        for ends in skeleton.segments:
+            if carrier in ends:
+                other = ends[1] if ends[0] == carrier else ends[0]
+                if other not in parent:
+                    parent[other] = markers.index(carrier)
+                    waiting.append(other)
+    return tuple(parent.get(marker, -1) for marker in markers)
+
+
+def outward(parents: Sequence[int]) -> list[int]:
+    """Return the dots in such an order that each comes after the one that carries it."""
+
+    def depth(dot: int) -> int:
+        return 0 if parents[dot] < 0 else 1 + depth(parents[dot])
+
+    return sorted(range(len(parents)), key=depth)
+
+
+def walking(
+    skeleton: Skeleton,
+    p0: np.ndarray,
+    p: np.ndarray,
+    harmonics: np.ndarray,
+    phases: np.ndarray,
+    frequency_hz: float,
+) -> Moving:
+    """Return a walker as a moving figure, ``p0 + sum_i p_i sin(h_i 2 pi f t + phi_i)``.
+
+    Eq. 3 of Troje (2002), its first phase being 0 at 0 s where the phases say so.
+    """
+    visible = np.ones(len(p0), dtype=bool)
+
+    def at(time: np.ndarray) -> Moments:
+        cycle = 2 * np.pi * frequency_hz * time[:, None]
+        positions = p0 + np.tensordot(np.sin(harmonics * cycle + phases), p, axes=1)
+        return Moments(positions, np.broadcast_to(visible, positions.shape[:2]))
+
+    return Moving(skeleton, at, 1 / frequency_hz)
+
+
+def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: bool) -> Moving:
+    """Return sampled trajectories as a moving figure, a straight line between frames.
+
+    Before the first and after the last frame it holds still, or begins anew one frame after the
+    last. Between two frames of which one lacks a dot, the dot is not visible.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+        Names of the dots.
+    samples : array of shape (time, dot, 3)
+        Millimetres; NaN is missing.
+    rate_hz : float
+        Frames a second.
+    repeat : bool
+        Whether it begins anew.
+
+    """
+    n_frames = len(samples)
+    missing = np.asarray(np.isnan(samples).any(axis=2))
+    known = np.where(missing[..., None], np.nan, samples)
+
+    def at(time: np.ndarray) -> Moments:
+        frame = time * rate_hz
+        if repeat:
+            frame = frame - np.floor(frame / n_frames) * n_frames
+        else:
+            frame = np.clip(frame, 0, n_frames - 1)
+        before = np.minimum(np.floor(frame).astype(int), n_frames - 1)
+        after = (before + 1) % n_frames if repeat else np.minimum(before + 1, n_frames - 1)
+        after = np.where(frame == before, before, after)
+        share = (frame - before)[:, None, None]
+        positions = known[before] * (1 - share) + known[after] * share
+        return Moments(positions, np.asarray(~np.isnan(positions).any(axis=2)))
+
+    return Moving(skeleton, at, (n_frames if repeat else max(n_frames - 1, 1)) / rate_hz)

@@ -1,0 +1,109 @@
+"""One function for all that a stimulus is written as: the suffix decides."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from eigenwalker.core.progress import Progress
+from eigenwalker.io.write import write_mocap
+from eigenwalker.stimulus import films, position_tables as tables
+from eigenwalker.stimulus.animation import animated
+from eigenwalker.stimulus.gltf import write_glb
+from eigenwalker.stimulus.html_page import stand_alone_page
+from eigenwalker.stimulus.psychopy_script import write_psychopy
+from eigenwalker.stimulus.stimulus import Stimulus
+
+
+def write_stimulus(
+    stimulus: Stimulus, path: str | os.PathLike[str], *, progress: Progress | None = None
+) -> Path:
+    """Write a stimulus as a file and return its path.
+
+    ======================== ==========================================================
+    suffix                   what it is
+    ======================== ==========================================================
+    .json                    the stimulus file
+    .mp4, .webm, .gif        a film
+    .png, .svg               its first moment; for a folder (no suffix) all frames as PNG
+    .csv, .npz, .mat         where each dot is in each frame: mm, pixels, degrees
+    .py                      a PsychoPy script, and an .npz beside it
+    .html                    a page that plays it in a browser, with nothing else
+    .bvh, .glb               its first figure as a skeleton with constant bones that walks
+    ======================== ==========================================================
+
+    Parameters
+    ----------
+    stimulus : Stimulus
+        What is shown.
+    path : path
+        File to write, or to replace, or the folder of frames.
+    progress : callable, optional
+        Called with the number of frames done and of all, where frames are drawn.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    ValueError
+        If the suffix is not known, or cannot hold this stimulus.
+    FileNotFoundError
+        If the folder does not exist.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from eigenwalker.stimulus import make_stimulus
+    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     path = write_stimulus(make_stimulus(hop), Path(folder) / "hop.svg")
+    ...     path.read_text().startswith("<svg")
+    True
+
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix and suffix not in WRITERS and suffix not in FILMS:
+        known = [*FILMS, *WRITERS]
+        raise ValueError(f"{path.name!r} must end in one of {known} to hold a stimulus.")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
+    if suffix in FILMS:
+        films.write_film(stimulus, path, progress)
+    elif not suffix:
+        films.write_frames(stimulus, path, progress)
+    else:
+        WRITERS[suffix](stimulus, path)
+    return path
+
+
+def _write_bvh(stimulus: Stimulus, path: Path) -> None:
+    write_mocap(animated(stimulus).walk, path)
+
+
+def _write_glb(stimulus: Stimulus, path: Path) -> None:
+    moving = animated(stimulus)
+    write_glb(moving.walk, path, about={**stimulus.provenance, "feet": str(moving.slide)})
+
+
+def _write_html(stimulus: Stimulus, path: Path) -> None:
+    path.write_text(stand_alone_page(stimulus), encoding="utf-8")
+
+
+FILMS = (".mp4", ".webm", ".gif")
+WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
+    ".json": Stimulus.save,
+    ".png": films.write_png,
+    ".svg": films.write_svg,
+    ".csv": tables.write_csv,
+    ".npz": tables.write_npz,
+    ".mat": tables.write_mat,
+    ".py": write_psychopy,
+    ".html": _write_html,
+    ".bvh": _write_bvh,
+    ".glb": _write_glb,
+}

@@ -1,0 +1,137 @@
+"""What a long fit has done so far: kept beside its output, so that it can go on where it stopped.
+
+A text file of one line of JSON a capture, to which lines are only added. A line that was cut short
+or does not fit is passed over, and its capture is read again.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eigenwalker.core.walker import CaptureFit, Walker
+
+Facts = dict[str, object]
+
+
+class Journal:
+    """Walkers by the name of their capture, as far as they were made before.
+
+    Parameters
+    ----------
+    path : Path
+        Where it lies; it is made when the first walker is kept.
+    settings : mapping of str to str or int
+        On what a walker depends beside its file. Walkers made otherwise are passed over.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> foot = ew.Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "people.nc.part"
+    ...     Journal(path, {"form": "fourier"}).keep("a.c3d", [512, 7], foot, {"r2": 0.9})
+    ...     again = Journal(path, {"form": "fourier"})
+    ...     walker, facts = again.find("a.c3d", [512, 7])
+    >>> walker.p0.tolist(), facts
+    ([[0.0, 0.0, 50.0]], {'r2': 0.9})
+    >>> again.find("a.c3d", [513, 8]) is None  # the file has changed since
+    True
+
+    """
+
+    def __init__(self, path: Path, settings: Mapping[str, str | int]) -> None:
+        self.path = path
+        self._settings = dict(settings)
+        self._known: dict[str, dict] = {}
+        self._whole_lines = True
+        if path.is_file():
+            text = path.read_text(encoding="utf-8", errors="replace")
+            self._whole_lines = not text or text.endswith("\n")
+            self._known = {
+                entry["file"]: entry
+                for line in text.splitlines()
+                if (entry := _entry(line)) and entry["settings"] == self._settings
+            }
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def find(self, name: str, state: list[int]) -> tuple[Walker, Facts] | None:
+        """Return the walker of a capture and what is known of it, if they were kept.
+
+        Parameters
+        ----------
+        name : str
+            Of the capture.
+        state : list of int
+            What changes when its files do, such as sizes and times.
+
+        Returns
+        -------
+        (Walker, dict) or None
+
+        """
+        entry = self._known.get(name)
+        if entry is None or entry["state"] != state:
+            return None
+        try:
+            return _walker(entry["walker"]), entry["facts"]
+        except (TypeError, ValueError, KeyError):
+            return None
+
+    def keep(self, name: str, state: list[int], walker: Walker, facts: Mapping) -> None:
+        """Add the walker of a capture and what is known of it."""
+        entry = {
+            "file": name,
+            "state": state,
+            "settings": self._settings,
+            "facts": dict(facts),
+            "walker": walker,
+        }
+        with self.path.open("a", encoding="utf-8") as file:
+            start = "" if self._whole_lines else "\n"
+            file.write(f"{start}{json.dumps(entry, default=_plain)}\n")
+        self._whole_lines = True
+        self._known[name] = json.loads(json.dumps(entry, default=_plain))
+
+    def remove(self) -> None:
+        """Remove the file, once all is done."""
+        self.path.unlink(missing_ok=True)
+
+
+def _entry(line: str) -> dict | None:
+    try:
+        entry = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    wanted = {"file": str, "state": list, "settings": dict, "facts": dict, "walker": dict}
+    sound = isinstance(entry, dict) and all(
+        isinstance(entry.get(key), kind) for key, kind in wanted.items()
+    )
+    return entry if sound else None
+
+
+def _plain(value: object) -> object:
+    """Return what JSON has for a walker, its fit, arrays and numbers of numpy."""
+    if isinstance(value, Walker | CaptureFit):
+        return {entry.name: getattr(value, entry.name) for entry in fields(value)}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} cannot be kept in a journal.")
+
+
+def _walker(kept: dict) -> Walker:
+    fit = kept["fit"]
+    if fit is not None:
+        fit = CaptureFit(**{key: _array(value) for key, value in fit.items()})
+    return Walker(**{**kept, "fit": fit})
+
+
+def _array(value: Any) -> Any:
+    return np.array(value) if isinstance(value, list) else value

@@ -1,0 +1,101 @@
+"""``eigenwalker stimulus``, as a person types it."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from eigenwalker.cli import main as cli
+from eigenwalker.stimulus.stimulus import Stimulus
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """Type a command in an empty folder; get its exit code, what it printed, and its complaint."""
+    monkeypatch.chdir(tmp_path)
+
+    def typed(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["eigenwalker", "stimulus", *map(str, words)])
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return typed
+
+
+def test_options_act_in_one_order_however_they_are_typed(run):
+    options = (["--trait", "sex=2"], ["--invert"], ["--scramble", "seed=3"], ["--speed", "1.5"])
+    files = []
+    for number, order in enumerate(itertools.islice(itertools.permutations(options), 0, 24, 9)):
+        code, said, _ = run(*itertools.chain(*order), "-o", f"{number}.json")
+        assert code == 0
+        assert "speed, then invert, then scramble" in said
+        files.append(Path(f"{number}.json").read_text())
+    assert len(set(files)) == 1
+
+
+def test_every_transform_can_be_typed(run):
+    code, _, complaint = run(
+        *("--from", "3", "--information", "dynamics"),
+        *("--gain", "parts=legs,factor=0.5", "--arm-swing", "2", "--conflict", "hip_sway=2"),
+        *("--ellipses", "shoulder=35/12,hip=15/20"),
+        *("--perturb", "markers=left_knee,amount=0/50/0,frequency=3", "--speed", "2"),
+        *("--start", "90", "--reverse", "--freeze", "0.2", "--delay", "parts=arms,phase=90"),
+        *("--phase-scramble", "seed=1", "--morph-to", "sex=-2", "--mirror", "--overground"),
+        *("--rotate", "axis=1/0/1,angle=10", "--rotate", "axis=sight,angle=180", "--invert"),
+        *("--occlude", "head/lower_body", "--scramble", "seed=3,keep=structure"),
+        *("--limb-dots", "number=8,lifetime=none,seed=1", "--blur", "20"),
+        *("--mask", "kind=scrambled,signal_to_noise=0.5,seed=2"),
+        *("--view", "90", "--elevation", "10", "--eye-distance", "3000", "--size", "300x400"),
+        *("--duration", "2", "--rate", "50", "--height-deg", "5", "-o", "all.json"),
+    )
+    assert code == 0, complaint
+    content = json.loads(Path("all.json").read_text())
+    names = [step["name"] for step in content["transforms"]]
+    assert names == [
+        *("gain", "gain", "conflict", "ellipses", "perturb", "speed", "start", "reverse"),
+        *("freeze", "delay", "phase_scramble", "morph", "mirror", "translate", "rotate"),
+        *("rotate", "invert", "occlude", "scramble", "limb_dots", "blur", "mask"),
+    ]
+    assert content["display"]["width_px"] == 300
+    assert content["view"]["eye_distance_mm"] == 3000
+    assert content["timing"] == {"duration_s": 2, "rate_hz": 50}
+    assert "simulated" in content["provenance"]["source"]
+
+
+def test_a_stimulus_file_is_taken_further(run):
+    assert run("--invert", "--view", "90", "-o", "one.json")[0] == 0
+    assert run("one.json", "--mirror", "--duration", "1", "-o", "two.json")[0] == 0
+    two = Stimulus.load("two.json")
+    assert [step["name"] for step in two.transforms] == ["invert", "mirror"]
+    assert (two.view.view_deg, two.timing.duration_s) == (90, 1)
+    code, _, complaint = run("one.json", "--trait", "sex=2")
+    assert (code, "--trait is for populations" in complaint) == (2, True)
+
+
+def test_a_figure_for_animators_says_how_still_its_feet_stand(run):
+    code, said, _ = run("--duration", "2", "-o", "walk.glb")
+    assert code == 0
+    assert "Standing feet slide at" in said
+
+
+@pytest.mark.parametrize(("words", "complaint"), [
+    (["--scramble", "sed=3"], "expected name=value"),
+    (["--trait", "sex"], "does not say how far"),
+    (["--from", "99"], "expected 'average', or a walker from 0 to 39"),
+    (["--information", "some"], "choose 'full', 'structure' or 'dynamics'"),
+    (["--size", "big"], "width and height"),
+    (["-o", "stim.avi"], "must end in one of"),
+])  # fmt: skip
+def test_what_is_typed_wrong_is_said_in_a_sentence(run, words, complaint):
+    code, _, said = run(*words)
+    assert code == 2
+    assert complaint in said

@@ -1,0 +1,212 @@
+"""What is wrong with a capture is said, and nothing that is not."""
+
+import re
+
+import numpy as np
+import pytest
+
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.io.read import read_mocap
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.quality.findings import assess
+from eigenwalker.simulation.walk import simulate_walk
+
+
+@pytest.fixture(scope="module")
+def person():
+    return simulate_walk(seed=4, duration_s=6, rate_hz=100, variability=1.0, noise_mm=1.0)
+
+
+def changed(walk, change):
+    values = walk.values.copy()
+    change(values)
+    return walk.copy(data=values)
+
+
+def test_a_good_walk_is_for_use(person):
+    quality = assess(person)
+    assert quality.verdict == "use"
+    assert quality.reasons == ()
+    assert quality.flag == ""
+    assert quality.r2 > 0.95
+    assert quality.periodicity > 0.95
+    assert quality.level
+    assert quality.treadmill
+    assert quality.n_strides >= 4
+    assert max(quality.bone_length_variation.values()) < 0.02
+
+
+@pytest.mark.parametrize("rise", [-0.5, 0.6])
+def test_stairs_are_no_level_walk(person, rise):
+    time = person.time.values[:, None, None]
+    steps = person + person.attrs["speed_mm_s"] * time * np.array([1, 0, rise])
+    quality = assess(steps)
+    assert not quality.level
+    assert quality.verdict == "do not use"
+    assert "no level walk" in quality.flag
+    assert ("rises" if rise > 0 else "falls") in quality.flag
+    assert quality.climb == pytest.approx(rise, rel=0.1)
+
+
+def test_a_floor_that_was_set_up_askew_is_level(person):
+    time = person.time.values[:, None, None]
+    assert assess(person + 1200 * time * np.array([1, 0, 0.02])).level
+
+
+def test_standing_is_no_walk(person):
+    rng = np.random.default_rng(0)
+    still = person.isel(time=0).values + rng.normal(size=person.shape)
+    quality = assess(person.copy(data=still))
+    assert quality.verdict == "do not use"
+    assert "no steady walk" in quality.flag.lower()
+
+
+def test_noise_is_no_steady_walk(person):
+    rng = np.random.default_rng(0)
+    quality = assess(person + 60 * rng.normal(size=person.shape))
+    assert quality.verdict != "use"
+    assert quality.r2 < 0.9
+    assert "change length" in quality.flag
+
+
+def test_a_walk_that_breaks_off_again_and_again_is_unsteady():
+    pieces = [
+        simulate_walk(seed=seed, duration_s=2.5, rate_hz=60, noise_mm=1).values for seed in range(5)
+    ]
+    capture = label_trajectories(np.concatenate(pieces), markers=JOINTS.markers, rate_hz=60)
+    quality = assess(capture)
+    assert quality.verdict == "use with care"
+    assert quality.steady_share < 0.4
+
+
+def test_missing_samples_are_counted(person):
+    def hide(values):
+        values[300:305, 4] = np.nan
+
+    quality = assess(changed(person, hide))
+    assert quality.missing_share == {"left_wrist": pytest.approx(5 / 600)}
+    assert quality.verdict == "use"
+
+
+def test_a_gap_that_cannot_be_filled_is_the_reason(person):
+    def hide(values):
+        values[280:330, 4] = np.nan
+
+    quality = assess(changed(person, hide))
+    assert quality.verdict == "do not use"
+    assert "left_wrist" in quality.flag
+    assert quality.n_strides == 0
+
+
+def test_a_marker_that_flickers_is_counted_and_forgiven(person):
+    def jump(values):
+        values[250:253, 3] += [0, 300, 0]
+
+    quality = assess(changed(person, jump))
+    assert quality.jumps == {"left_elbow": 1}
+    assert quality.removed_share == {"left_elbow": pytest.approx(3 / 600)}
+    assert quality.verdict == "use"
+
+
+def test_a_marker_that_flickers_often_is_named(person):
+    def jump(values):
+        for start in range(40, 590, 50):
+            values[start : start + 3, 3] += [0, 300, 0]
+
+    quality = assess(changed(person, jump))
+    assert quality.jumps == {"left_elbow": 11}
+    assert quality.verdict == "use with care"
+    assert "flicker, and gaps were left: left_elbow" in quality.flag
+
+
+def test_a_marker_that_stays_elsewhere_jumps(person):
+    def jump(values):
+        values[250:290, 3] += [0, 300, 0]
+
+    quality = assess(changed(person, jump))
+    assert quality.jumps == {"left_elbow": 1}
+    assert "Markers jump: left_elbow" in quality.flag
+
+
+def test_markers_that_change_sides_are_told_and_put_right(person):
+    left, right = JOINTS.index("left_knee"), JOINTS.index("right_knee")
+
+    def swap(values):
+        values[250:270, [left, right]] = values[250:270, [right, left]]
+
+    quality = assess(changed(person, swap))
+    assert quality.left_right_swaps == 1
+    assert quality.swaps == ("left_knee and right_knee, frames 250 to 269",)
+    assert quality.verdict == "use with care"
+    assert quality.r2 == pytest.approx(assess(person).r2)
+    assert assess(person).left_right_swaps == 0
+
+
+@pytest.mark.filterwarnings("ignore")  # the rate is assumed, and read_mocap says so
+def test_noisy_captures_of_a_toy_camera_are_told_to_be_such(captures):
+    files = sorted((captures / "kinect").glob("*GeometricPositions*"))
+    assert len(files) >= 50
+    found = [assess(virtual_markers(read_mocap(file))) for file in files]
+    assert {quality.verdict for quality in found} <= {"use with care", "do not use"}
+    assert all("change length" in quality.flag for quality in found)
+    assert sum("no steady walk" in quality.flag.lower() for quality in found) > len(found) / 3
+
+
+def test_a_body_whose_left_is_called_right_is_noticed(person):
+    renamed = person.copy(data=person.values[:, JOINTS.mirror()])
+    quality = assess(renamed)
+    assert quality.sides_swapped
+    assert "left is called right" in quality.flag
+
+
+def test_any_markers_can_be_assessed(person):
+    quality = assess(person.assign_coords(marker=[f"*{number}" for number in range(15)]))
+    assert quality.bone_length_variation == {}
+    assert quality.verdict == "use"
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1000, r"measures 1\.\d+ km, which no walking person does: the unit of length is wrong"),
+        (0.001, r"measures 1\.\d+ mm, which no walking person does"),
+        (2.54, r"measures [34]\.\d+ m, which no walking person does"),
+        (1 / 2.54, r"measures [56]\d+ mm: if this is no small child"),
+    ],
+)
+def test_a_body_that_no_person_has_tells_of_a_wrong_unit(person, factor, said):
+    quality = assess(person.copy(data=person.values * factor))
+    assert re.search(said, quality.flag)
+    assert quality.verdict != "use"
+    assert quality.height_mm == pytest.approx(factor * assess(person).height_mm)
+
+
+def test_a_body_upside_down_is_noticed(person):
+    quality = assess(person.copy(data=person.values * [1, -1, -1]))
+    assert quality.verdict == "do not use"
+    assert "head is not above the feet" in quality.flag
+
+
+def test_what_is_no_capture_is_refused():
+    with pytest.raises(TypeError, match="label_trajectories"):
+        assess(np.zeros((10, 15, 3)))  # pyright: ignore[reportArgumentType] # that is the point
+
+
+def test_walking_down_stairs_is_noticed(captures):
+    quality = assess(virtual_markers(read_mocap(captures / "pycgm" / "Movement_trial.c3d")))
+    assert "no level walk" in quality.flag
+    assert quality.verdict == "do not use"
+
+
+def test_a_real_walk_is_for_use(captures):
+    assert assess(virtual_markers(read_mocap(captures / "cmu" / "02_01.c3d"))).verdict == "use"
+
+
+@pytest.mark.filterwarnings("ignore")  # the unit is guessed, and read_mocap says so
+def test_the_stumble_among_acted_styles_is_flagged(captures):
+    folder = captures / "bandai-namco"
+    stumble = read_mocap(folder / "dataset-2_walk_elderly_008.bvh")
+    steady = read_mocap(folder / "dataset-2_walk_normal_001.bvh")
+    assert "no steady walk" in assess(virtual_markers(stumble)).flag
+    assert assess(virtual_markers(steady)).verdict == "use"

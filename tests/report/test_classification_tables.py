@@ -1,0 +1,71 @@
+"""The tables of the main job say what they hold, in words and units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import eigenwalker as ew
+from eigenwalker.analysis.classification import INPUTS, classify
+from eigenwalker.population.population import Population
+from eigenwalker.report.classification_tables import (
+    gait_table,
+    missed_table,
+    names_of,
+    plausibility_table,
+    results_table,
+)
+
+
+@pytest.fixture(scope="module")
+def people() -> Population:
+    return ew.simulate_population(6, 6, seed=1)
+
+
+def test_the_gait_table_has_units_and_no_noise(people) -> None:
+    average = people.walker(people.average)
+    table = gait_table({"average": average, "again": average})
+    rows = {row[0]: row[1] for row in table.rows}
+    assert rows["pelvis, vertical range (mm)"] == f"{ew.gait.gait_parameters(average).iloc[-1]:.0f}"
+    assert rows["steps a minute"] == f"{120 * average.frequency_hz:.0f}"
+    assert not any("_" in str(name) for name in rows)
+    assert not any("-0.0" in (row[1], row[2]) or "-0" in (row[1], row[2]) for row in table.rows)
+
+
+def test_a_body_without_pelvis_has_no_row_for_it(people) -> None:
+    average = people.walker(people.average)
+    feet = ["left_ankle", "right_ankle"]
+    kept = [average.markers.index(name) for name in feet]
+    legs = replace(average, markers=tuple(feet), p0=average.p0[kept], p=average.p[:, kept])
+    assert not any("pelvis" in str(row[0]) for row in gait_table({"legs": legs}).rows)
+
+
+def test_limbs_of_the_average_are_unchanged_without_a_sign(people) -> None:
+    large = people.average.copy()
+    lengths = people.layout.columns("p0+p1+p2+p3+p4")
+    large[lengths] *= 1.2
+    found = {
+        "average": ew.analysis.plausibility(people, people.average),
+        "small": ew.analysis.plausibility(people, 0.999 * people.average),
+        "large": ew.analysis.plausibility(people, large),
+    }
+    average, small, larger = plausibility_table(found).rows
+    assert set(average[2:]) == {"0 %"}
+    assert set(small[2:]) == {"0 %"}
+    assert set(larger[2:]) == {"+20 %"}
+
+
+def test_missed_walkers_are_named_with_their_class(people) -> None:
+    sex = np.random.default_rng(0).permutation(people.traits["sex"].to_numpy())
+    people = replace(people, traits=people.traits.assign(sex=sex))
+    found = classify(people, "sex", inputs=INPUTS[:4], n_permutations=0)
+    table = missed_table(people, found)
+    assert table is not None
+    row = int(found.often_missed().index[0])
+    assert table.rows[0][0] == f"walker {row} ({sex[row]})"
+    files = [f"{n}.c3d" if n else "" for n in range(12)]
+    named = replace(people, traits=people.traits.assign(file=files))
+    assert names_of(named)[:2] == ["walker 0", "1.c3d"]
+    assert results_table(found).columns[0] == "input"

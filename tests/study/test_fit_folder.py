@@ -1,0 +1,207 @@
+"""From a folder of captures to a population, with bad files among good ones."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from eigenwalker.analysis.classification import classify
+from eigenwalker.simulation.people import simulate_captures
+from eigenwalker.study.fit_folder import fit_folder
+from eigenwalker.study.walker_from_file import walker_from_file
+
+attempts = sys.modules["eigenwalker.study.walker_from_file"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, write_c3d) -> Path:
+    """Six walks, one of them cut short, one of them no walk; and a file of another kind."""
+    folder = tmp_path_factory.mktemp("captures")
+    (folder / "men").mkdir()
+    for number, (walk, person) in enumerate(simulate_captures(3, 3, seed=4)):
+        where = folder / "men" if person["sex"] == "male" else folder
+        write_c3d(where / f"{person['sex']}_{number}.c3d", walk)
+    whole = (folder / "female_1.c3d").read_bytes()
+    (folder / "female_1.c3d").write_bytes(whole[: len(whole) // 2])
+    still = walk - walk + walk.isel(time=0)
+    write_c3d(folder / "female_2.c3d", still.transpose("time", "marker", "axis"))
+    (folder / "notes.txt").write_text("not a capture")
+    return folder
+
+
+def test_bad_files_stop_no_others_and_are_named_with_the_reason(folder) -> None:
+    study = fit_folder(folder, n_jobs=1)
+    assert study.population is not None
+    assert len(study.population) == 4
+    assert study.files["file"].tolist() == [
+        "female_0.c3d", "female_1.c3d", "female_2.c3d",
+        "men/male_3.c3d", "men/male_4.c3d", "men/male_5.c3d",
+    ]  # fmt: skip
+    refused = study.refused.set_index("file")["reason"]
+    assert set(refused.index) == {"female_1.c3d", "female_2.c3d"}
+    assert "frames" in refused["female_1.c3d"]
+    used = study.files[study.files["status"] == "used"]
+    assert (used["r2"] > 0.9).all()
+    assert used["strides"].between(7, 12).all()
+
+
+def test_a_table_says_who_is_who_and_which_files_count(folder, tmp_path) -> None:
+    table = pd.DataFrame(
+        {
+            "file": ["men/male_3.c3d", "female_0.c3d", "men/nobody.c3d"],
+            "sex": ["male", "female", "male"],
+            "weight_kg": [80, 60, np.nan],
+        }
+    )
+    table.to_csv(tmp_path / "people.csv", index=False)
+    study = fit_folder(folder, traits=tmp_path / "people.csv", n_jobs=1)
+    assert study.population is not None
+    assert study.population.traits["sex"].tolist() == ["male", "female"]
+    assert study.population.traits["weight_kg"].tolist() == [80, 60]
+    assert "nothing of that name" in study.refused["reason"].item()
+
+
+def test_a_pattern_takes_traits_from_names(folder) -> None:
+    study = fit_folder(folder, trait_from_name=r"(?P<sex>female|male)_(?P<number>\d)", n_jobs=1)
+    assert study.population is not None
+    assert study.population.traits["sex"].tolist() == ["female", "male", "male", "male"]
+    assert study.population.traits["number"].tolist() == [0, 3, 4, 5]
+
+
+def test_processes_and_progress_change_nothing(folder) -> None:
+    steps = []
+    alone = fit_folder(folder, n_jobs=1, progress=lambda done, total: steps.append((done, total)))
+    together = fit_folder(folder, n_jobs=2)
+    assert steps == [(done, 6) for done in range(1, 7)]
+    assert alone.population is not None
+    assert together.population is not None
+    np.testing.assert_array_equal(alone.population.X, together.population.X)
+    pd.testing.assert_frame_equal(alone.files, together.files)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"traits": pd.DataFrame({"name": ["a"]})}, "needs a column 'file'"),
+        ({"traits": pd.DataFrame({"file": ["a", "a"]})}, "more than once"),
+        ({"traits": pd.DataFrame({"file": ["a", None]})}, "Row 2 of the traits table"),
+        ({"traits": "nowhere.csv"}, r"nowhere\.csv could not be read"),
+        ({"trait_from_name": "("}, "no regular expression"),
+        ({"trait_from_name": "walk"}, "no named group"),
+        ({"trait_from_name": "(?P<x>zebra)"}, "matches no file name"),
+    ],
+)
+def test_tables_and_patterns_that_make_no_sense_are_refused(folder, wrong, said) -> None:
+    with pytest.raises(ValueError, match=said):
+        fit_folder(folder, **wrong)
+
+
+def test_no_path_leads_out_of_the_folder(folder) -> None:
+    table = pd.DataFrame({"file": ["../../etc/passwd", "/etc/passwd", "men/../female_0.c3d"]})
+    study = fit_folder(folder, traits=table, n_jobs=1)
+    assert study.files["status"].tolist() == ["refused", "refused", "used"]
+    assert "leads out of the folder" in study.files["reason"][0]
+
+
+def test_an_empty_folder_and_no_folder_are_refused(tmp_path) -> None:
+    with pytest.raises(ValueError, match=r"no captures \(.*\*\.bvh, \*\.c3d"):
+        fit_folder(tmp_path)
+    with pytest.raises(ValueError, match="is no folder"):
+        fit_folder(tmp_path / "none")
+
+
+def test_acted_styles_of_bandai_namco_are_told_apart(captures) -> None:
+    """The issue's own check: all 175 read, steady strides found, acted styles told apart."""
+    study = fit_folder(captures / "bandai-namco", trait_from_name="walk_(?P<style>[a-z]+)_")
+    assert study.population is not None
+    assert len(study.population) == 175
+    assert len(study.refused) == 0
+    assert study.files["r2"].median() >= 0.96
+    found = classify(study.population, "style=feminine:masculine", n_permutations=0)
+    assert found.results[0].curves.fewest_errors == 0
+
+
+@pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
+@pytest.mark.parametrize(("name", "r2"), [("02_01.c3d", 0.97), ("12_01.bvh", 0.94)])
+def test_real_captures_reach_the_share_explained_of_the_prototype(captures, name, r2) -> None:
+    walker, facts = walker_from_file(captures / "cmu" / name, form="fourier")
+    assert walker.fit is not None
+    assert facts["r2"] == walker.fit.r2 >= r2
+
+
+def test_an_interrupted_run_goes_on_where_it_stopped(folder, tmp_path, monkeypatch) -> None:
+    journal = tmp_path / "people.nc.part"
+
+    def interrupted(done: int, _total: int) -> None:
+        if done == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fit_folder(folder, n_jobs=1, journal=journal, progress=interrupted)
+    with journal.open("a") as file:
+        file.write('{"file": "female_2.c3d", "state"')  # as a power cut leaves it
+    read = []
+    monkeypatch.setattr(
+        attempts, "walker_from_file", lambda path, **how: (read.append(path), made(path, **how))[1]
+    )
+    made = walker_from_file
+    again = fit_folder(folder, n_jobs=1, journal=journal)
+    assert [path.name for path in read] == [
+        "female_1.c3d", "female_2.c3d", "male_4.c3d", "male_5.c3d",
+    ]  # fmt: skip
+    monkeypatch.undo()
+    at_once = fit_folder(folder, n_jobs=1)
+    assert again.population is not None
+    assert at_once.population is not None
+    np.testing.assert_array_equal(again.population.X, at_once.population.X)
+    pd.testing.assert_frame_equal(again.files, at_once.files)
+    pd.testing.assert_frame_equal(again.population.traits, at_once.population.traits)
+
+
+def test_what_has_changed_is_read_again(folder, tmp_path) -> None:
+    journal, path = tmp_path / "people.nc.part", tmp_path / "in" / "a.c3d"
+    path.parent.mkdir()
+    path.write_bytes((folder / "female_0.c3d").read_bytes())
+    first = fit_folder(path.parent, n_jobs=1, journal=journal)
+    fourier = fit_folder(path.parent, n_jobs=1, journal=journal, form="fourier")
+    path.write_bytes((folder / "men" / "male_3.c3d").read_bytes())
+    changed = fit_folder(path.parent, n_jobs=1, journal=journal)
+    assert first.population is not None
+    assert fourier.population is not None
+    assert changed.population is not None
+    assert fourier.population.walkers[0].form == "fourier"
+    assert not np.array_equal(first.population.X, changed.population.X)
+
+
+@pytest.mark.parametrize("damage", ["", "[]\n", "{}\n", "\x00\xff\n", '{"file": "female_0.c3d"}\n'])
+def test_a_damaged_journal_costs_time_and_nothing_else(folder, tmp_path, damage) -> None:
+    journal = tmp_path / "people.nc.part"
+    journal.write_text(damage, encoding="latin-1")
+    names = pd.DataFrame({"file": ["female_0.c3d"]})
+    kept = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
+    lines = journal.read_text(encoding="latin-1").splitlines()
+    entry = lines[-1].replace('"p0": [[', '"p0": [["no number", ')
+    journal.write_text(entry + "\n")
+    again = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
+    assert kept.population is not None
+    assert again.population is not None
+    np.testing.assert_array_equal(kept.population.X, again.population.X)
+
+
+def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:
+    def killed(where: Path, name: str, settings: dict, made=attempts._attempt):
+        if name == "men/male_4.c3d":
+            os.kill(os.getpid(), signal.SIGKILL)
+        return made(where, name, settings)
+
+    monkeypatch.setattr(attempts, "_attempt", killed)
+    found = fit_folder(folder, n_jobs=2)
+    reasons = found.refused.set_index("file")["reason"]
+    assert reasons.index.tolist() == ["female_1.c3d", "female_2.c3d", "men/male_4.c3d"]
+    assert reasons.str.contains("memory runs out").tolist() == [False, False, True]
