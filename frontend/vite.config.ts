@@ -40,8 +40,8 @@ function insidePage(): Plugin {
 
 /** What `vite build --mode NAME` makes: a page, or a module of its own. */
 const PAGES: Record<string, string> = {
-  player: "src/page/player.html",
-  interactive: "src/interactive/interactive.html",
+  player: "src/player/player.html",
+  interactive: "src/explorer/interactive.html",
 };
 const MODULES: Record<string, string> = {
   mannequin: "src/mannequin/mannequin.ts",

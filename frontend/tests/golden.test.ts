@@ -3,9 +3,9 @@
 import { readdirSync, readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 
-import { normals, permutation, randomWords, uniforms } from "../src/core/chance";
-import { readStimulus } from "../src/core/check";
-import { inPicture, scene } from "../src/core/playing";
+import { normals, permutation, randomWords, uniforms } from "../src/core/randomStream";
+import { readStimulus } from "../src/core/readStimulus";
+import { inPicture, scene } from "../src/core/scene";
 
 const FOLDER = new URL("../../tests/golden/", import.meta.url);
 const CLOSE_MM = 1e-6;

@@ -3,8 +3,8 @@
 import { expect, it } from "vitest";
 
 import golden from "../../tests/golden/mannequin.json";
-import { framesOf } from "../src/canvas/frame";
-import { readStimulus } from "../src/core/check";
+import { framesOf } from "../src/canvas/figureFrames";
+import { readStimulus } from "../src/core/readStimulus";
 import { bodyHeights, HULL, Hulls, mannequinOf } from "../src/mannequin/hulls";
 
 const stimulus = readStimulus(golden.stimulus);

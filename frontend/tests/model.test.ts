@@ -3,18 +3,18 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 
-import { uniforms } from "../src/core/chance";
-import { walking } from "../src/core/moving";
-import { castOf } from "../src/model/cast";
+import { uniforms } from "../src/core/randomStream";
+import { walking } from "../src/core/movingDots";
+import { castOf } from "../src/model/figures";
 import { captionOf } from "../src/model/captions";
 import { measuresOf, type MeasureName } from "../src/model/measures";
-import { partsOf, vectorOf } from "../src/model/mix";
+import { partsOf, vectorOf } from "../src/model/mixing";
 import type { Model } from "../src/model/model";
-import { placeOf, positionOf, positionsInCloud } from "../src/model/place";
-import { pythonLine } from "../src/model/python";
-import { NoModel, readModel } from "../src/model/read";
+import { placeOf, positionOf, positionsInCloud } from "../src/model/position";
+import { pythonLine } from "../src/model/pythonCode";
+import { NoModel, readModel } from "../src/model/readModel";
 import { initialState, type State } from "../src/model/state";
-import { walkerOf } from "../src/model/walker";
+import { walkerOf } from "../src/model/features";
 
 const CLOSE = 1e-6;
 

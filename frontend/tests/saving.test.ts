@@ -4,12 +4,12 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
 import golden from "../../tests/golden/model.json";
-import { readStimulus } from "../src/core/check";
-import { castOf } from "../src/model/cast";
-import { readModel } from "../src/model/read";
+import { readStimulus } from "../src/core/readStimulus";
+import { castOf } from "../src/model/figures";
+import { readModel } from "../src/model/readModel";
 import { initialState, TRANSFORM_NAMES, usualSettings, type State } from "../src/model/state";
-import { encodeFilm, NoFilm } from "../src/stage/film";
-import { pageFile, stimulusFile, type Kept } from "../src/stage/saving";
+import { encodeFilm, NoFilm } from "../src/viewer/filmEncoder";
+import { pageFile, stimulusFile, type Kept } from "../src/viewer/saving";
 
 const model = readModel(golden.model);
 const PLAYER =

@@ -3,15 +3,15 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, it, vi } from "vitest";
 
-import { uniforms } from "../src/core/chance";
+import { uniforms } from "../src/core/randomStream";
 import { addressOf, stateOf } from "../src/model/address";
-import { vectorOf } from "../src/model/mix";
-import { readModel } from "../src/model/read";
+import { vectorOf } from "../src/model/mixing";
+import { readModel } from "../src/model/readModel";
 import {
   initialState, RANGES, TRANSFORM_NAMES, TRANSFORMS, usualSettings, wrappedDegrees,
   type Field, type State,
 } from "../src/model/state";
-import { Store } from "../src/model/store";
+import { Store } from "../src/explorer/stateStore";
 
 const file = new URL("../../tests/golden/model.json", import.meta.url);
 const model = readModel(JSON.parse(readFileSync(file, "utf8")).model);

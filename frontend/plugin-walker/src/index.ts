@@ -2,10 +2,10 @@
 
 import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
 
-import { everyFrame, frameTiming } from "../../src/canvas/clock";
-import type { MannequinPainter } from "../../src/canvas/mannequin";
+import { everyFrame, frameTiming } from "../../src/canvas/frameClock";
+import type { MannequinPainter } from "../../src/canvas/mannequinLoader";
 import { painterOn, type Painter } from "../../src/canvas/painter";
-import { readStimulus } from "../../src/core/check";
+import { readStimulus } from "../../src/core/readStimulus";
 import { listen, type Answer } from "./answers";
 import { info } from "./info";
 

@@ -1,8 +1,8 @@
 /** Frames of a stimulus on a canvas: discs, sticks, blobs, or a mannequin. */
 
 import type { Stimulus } from "../core/stimulus";
-import { framesOf, type Shown } from "./frame";
-import { hasLimbs, type MannequinPainter } from "./mannequin";
+import { framesOf, type Shown } from "./figureFrames";
+import { hasLimbs, type MannequinPainter } from "./mannequinLoader";
 
 /** Width of a stick beside the diameter of a dot. */
 const STICK = 0.6;

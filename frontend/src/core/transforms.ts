@@ -1,11 +1,11 @@
 /** Every transform by its name in a stimulus file. */
 
-import * as body from "./body";
-import * as clocks from "./clocks";
-import type { Moving } from "./moving";
-import * as scattered from "./scattered";
-import * as space from "./space";
-import type { Stage } from "./stage";
+import * as body from "./bodyTransforms";
+import * as clocks from "./timeTransforms";
+import type { Moving } from "./movingDots";
+import * as scattered from "./dotTransforms";
+import * as space from "./spatialTransforms";
+import type { Stage } from "./transformContext";
 import type { Parameters, Step } from "./stimulus";
 
 type Transform<Name extends Step["name"]> = (

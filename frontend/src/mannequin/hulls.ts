@@ -8,8 +8,8 @@
  */
 
 import shape from "../../../src/eigenwalker/stimulus/mannequin.json";
-import type { Body } from "../core/moving";
-import { figureOf } from "../core/playing";
+import type { Body } from "../core/movingDots";
+import { figureOf } from "../core/scene";
 import type { Stimulus, View } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 

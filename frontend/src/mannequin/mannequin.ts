@@ -1,9 +1,9 @@
 /** The mannequin: a module of its own, loaded when a stimulus asks for it. */
 
-import type { MannequinPainter } from "../canvas/mannequin";
+import type { MannequinPainter } from "../canvas/mannequinLoader";
 import { drawFlat } from "./flat";
 import type { DrawHulls } from "./look";
-import { makePainter } from "./painting";
+import { makePainter } from "./hullPainter";
 import { solidDrawing } from "./solid";
 
 /** Under which three.js, which this module holds, may be passed on: the text goes with it. */

@@ -5,7 +5,7 @@
  * unknown or no number is passed over, and numbers are brought within their ranges.
  */
 
-import { partsOf } from "./mix";
+import { partsOf } from "./mixing";
 import type { Model } from "./model";
 import {
   initialState, MOST_SIDE_BY_SIDE, RANGES, TRANSFORM_NAMES, TRANSFORMS, usualSettings, within,

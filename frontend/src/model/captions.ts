@@ -1,9 +1,9 @@
 /** What is seen, in one sentence: for who does not see it, and for the names of files. */
 
-import { AVERAGE, comparedIn, nameOf } from "./cast";
-import { traitOf } from "./mix";
+import { AVERAGE, comparedIn, nameOf } from "./figures";
+import { traitOf } from "./mixing";
 import type { Model, Own } from "./model";
-import { ends } from "./poles";
+import { ends } from "./axisLabels";
 import { MOST_IN_CROWD, MOST_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
 
 /** Moler's names of the components (M4). */

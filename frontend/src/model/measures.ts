@@ -1,7 +1,7 @@
 /** What the eye takes in of a walk, in numbers, as `eigenwalker.gait.appearance` has them (J32, W11). */
 
 import type { Walker } from "../core/stimulus";
-import { stanceSpeed, type Path } from "./stance";
+import { stanceSpeed, type Path } from "./stanceSpeed";
 
 const N_SAMPLES = 200;
 

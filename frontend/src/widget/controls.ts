@@ -1,7 +1,7 @@
 /** Sliders of the traits below the walker, a button that stops it, and one that puts all back. */
 
 import type { Model, Trait } from "../model/model";
-import { ends } from "../model/poles";
+import { ends } from "../model/axisLabels";
 import { RANGES, type State } from "../model/state";
 
 export interface Controls {

@@ -1,8 +1,8 @@
 /** A stimulus in a notebook: shown as it is, again and again. */
 
-import { everyFrame } from "../canvas/clock";
+import { everyFrame } from "../canvas/frameClock";
 import { painterOn } from "../canvas/painter";
-import { readStimulus } from "../core/check";
+import { readStimulus } from "../core/readStimulus";
 import type { Shared } from "./widget";
 
 export function film(shared: Shared, box: HTMLElement): () => void {

@@ -1,11 +1,11 @@
 /** The walker in a notebook, for anywidget: what Python sets is shown, what a hand sets goes back. */
 
-import { mannequinFrom, type MannequinPainter } from "../canvas/mannequin";
-import { castOf } from "../model/cast";
+import { mannequinFrom, type MannequinPainter } from "../canvas/mannequinLoader";
+import { castOf } from "../model/figures";
 import type { Model, Own } from "../model/model";
-import { readModel } from "../model/read";
+import { readModel } from "../model/readModel";
 import { initialState, type State } from "../model/state";
-import { Stage } from "../stage/stage";
+import { Stage } from "../viewer/viewer";
 import { film } from "./film";
 import { controlsOf, type Controls } from "./controls";
 import style from "./widget.css?inline";

@@ -1,0 +1,32 @@
+/** Where dots are in the picture of a stimulus, in pixels, moment by moment. */
+
+import type { Moving } from "../core/movingDots";
+import { inPicture, scene } from "../core/scene";
+import type { Stimulus } from "../core/stimulus";
+
+/** One figure, or the dots of one mask, at one moment. */
+export interface Shown {
+  readonly moving: Moving;
+  /** Pixels from the left and the upper edge of the picture, one dot after the other. */
+  readonly places: Float64Array;
+  /** Millimetres in the scene. */
+  readonly positions: Float64Array;
+  /** 1 for each dot that is seen. */
+  readonly visible: Uint8Array;
+}
+
+/** The function that gives all figures of a stimulus at a time in seconds. */
+export function framesOf(stimulus: Stimulus): (time: number) => Shown[] {
+  const figures = scene(stimulus);
+  const { width_px, height_px, px_per_mm } = stimulus.display;
+  return (time) =>
+    figures.map((moving) => {
+      const { positions, visible } = moving.at(time);
+      const { places, seen } = inPicture(positions, stimulus.view);
+      const inPixels = places.map((place, i) =>
+        i % 2 === 0 ? width_px / 2 + px_per_mm * place : height_px / 2 - px_per_mm * place,
+      );
+      const both = visible.map((isVisible, dot) => isVisible & seen[dot]!);
+      return { moving, places: inPixels, positions, visible: both };
+    });
+}

@@ -1,0 +1,271 @@
+/** @vitest-environment jsdom */
+/** Parts of the interactive page: sliders, files that are brought, words. */
+
+import { describe, expect, it, vi } from "vitest";
+import { choice } from "../src/explorer/choice";
+import { make } from "../src/page/element";
+import { nearest, towards } from "../src/explorer/nearestPoint";
+import { Notices } from "../src/explorer/notices";
+import { peopleIn, warnings } from "../src/explorer/about";
+import { bundles, callIt, openFiles } from "../src/explorer/openFile";
+import { ownOf } from "../src/explorer/ownWalker";
+import { axesOf } from "../src/explorer/axis";
+import { howPlausible, reachOf } from "../src/explorer/plausibility";
+import { signed, slider } from "../src/explorer/slider";
+import { goldenModel, posture, stimulusWith } from "./golden_model";
+import { vectorOf } from "../src/model/mixing";
+import { placeOf } from "../src/model/position";
+import { initialState } from "../src/model/state";
+import { walkerOf } from "../src/model/features";
+
+describe("a slider", () => {
+  const made = (): { heard: number[]; one: ReturnType<typeof slider> } => {
+    const heard: number[] = [];
+    const one = slider({
+      label: "Sex", ends: ["woman", "man"], min: -6, max: 6, step: 0.05, usual: 0,
+      said: (value) => signed(value), onInput: (value) => heard.push(value),
+    });
+    return { heard, one };
+  };
+  const move = (input: HTMLInputElement, value: number): void => {
+    input.value = String(value);
+    input.dispatchEvent(new Event("input"));
+  };
+
+  it("says what it is moved to", () => {
+    const { heard, one } = made();
+    move(one.input, -2.5);
+    expect(heard).toEqual([-2.5]);
+    expect(one.input.getAttribute("aria-valuetext")).toBe("\u22122.5 towards woman");
+  });
+
+  it("goes back by a double click", () => {
+    const { heard, one } = made();
+    move(one.input, 4);
+    one.input.dispatchEvent(new Event("dblclick"));
+    expect(heard).toEqual([4, 0]);
+    expect(one.input.value).toBe("0");
+  });
+
+  it("goes back by its button, which is there once it was moved", () => {
+    const { heard, one } = made();
+    expect(one.element.classList.contains("changed")).toBe(false);
+    move(one.input, 1);
+    expect(one.element.classList.contains("changed")).toBe(true);
+    one.element.querySelector("button")!.click();
+    expect(heard).toEqual([1, 0]);
+  });
+
+  it("is caught by its usual place only while it is dragged", () => {
+    const { heard, one } = made();
+    move(one.input, 0.05);
+    one.input.dispatchEvent(new Event("pointerdown"));
+    move(one.input, -0.05);
+    expect(heard).toEqual([0.05, 0]);
+  });
+
+  it("stays where it was, where the finger on it scrolls the page", () => {
+    const { heard, one } = made();
+    move(one.input, 2);
+    one.input.dispatchEvent(new Event("pointerdown"));
+    move(one.input, -1);
+    one.input.dispatchEvent(new Event("pointercancel"));
+    expect(heard).toEqual([2, -1, 2]);
+  });
+
+  it("tells nobody when it is told where to stand", () => {
+    const { heard, one } = made();
+    one.show(3);
+    expect(one.input.value).toBe("3");
+    expect(heard).toEqual([]);
+  });
+});
+
+describe("points that are chosen", () => {
+  const points = [{ x: 0, y: 0 }, { x: 10, y: 1 }, { x: 3, y: 9 }, { x: -5, y: 0 }];
+
+  it("are the nearest to the pointer, where one is near", () => {
+    expect(nearest(points, { x: 9, y: 3 }, 5)).toBe(1);
+    expect(nearest(points, { x: 50, y: 50 }, 5)).toBe(-1);
+    expect(nearest([], { x: 0, y: 0 }, 5)).toBe(-1);
+  });
+
+  it("follow one another the way of an arrow, and the last stays", () => {
+    expect(towards(points, 0, [1, 0])).toBe(1);
+    expect(towards(points, 0, [-1, 0])).toBe(3);
+    expect(towards(points, 0, [0, 1])).toBe(2);
+    expect(towards(points, 1, [1, 0])).toBe(1);
+  });
+});
+
+it("one of a row of choices is checked at a time", () => {
+  const heard = vi.fn();
+  const row = choice("View", [{ value: 0, label: "Front" }, { value: 90, label: "Side" }], heard);
+  document.body.append(row.element);
+  row.show(90);
+  const [front, side] = [...row.element.querySelectorAll("input")];
+  expect([front!.checked, side!.checked]).toEqual([false, true]);
+  front!.click();
+  expect(heard).toHaveBeenCalledExactlyOnceWith(0);
+  expect(side!.checked).toBe(false);
+});
+
+it("text of a hostile file stays text", () => {
+  const notices = new Notices();
+  notices.trouble("<img src=x onerror=alert(1)>");
+  expect(notices.element.querySelector("img")).toBeNull();
+  expect(notices.element.querySelector("[role=alert]")!.textContent).toContain("<img");
+  expect(make("p", { title: '"><b>' }).outerHTML).not.toContain("<b>");
+});
+
+it("trouble stays until it is sent away", () => {
+  const notices = new Notices();
+  notices.trouble("This is no capture.");
+  notices.element.querySelector("button")!.click();
+  expect(notices.element.textContent).toBe("");
+});
+
+describe("what is brought", () => {
+  const model = goldenModel();
+  const held = { model, population: "" };
+  const file = (content: unknown, name = "a.json"): File =>
+    new File([typeof content === "string" ? content : JSON.stringify(content)], name);
+
+  it.each([
+    ["{", /not JSON/],
+    ["null", /neither a model nor a stimulus/],
+    ['{"format": "eigenwalker model"}', /no model of walkers/],
+    ['{"format": "eigenwalker stimulus", "version": 1}', /no stimulus/],
+  ])("is refused in a sentence where it is %s", async (text, sentence) => {
+    await expect(openFiles([file(text)], held)).rejects.toThrow(sentence);
+  });
+
+  it("is told about the server where only Python can read it", async () => {
+    await expect(openFiles([file("", "walk.c3d")], held)).rejects.toThrow(/eigenwalker serve/);
+    await expect(openFiles([file("", "people.nc")], held)).rejects.toThrow(/eigenwalker serve/);
+  });
+
+  it("is opened together where it is captures, and alone where it is not", () => {
+    const names = (bundle: readonly File[]): string[] => bundle.map(({ name }) => name);
+    const brought = ["a.amc", "m.json", "a.asf", "p.nc"].map((name) => file("", name));
+    expect(bundles(brought).map(names)).toEqual([["m.json"], ["p.nc"], ["a.amc", "a.asf"]]);
+  });
+
+  it("walks, where it is a stimulus", async () => {
+    const walker = walkerOf(model, model.walkers[0]!.vector);
+    const opened = await openFiles([file(stimulusWith(walker))], held);
+    expect(opened.kind).toBe("own");
+  });
+});
+
+describe("a walker of a stimulus", () => {
+  const model = goldenModel();
+  const vector = model.walkers[0]!.vector;
+
+  it("comes back as the vector it was made of", () => {
+    const own = ownOf(model, stimulusWith(walkerOf(model, vector)), "mine.json");
+    expect(own.name).toBe("mine");
+    own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
+  });
+
+  it("comes back whatever its origin of time and the signs of its postures", () => {
+    const walker = walkerOf(model, vector);
+    const flip = [1, -1, 1, -1];
+    const other = {
+      ...walker,
+      p: walker.p.map((p, i) => p.map((at) => at.map((x) => x * flip[i]!) as unknown as typeof at)),
+      phases: walker.phases.map((phase, i) => phase + walker.harmonics[i]! * 0.7 + (flip[i]! < 0 ? Math.PI : 0)),
+    };
+    const own = ownOf(model, stimulusWith(other), "mine.json");
+    own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
+  });
+
+  it("walks as it did, half a stride later, where its first posture has the other sign", () => {
+    const walker = walkerOf(model, vector);
+    const other = {
+      ...walker,
+      p: walker.p.map((p, i) => (i === 0 ? p.map((at) => at.map((x) => -x) as unknown as typeof at) : p)),
+    };
+    const own = walkerOf(model, ownOf(model, stimulusWith(other), "mine.json").vector);
+    const [was, is] = [posture(other, 0.1), posture(own, 0.1 + 0.5 / own.frequency_hz)];
+    is.forEach((value, i) => expect(value).toBeCloseTo(was[i]!, 6));
+  });
+
+  it("is refused where it lacks a marker", () => {
+    const walker = walkerOf(model, vector);
+    const other = { ...walker, markers: walker.markers.map((name) => `${name}_of_mine`) };
+    expect(() => ownOf(model, stimulusWith(other), "mine.json")).toThrow(/lacks head/);
+  });
+});
+
+describe("plausibility", () => {
+  const model = goldenModel();
+  const reach = reachOf(model, axesOf(model));
+  const said = (traits: Record<string, number>): string => {
+    const vector = vectorOf(model, { ...initialState(model), traits });
+    return howPlausible(reach, placeOf(model, vector));
+  };
+
+  it("of the average walker is that of nobody and everybody", () => {
+    expect(said({})).toMatch(/average walker/);
+  });
+
+  it("is lost where a slider goes farther than anyone, however near the average that is", () => {
+    expect(said({ sex: 6 })).toMatch(/^(A caricature|Nobody walks so): 6\.0 SD towards man; the farthest walker is at \d\.\d\.$/);
+    expect(said({ sex: -6 })).toMatch(/ SD towards woman; /);
+  });
+
+  it("of one's own capture is never called a caricature", () => {
+    const vector = vectorOf(model, { ...initialState(model), traits: { sex: 6 } });
+    expect(howPlausible(reach, placeOf(model, vector), true)).toMatch(/^Unlike anyone here: 6\.0 SD/);
+  });
+
+  it("is had by everyone of the population", () => {
+    for (const { vector } of model.walkers) {
+      expect(howPlausible(reach, placeOf(model, vector))).toMatch(/^Plausible/);
+    }
+  });
+});
+
+describe("notices", () => {
+  it("are two at most: what is new of a kind takes the place of what was", () => {
+    const notices = new Notices();
+    notices.trouble("One.");
+    notices.trouble("Two.", "And a half.");
+    notices.told(["Three."]);
+    notices.news("Four.");
+    const said = [...notices.element.querySelectorAll(".notice")].map(({ textContent }) => textContent);
+    expect(said).toEqual(["Two.And a half.", "Four."]);
+  });
+
+  it("of work that goes on come back after others, and end with it", () => {
+    const notices = new Notices();
+    const done = notices.busy("Reading.");
+    notices.told(["Saved."]);
+    expect(notices.element.textContent).toBe("Saved.");
+    notices.element.querySelector("button")!.click();
+    expect(notices.element.textContent).toBe("Reading.");
+    done();
+    expect(notices.element.textContent).toBe("");
+  });
+});
+
+describe("captures that were made to a population", () => {
+  it("are named by their folder, else one by one", () => {
+    const files = ["a.c3d", "b.c3d", "c.c3d", "d.c3d"].map((name) => new File([""], name));
+    expect(callIt(files, "walks")).toBe("walks/");
+    expect(callIt(files)).toBe("a.c3d, b.c3d and 2 more");
+    expect(callIt(files.slice(0, 3))).toBe("a.c3d, b.c3d, c.c3d");
+    expect(callIt(files.slice(0, 1), "walks")).toBe("a.c3d");
+  });
+
+  it("are said in place of a file that is not there, and that they are few", () => {
+    const model = { ...goldenModel(), n_walkers: 3, traits: [], source: "people.nc", captures: "walks/" };
+    expect(peopleIn(model)).toMatch(/^3 .*walkers of walks\/$/);
+    expect(warnings(model)).toEqual([
+      expect.stringMatching(/^3 walkers are few/),
+      expect.stringMatching(/^No trait/),
+    ]);
+    expect(warnings(goldenModel()).length).toBe(goldenModel().n_walkers < 10 ? 1 : 0);
+  });
+});

@@ -1,0 +1,372 @@
+// @vitest-environment jsdom
+// The stage: what it draws is what a stimulus file of it says, strides go on, and it rests unseen.
+
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import golden from "../../tests/golden/model.json";
+import { framesOf } from "../src/canvas/figureFrames";
+import { uniforms } from "../src/core/randomStream";
+import { observerAxes } from "../src/core/vector";
+import { castOf, type Cast } from "../src/model/figures";
+import { readModel } from "../src/model/readModel";
+import { initialState, usualSettings, type State } from "../src/model/state";
+import { actOf, ratesOf, type Script } from "../src/viewer/animation";
+import { Stage, type Hooks } from "../src/viewer/viewer";
+import { boxesOf, stagingOf } from "../src/viewer/arrangement";
+import { roomFor, stagedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
+import { Troupe } from "../src/viewer/walkerBatch";
+
+const model = readModel(golden.model);
+const chosen = (part: Partial<State> = {}): State => ({ ...initialState(model), ...part });
+const SIZE = { width_px: 900, height_px: 600 };
+
+/** All that an act is made of, beginning at 0 s. */
+function scriptOf(part: Partial<State>, others: Partial<Script> = {}): Script {
+  const state = chosen(part);
+  const cast = castOf(model, state);
+  const staging = stagingOf(cast.length, roomFor(model, cast), SIZE, state.elevation_deg);
+  const cycles = cast.map(() => 0);
+  return { model, cast, state, size: SIZE, staging, cycles, time: 0, turned_deg: 0, mannequin: null, ...others };
+}
+
+/** Where the troupe has all dots at a time. */
+function troupePlaces({ cast, state, staging }: Script, time: number): Float64Array {
+  const troupe = new Troupe(cast.map(({ walker }) => walker));
+  ratesOf({ cast, state }).forEach((rate, i) => (troupe.rates[i] = rate));
+  const axes = observerAxes(state.azimuth_deg + state.turning_deg_s * time, state.elevation_deg);
+  const sight = { axes, eyeMm: state.perspective ? staging.eyeMm : null };
+  troupe.see(time, sight, staging, SIZE.width_px, SIZE.height_px);
+  return troupe.places;
+}
+
+const apart = (found: ArrayLike<number>, wanted: ArrayLike<number>): number => {
+  expect(found.length).toBe(wanted.length);
+  return Array.from(found).reduce((most, value, i) => Math.max(most, Math.abs(value - wanted[i]!)), 0);
+};
+
+describe("what is drawn quickly is what the stimulus says", () => {
+  it.each<[string, Partial<State>]>([
+    ["one walker", {}],
+    ["a caricature, faster", { traits: { sex: 5 }, tempo: 1.7, azimuth_deg: 71 }],
+    ["from above, in perspective", { elevation_deg: 35, perspective: true, azimuth_deg: -140 }],
+    ["one that turns by itself", { turning_deg_s: 40 }],
+    ["four panels in perspective", { scene: "four", perspective: true, azimuth_deg: 20, elevation_deg: -15 }],
+    ["four at one tempo", { scene: "side", walkers: [0, 3, 5, 7] }],
+    ["a crowd", { scene: "crowd", traits: { weight_kg: 2 }, elevation_deg: 50 }],
+  ])("%s", (_, part) => {
+    const script = scriptOf(part);
+    const { cast, state, staging } = script;
+    const frames = framesOf(stagedStimulus(model, cast, state, SIZE, staging));
+    for (const time of [0, 0.3, 1.7]) {
+      const wanted = frames(time).flatMap(({ places }) => [...places]);
+      expect(apart(troupePlaces(script, time), wanted)).toBeLessThan(1e-6);
+    }
+  });
+});
+
+describe("walkers stay in their boxes", () => {
+  it("however they are turned, for random states", () => {
+    for (let seed = 0; seed < 40; seed++) {
+      const [sex, azimuth, elevation, time, which] = [...uniforms(1, seed, 0, 0, 5)] as [number, number, number, number, number];
+      const scene = (["one", "four", "side", "crowd"] as const)[Math.floor(4 * which)]!;
+      const script = scriptOf({
+        scene,
+        traits: { sex: 12 * sex - 6 },
+        azimuth_deg: 360 * azimuth - 180,
+        elevation_deg: 120 * elevation - 30,
+      });
+      const places = troupePlaces(script, 3 * time);
+      const boxes = boxesOf(script.staging, SIZE);
+      const perWalker = places.length / boxes.length;
+      boxes.forEach(({ left, top, width, height }, i) => {
+        const own = places.subarray(i * perWalker, (i + 1) * perWalker);
+        own.forEach((place, j) => {
+          const [low, size] = j % 2 === 0 ? [left, width] : [top, height];
+          expect(place).toBeGreaterThan(low);
+          expect(place).toBeLessThan(low + size);
+        });
+      });
+    }
+  });
+
+  it("and the boxes fill the picture without overlap", () => {
+    for (let count = 1; count <= 100; count++) {
+      const boxes = boxesOf(stagingOf(count, { radius: 450, height: 1750 }, SIZE, 10), SIZE);
+      expect(boxes.length).toBe(count);
+      const area = boxes.reduce((sum, { width, height }) => sum + width * height, 0);
+      expect(area).toBeLessThanOrEqual(SIZE.width_px * SIZE.height_px * 1.000001);
+      boxes.forEach(({ left, top, width, height }) => {
+        expect(left).toBeGreaterThan(-1e-6);
+        expect(left + width).toBeLessThan(SIZE.width_px + 1e-6);
+        expect(top).toBeGreaterThan(-1e-6);
+        expect(top + height).toBeLessThan(SIZE.height_px + 1e-6);
+      });
+    }
+  });
+});
+
+describe("the chain", () => {
+  const steps = (part: Partial<State>) => {
+    const state = chosen(part);
+    return stimulusOf(model, castOf(model, state), state).transforms;
+  };
+
+  it("is empty for a walker as it is", () => expect(steps({})).toEqual([]));
+
+  it("acts in one order, whatever was switched on first", () => {
+    const names = ["mask", "scramble", "invert", "mirror", "arm_swing"] as const;
+    const on = (order: readonly (typeof names)[number][]): State["transforms"] =>
+      Object.fromEntries(order.map((name) => [name, usualSettings(name)]));
+    const found = steps({ transforms: on(names), tempo: 2, turning_deg_s: 20 }).map(({ name }) => name);
+    expect(found).toEqual(["speed", "gain", "mirror", "invert", "scramble", "rotate", "mask"]);
+    const other = steps({ transforms: on([...names].reverse()), tempo: 2, turning_deg_s: 20 });
+    expect(other.map(({ name }) => name)).toEqual(found);
+  });
+
+  it("works out the box of a scrambled walker from the walker", () => {
+    const [front] = steps({ transforms: { scramble: usualSettings("scramble") }, azimuth_deg: 0 });
+    const [side] = steps({ transforms: { scramble: usualSettings("scramble") }, azimuth_deg: 90 });
+    const box = (step: typeof front): readonly number[] => (step?.name === "scramble" ? step.box_mm : []);
+    expect(box(front)[0]).toBeGreaterThan(box(side)[0]!);
+    expect(box(front)[1]).toBe(box(side)[1]);
+  });
+
+  it("names the figures of a mask one by one", () => {
+    const masks = steps({ scene: "four", transforms: { mask: usualSettings("mask") } });
+    expect(masks.map(({ figures }) => figures)).toEqual([[0], [1], [2], [3]]);
+  });
+});
+
+describe("strides go on", () => {
+  beforeEach(() => {
+    HTMLCanvasElement.prototype.getContext = (() => silentContext) as never;
+  });
+
+  it.each<[string, Partial<State>]>([
+    ["as they are", {}],
+    ["in a chain", { transforms: { invert: {} } }],
+    ["backwards", { transforms: { reverse: {} }, tempo: 1.4 }],
+  ])("%s", (_, part) => {
+    const script = scriptOf({ ...part, scene: "side" }, { cycles: [0.1, 0.2, 5.3, -0.4], time: 7.7 });
+    const act = actOf(script);
+    const rates = ratesOf(script);
+    script.cycles.forEach((cycle, i) => {
+      expect(act.cycle(i, 7.7)).toBeCloseTo(cycle, 9);
+      expect(act.cycle(i, 8.2) - cycle).toBeCloseTo(0.5 * rates[i]!, 9);
+    });
+  });
+
+  it("into a chain and out of it with every dot where it was", () => {
+    // Twice a mirror image of walkers is they themselves, but through the chain.
+    const script = scriptOf({ azimuth_deg: 50 }, { cycles: [0.37], time: 3 });
+    const { cast, state, staging } = script;
+    const clock = 360 * (0.37 - ratesOf(script)[0]! * 3);
+    const start = { name: "start", phase_deg: clock, figures: [0] } as const;
+    const chained = framesOf(stagedStimulus(model, cast, state, SIZE, staging, [start]))(3);
+    const troupe = new Troupe(cast.map(({ walker }) => walker));
+    troupe.starts[0] = 0.37 - troupe.rates[0]! * 3;
+    troupe.see(3, { axes: observerAxes(50, 0), eyeMm: null }, staging, SIZE.width_px, SIZE.height_px);
+    expect(apart(troupe.places, chained[0]!.places)).toBeLessThan(1e-6);
+  });
+});
+
+/** A canvas that counts what is drawn on it. */
+let dots: [number, number][] = [];
+const counted = vi.fn<(what: string) => void>();
+const silentContext: object = new Proxy({}, {
+  get: (_, name) => {
+    if (name === "canvas") return { width: 1, height: 1 };
+    return (...given: number[]) => {
+      counted(String(name));
+      if (name === "arc") dots.push([given[0]!, given[1]!]);
+      return silentContext;
+    };
+  },
+  set: () => true,
+});
+
+describe("the stage", () => {
+  let frames: FrameRequestCallback[] = [];
+  let now = 0;
+  let sight: ((inSight: boolean) => void) | undefined;
+  let canvas: HTMLCanvasElement;
+
+  beforeEach(() => {
+    [frames, now] = [[], 0];
+    counted.mockClear();
+    HTMLCanvasElement.prototype.getContext = (() => silentContext) as never;
+    HTMLCanvasElement.prototype.setPointerCapture = () => {};
+    vi.stubGlobal("requestAnimationFrame", (draw: FrameRequestCallback) => frames.push(draw));
+    vi.stubGlobal("cancelAnimationFrame", () => (frames = []));
+    vi.stubGlobal("matchMedia", () => ({ matches: false }));
+    vi.stubGlobal("ResizeObserver", class { observe(): void {} disconnect(): void {} });
+    vi.stubGlobal(
+      "IntersectionObserver",
+      class {
+        constructor(seen: (entries: { isIntersecting: boolean }[]) => void) {
+          sight = (isIntersecting) => seen([{ isIntersecting }]);
+        }
+        observe(): void {}
+        disconnect(): void {}
+      },
+    );
+    canvas = document.createElement("canvas");
+    Object.defineProperties(canvas, { clientWidth: { value: 900 }, clientHeight: { value: 600 } });
+  });
+  afterEach(() => vi.unstubAllGlobals());
+
+  /** Let so many frames of the screen go by. */
+  function run(count: number): void {
+    for (let i = 0; i < count; i++) {
+      const due = frames;
+      frames = [];
+      now += 1000 / 60;
+      for (const draw of due) draw(now);
+    }
+  }
+
+  function staged(part: Partial<State> = {}, hooks: Hooks = {}): { stage: Stage; show: (part: Partial<State>) => void } {
+    const stage = new Stage(canvas, hooks);
+    const show = (wish: Partial<State>): void => {
+      const state = chosen(wish);
+      const cast: readonly Cast[] = castOf(model, state);
+      stage.show(model, cast, state);
+    };
+    show(part);
+    return { stage, show };
+  }
+
+  const drawnSince = (act: () => void): number => {
+    counted.mockClear();
+    act();
+    return counted.mock.calls.filter(([what]) => what === "fillRect").length;
+  };
+
+  it("draws each frame while it plays, and none while it is paused, hidden or gone", () => {
+    const { stage, show } = staged();
+    expect(drawnSince(() => run(10))).toBe(10);
+    show({ playing: false });
+    run(2);
+    expect(drawnSince(() => run(10))).toBe(0);
+    expect(frames.length).toBe(0);
+    show({});
+    expect(drawnSince(() => run(10))).toBe(10);
+    sight?.(false);
+    expect(drawnSince(() => run(10))).toBe(0);
+    sight?.(true);
+    expect(drawnSince(() => run(10))).toBe(10);
+    stage.remove();
+    expect(drawnSince(() => run(10))).toBe(0);
+    expect(frames.length).toBe(0);
+  });
+
+  it("draws once where something changes while it is paused", () => {
+    const { show } = staged({ playing: false });
+    run(5);
+    expect(drawnSince(() => (show({ playing: false, traits: { sex: 1 } }), run(5)))).toBe(1);
+  });
+
+  it("goes on where it was in the stride when the frequency changes, and when it is paused", () => {
+    const { stage, show } = staged();
+    run(31);
+    for (const part of [{ traits: { sex: 5 } }, { tempo: 2.5 }, { transforms: { invert: {} } }, { playing: false }]) {
+      const before = stage.cycle;
+      show(part);
+      expect(stage.cycle).toBeCloseTo(before, 9);
+      run(3);
+    }
+  });
+
+  it("stands where the state says when it is scrubbed", () => {
+    const { stage, show } = staged();
+    run(20);
+    show({ playing: false, cycle: 0.25 });
+    expect(stage.cycle).toBeCloseTo(0.25, 9);
+    show({ playing: false, cycle: 0.75, tempo: 2, traits: { sex: -3 } });
+    expect(stage.cycle).toBeCloseTo(0.75, 9);
+  });
+
+  it("lets several go on as they were to each other when it is paused and scrubbed", () => {
+    const { stage, show } = staged({ scene: "four" });
+    run(100);
+    const seen = (): number[] => (dots = [], run(2), dots.slice(-60).flat());
+    show({ scene: "four", playing: false });
+    const paused = seen();
+    show({ scene: "four", playing: false, cycle: stage.cycle });
+    expect(apart(seen(), paused)).toBeLessThan(1e-6);
+    const { cycle } = stage;
+    show({ scene: "four", playing: false, cycle: (cycle + 0.4) % 1 });
+    expect(apart(seen(), paused)).toBeGreaterThan(1);
+    show({ scene: "four", playing: false, cycle });
+    expect(apart(seen(), paused)).toBeLessThan(1e-6);
+  });
+
+  /** A pointer that moves every 30 ms. */
+  let time = 0;
+  const pointer = (type: string, x: number, y: number): void => {
+    const event = new MouseEvent(type, { clientX: x, clientY: y, button: 0 });
+    Object.defineProperties(event, { pointerId: { value: 1 }, timeStamp: { value: (time += 30) } });
+    canvas.dispatchEvent(event);
+  };
+
+  it("is turned by dragging, and tells so", () => {
+    const turned = vi.fn();
+    staged({ azimuth_deg: 170 }, { turned });
+    pointer("pointerdown", 100, 100);
+    pointer("pointermove", 140, 110);
+    pointer("pointermove", 160, 400);
+    expect(turned.mock.calls[0]).toEqual([-170, 5]);
+    expect(turned.mock.lastCall).toEqual([-160, 90]);
+  });
+
+  it("turns on a little when it is thrown, and comes to rest", () => {
+    const turned = vi.fn();
+    staged({ playing: false }, { turned });
+    pointer("pointerdown", 100, 100);
+    for (let x = 110; x <= 200; x += 10) pointer("pointermove", x, 100);
+    pointer("pointerup", 200, 100);
+    const [let_go] = turned.mock.lastCall as [number];
+    run(200);
+    const [rests] = turned.mock.lastCall as [number];
+    expect(rests).toBeGreaterThan(let_go);
+    expect(drawnSince(() => run(20))).toBe(0);
+  });
+
+  it("says who was tapped among several", () => {
+    const picked = vi.fn();
+    const boxes: unknown[] = [];
+    staged({ scene: "side", walkers: [1, 3, 5, 7] }, { picked, laid: (laid) => boxes.push(laid) });
+    expect((boxes.at(-1) as unknown[]).length).toBe(4);
+    pointer("pointerdown", 890, 300);
+    pointer("pointerup", 891, 301);
+    expect(picked).toHaveBeenCalledExactlyOnceWith(7);
+    pointer("pointerdown", 10, 300);
+    pointer("pointermove", 60, 300);
+    pointer("pointerup", 60, 300);
+    expect(picked).toHaveBeenCalledTimes(1);
+  });
+
+  it.each<[string, (change: (part: Partial<State>) => void) => void]>([
+    ["it is told to stand", (change) => change({ turning_deg_s: 0 })],
+    ["it is held", () => pointer("pointerdown", 10, 10)],
+  ])("stays where it came to by turning itself when %s", (_, act) => {
+    let state: Partial<State> = { turning_deg_s: 60, azimuth_deg: 0 };
+    const change = (part: Partial<State>): void => show((state = { ...state, ...part }));
+    const { show } = staged(state, { turned: (azimuth_deg) => change({ azimuth_deg }) });
+    const seen = (): [number, number][] => (dots = [], run(2), dots.slice(-15));
+    run(31);
+    change({ playing: false });
+    const before = seen();
+    act(change);
+    expect(state.azimuth_deg).toBeCloseTo(30, 6);
+    expect(apart(seen().flat(), before.flat())).toBeLessThan(1e-6);
+  });
+
+  it("draws the mannequin flat where its module is not to be had", async () => {
+    const lacking = vi.fn();
+    const { show } = staged({ style: "mannequin" }, { lacking });
+    await vi.waitFor(() => expect(lacking).toHaveBeenCalledOnce());
+    show({ style: "mannequin", playing: false });
+    expect(drawnSince(() => run(3))).toBeGreaterThan(0);
+  });
+});
