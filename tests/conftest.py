@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from eigenwalker.cli import main as cli
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.core.walker import Form, Walker
@@ -53,6 +55,25 @@ def mannequins() -> dict[str, PreparedClip]:
     walkers = load_population().walkers[:21]
     walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
     return {f"walker {i}": prepare(retarget(walk)) for i, walk in enumerate(walks)}
+
+
+@pytest.fixture
+def run_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., tuple[int, str, str]]:
+    """Type a command; get its exit code, what it printed, and what it wrote to stderr."""
+
+    def typed(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
+        code = 0
+        try:
+            cli.main()
+        except SystemExit as stop:
+            code = int(stop.code or 0)
+        printed = capsys.readouterr()
+        return code, printed.out, printed.err
+
+    return typed
 
 
 def _orthogonal_walker(

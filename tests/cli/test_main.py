@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.cli import main as cli
 from eigenwalker.io.write import write_mocap
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.overground import Route
@@ -23,20 +22,9 @@ from eigenwalker.simulation.walk import simulate_walk
 
 
 @pytest.fixture
-def run(monkeypatch, capsys):
-    """Type a command; get its exit code, what it printed, and what it said on the error stream."""
-
-    def typed(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return typed
+def run(run_command):
+    """Type a command; get its exit code, what it printed, and what it wrote to stderr."""
+    return run_command
 
 
 @pytest.fixture(scope="module")
@@ -296,7 +284,7 @@ def test_synthesize_starts_from_a_walker_or_a_capture(run, people, folder, tmp_p
         (("classify", "nowhere.nc"), "nothing of that name"),
         (("synthesize", "--trait", "sex"), "sex=+3"),
         (("synthesize", "--trait", "sex=much"), "sex=+3"),
-        (("synthesize", "--from", "99"), "walkers 0 to 39"),
+        (("synthesize", "--from", "99"), "walker from 0 to 39"),
         (("synthesize", "-o", "walker.xyz"), "'.xyz' is not known"),
         (("synthesize", "--part", "p9"), "no part 'p9'"),
         (("fit", ".", "-o", "people.csv"), "written as .nc"),

@@ -4,31 +4,19 @@ from __future__ import annotations
 
 import itertools
 import json
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from eigenwalker.cli import main as cli
 from eigenwalker.stimulus.stimulus import Stimulus
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """Type a command in an empty folder; get its exit code, what it printed, and its complaint."""
+def run(run_command, monkeypatch, tmp_path):
+    """Type the options of a stimulus in an empty folder; get exit code, output, and complaint."""
     monkeypatch.chdir(tmp_path)
-
-    def typed(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["eigenwalker", "stimulus", *map(str, words)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return typed
+    return partial(run_command, "stimulus")
 
 
 def test_options_act_in_one_order_however_they_are_typed(run):
@@ -90,7 +78,8 @@ def test_a_figure_for_animators_says_how_still_its_feet_stand(run):
 @pytest.mark.parametrize(("words", "complaint"), [
     (["--scramble", "sed=3"], "expected name=value"),
     (["--trait", "sex"], "does not say how far"),
-    (["--from", "99"], "expected 'average', or a walker from 0 to 39"),
+    (["--from", "99"], "a walker from 0 to 39"),
+    (["--from", "nobody.c3d"], "--from nobody.c3d"),
     (["--information", "some"], "choose 'full', 'structure' or 'dynamics'"),
     (["--size", "big"], "width and height"),
     (["-o", "stim.avi"], "must end in one of"),

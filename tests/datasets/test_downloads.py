@@ -15,7 +15,7 @@ from urllib.parse import unquote
 import pooch
 import pytest
 
-from eigenwalker.cli import main as cli
+from eigenwalker.cli.options import EXIT_FAILED
 from eigenwalker.datasets import downloads
 from eigenwalker.datasets.downloads import Collection, PublishedFile, collections, fetch_captures
 from eigenwalker.io.read import read_mocap
@@ -95,21 +95,14 @@ def small(server, monkeypatch) -> Collection:
 
 
 @pytest.fixture
-def run(monkeypatch, capsys):
-    """Type a command, with someone at the keyboard or not; get its exit code and what it said."""
+def run(run_command, monkeypatch):
+    """Type a command, with someone at the keyboard or not; get its exit code and output."""
 
     def typed(*words: object, says: str | None = None) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
         keyboard = io.StringIO(f"{says}\n")
         monkeypatch.setattr(keyboard, "isatty", lambda: says is not None)
         monkeypatch.setattr(sys, "stdin", keyboard)
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        said = capsys.readouterr()
-        return code, said.out, said.err
+        return run_command(*words)
 
     return typed
 
@@ -194,7 +187,7 @@ def test_left_out_the_folder_is_in_the_cache_of_the_user(small, tmp_path: Path, 
 
 def test_fetch_asks_before_it_fetches(run, small, server, tmp_path: Path):
     code, said, complaint = run("data", "fetch", "small", "-o", tmp_path, says="n")
-    assert code == cli.FAILED
+    assert code == EXIT_FAILED
     assert "Licence: CC BY 4.0. Say whose it is." in said
     assert "Please cite: Nobody (2024)." in said
     assert "not accepted" in complaint
@@ -214,11 +207,11 @@ def test_fetch_of_what_is_there_asks_nothing(run, small, server, tmp_path: Path)
 
 def test_fetch_with_nobody_to_ask_says_what_to_say(run, small, server, tmp_path: Path):
     code, _, complaint = run("data", "fetch", "small", "-o", tmp_path)
-    assert (code, server.asked) == (cli.FAILED, [])
+    assert (code, server.asked) == (EXIT_FAILED, [])
     assert "--accept-licence" in complaint
     code, _, complaint = run("data", "fetch", "large")
     assert (code, complaint) == (
-        cli.FAILED,
+        EXIT_FAILED,
         "eigenwalker: There is no collection 'large'; there are ['small'].\n",
     )
 

@@ -12,7 +12,6 @@ import pytest
 import xarray as xr
 
 import eigenwalker as ew
-from eigenwalker.cli import main as cli
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import MILLIMETRES, sampling_rate
 from eigenwalker.io.errors import UnreadableFile
@@ -358,16 +357,12 @@ def test_what_a_format_cannot_hold_is_refused(walk, gappy, tmp_path: Path):
 # ---------------------------------------------------------------- the command line
 
 
-def test_convert_writes_markers_or_joints(captures: Path, tmp_path: Path, monkeypatch, capsys):
+def test_convert_writes_markers_or_joints(captures: Path, tmp_path: Path, run_command):
     capture = captures / "cmu/02_01.c3d"
     for words in (["walk.nc"], ["joints.nc", "--joints"], ["walk.bvh"]):
         output, *options = words
-        line = ["eigenwalker", "convert", str(capture), str(tmp_path / output), *options]
-        monkeypatch.setattr("sys.argv", line)
-        with pytest.raises(SystemExit) as end:
-            cli.main()
-        assert end.value.code == 0
-    assert capsys.readouterr().out.count("Written: ") == 3
+        code, printed, _ = run_command("convert", capture, tmp_path / output, *options)
+        assert (code, "Written: " in printed) == (0, True)
     markers, joints = (read_mocap(tmp_path / name) for name in ("walk.nc", "joints.nc"))
     assert {"LFHD", "LTOE"} <= set(markers.marker.values)
     assert {*JOINTS.markers, "left_toe"} <= set(joints.marker.values)

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eigenwalker.cli import main as cli
 from eigenwalker.stimulus.stimulus import Stimulus
 from eigenwalker.stimulus.transforms import TRANSFORMS
 
@@ -60,12 +59,10 @@ def test_each_line_runs_and_shows_dots_in_the_picture(row, names):
 @pytest.mark.parametrize(
     "row", [row for row in gallery.ROWS if row.options is not None], ids=lambda row: row.name
 )
-def test_the_options_make_the_same_stimulus_as_the_line(row, names, tmp_path, monkeypatch):
+def test_the_options_make_the_same_stimulus_as_the_line(row, names, tmp_path, run_command):
     path = tmp_path / "stim.json"
-    monkeypatch.setattr(sys, "argv", shlex.split(gallery.COMMAND.format(row.options, path)))
-    with pytest.raises(SystemExit) as stop:
-        cli.main()
-    assert not stop.value.code
+    code, _, errors = run_command(*shlex.split(gallery.COMMAND.format(row.options, path))[1:])
+    assert code == 0, errors
     typed, line = Stimulus.load(path), gallery.made(row, names)
     for part in ("transforms", "view", "timing"):
         assert typed.content[part] == line.content[part]

@@ -1,4 +1,4 @@
-"""The command line for captures that others published: ``eigenwalker data list | fetch NAME``."""
+"""``eigenwalker data list | fetch NAME``: captures that others published."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(
+from eigenwalker.cli.options import progress_bar
+
+data = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
+    add_completion=False,
     help="Captures that others published: what there is, and how to have it.",
 )
 
 
-@app.command("list")
+@data.command("list")
 def list_collections() -> None:
     """List the collections, with size and licence."""
     from eigenwalker.datasets.downloads import collections
@@ -25,7 +28,7 @@ def list_collections() -> None:
         print(f"{name:<13}{len(each.files):>6}{each.size_mb:>9g}  {each.licence:<13} {each.about}")
 
 
-@app.command()
+@data.command()
 def fetch(
     name: Annotated[str, typer.Argument(help="A collection, as 'data list' names them.")],
     output: Annotated[
@@ -41,9 +44,6 @@ def fetch(
     ] = None,
 ) -> None:
     """Fetch a collection from where it is published, after its licence is accepted."""
-    from rich.console import Console
-    from rich.progress import Progress
-
     from eigenwalker.datasets.downloads import (
         collection_named,
         fetch_captures,
@@ -55,18 +55,13 @@ def fetch(
     folder = folder_of(name) if output is None else output
     if missing_files(collection, folder):
         print(collection.notice())
-        _consent(accept_licence)
-        with Progress(console=Console(stderr=True), transient=True) as bar:
-            task = bar.add_task("Fetching", total=None)
-            fetch_captures(
-                name, folder, accept_licence=True, base_url=base_url,
-                progress=lambda done, total: bar.update(task, completed=done, total=total),
-            )  # fmt: skip
+        _ask_for_consent(accept_licence)
+        with progress_bar("Fetching") as progress:
+            fetch_captures(name, folder, accept_licence=True, base_url=base_url, progress=progress)
     print(f"{len(collection.files)} files: {folder}")
 
 
-def _consent(accepted: bool) -> None:
-    """Ask whether the terms are accepted, unless that was said already."""
+def _ask_for_consent(accepted: bool) -> None:
     if accepted:
         return
     if not sys.stdin.isatty():

@@ -1,4 +1,4 @@
-"""The command line for stimuli: ``eigenwalker stimulus --trait sex=2 --invert -o stim.json``.
+"""``eigenwalker stimulus --trait sex=2 --invert -o stim.json``: a walker, transforms, a view.
 
 Options may be typed in any order. They are applied in this one: who walks (``--from``, ``--trait``,
 ``--information``); the body (``--gain``, ``--arm-swing``, ``--conflict``, ``--ellipses``,
@@ -10,13 +10,23 @@ Options may be typed in any order. They are applied in this one: who walks (``--
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from eigenwalker.cli.options import (
+    Elevation,
+    StartFrom,
+    TraitSteps,
+    View,
+    WithFlagged,
+    load_people,
+    progress_bar,
+    start_vector,
+    trait_axes,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,12 +35,12 @@ if TYPE_CHECKING:
     from eigenwalker.population.population import Population
     from eigenwalker.stimulus.stimulus import Stimulus
 
-Pairs = list[str] | None
-"""Parameters as typed, ``seed=3,keep=structure``, once or several times."""
+Texts = list[str] | None
+"""Texts as typed, ``seed=3,keep=structure``, once or several times."""
 
 
-def _wish(about: str) -> Any:
-    return typer.Option(help=about)
+def _about(text: str) -> Any:
+    return typer.Option(help=text)
 
 
 def stimulus(
@@ -49,162 +59,136 @@ def stimulus(
             "a folder for frames.",
         ),
     ] = Path("stim.json"),
-    trait: Annotated[Pairs, _wish("Trait and standard deviations: sex=2; may be repeated.")] = None,
-    start_from: Annotated[
-        str, typer.Option("--from", help="'average', or the number of a walker.")
-    ] = "average",
-    information: Annotated[str, _wish("'full', 'structure' or 'dynamics' only (J35).")] = "",
-    gain: Annotated[Pairs, _wish("Joints that move more: parts=legs,factor=0.5")] = None,
-    arm_swing: Annotated[float | None, _wish("Factor of the arms' swing.")] = None,
-    conflict: Annotated[Pairs, _wish("shoulder_width=1.2,hip_sway=2 (Mather, Murdoch)")] = None,
-    ellipses: Annotated[Pairs, _wish("shoulder=35/12,hip=15/20 mm (Cutting)")] = None,
-    perturb: Annotated[Pairs, _wish("markers=left_knee,amount=0/50/0,frequency=3")] = None,
-    speed: Annotated[float | None, _wish("Playback speed; 1 is its own.")] = None,
-    start: Annotated[float | None, _wish("Starting phase, degrees of the stride.")] = None,
+    trait: TraitSteps = None,
+    start_from: StartFrom = "average",
+    information: Annotated[str, _about("'full', 'structure' or 'dynamics' only.")] = "",
+    gain: Annotated[Texts, _about("Joints that move more: parts=legs,factor=0.5")] = None,
+    arm_swing: Annotated[float | None, _about("Factor of the arms' swing.")] = None,
+    conflict: Annotated[Texts, _about("shoulder_width=1.2,hip_sway=2 (Mather, Murdoch)")] = None,
+    ellipses: Annotated[Texts, _about("shoulder=35/12,hip=15/20 mm (Cutting)")] = None,
+    perturb: Annotated[Texts, _about("markers=left_knee,amount=0/50/0,frequency=3")] = None,
+    speed: Annotated[float | None, _about("Playback speed; 1 is its own.")] = None,
+    start: Annotated[float | None, _about("Starting phase, degrees of the stride.")] = None,
     reverse: Annotated[bool, typer.Option("--reverse", help="Play backwards.")] = False,
-    freeze: Annotated[float | None, _wish("Stand still as at this second.")] = None,
-    delay: Annotated[Pairs, _wish("parts=arms,phase=90: lag behind the rest")] = None,
-    phase_scramble: Annotated[str | None, _wish("seed=3: a clock for each dot")] = None,
+    freeze: Annotated[float | None, _about("Stand still as at this second.")] = None,
+    delay: Annotated[Texts, _about("parts=arms,phase=90: lag behind the rest")] = None,
+    phase_scramble: Annotated[str | None, _about("seed=3: a clock for each dot")] = None,
     morph_to: Annotated[
-        Pairs, _wish("Become the walker of this trait while it is shown: sex=-2; may be repeated.")
+        Texts,
+        _about("Become the walker of this trait while it is shown: sex=-2; may be repeated."),
     ] = None,
     mirror: Annotated[bool, typer.Option("--mirror", help="Swap left and right.")] = False,
     overground: Annotated[
         bool, typer.Option("--overground", help="Walk forward, not on a treadmill.")
     ] = False,
-    rotate: Annotated[Pairs, _wish("axis=z,angle=40,speed=0: x, y, z, sight or 1/0/1")] = None,
+    rotate: Annotated[Texts, _about("axis=z,angle=40,speed=0: x, y, z, sight or 1/0/1")] = None,
     invert: Annotated[bool, typer.Option("--invert", help="Upside down.")] = False,
-    occlude: Annotated[str | None, _wish("Parts to hide: lower_body, left_knee/head")] = None,
-    show: Annotated[str | None, _wish("Parts to show; the others are hidden.")] = None,
-    scramble: Annotated[str | None, _wish("seed=3,keep=structure,directions=horizontal")] = None,
-    limb_dots: Annotated[str | None, _wish("number=8,lifetime=0.1,seed=1 (Beintema)")] = None,
-    blur: Annotated[float | None, _wish("Blobs of this standard deviation, mm.")] = None,
-    mask: Annotated[Pairs, _wish("kind=scrambled,number=30,seed=2 or signal_to_noise=0.5")] = None,
-    view: Annotated[float, _wish("Azimuth in degrees: 0 frontal, 90 profile.")] = 30.0,
-    elevation: Annotated[float, _wish("Degrees above the horizon.")] = 0.0,
-    eye_distance: Annotated[float | None, _wish("mm, for a perspective picture.")] = None,
-    duration: Annotated[float | None, _wish("Seconds; 4 if left out.")] = None,
-    rate: Annotated[float | None, _wish("Frames a second; 60 if left out.")] = None,
-    style: Annotated[str | None, _wish("'dots', 'sticks' or 'mannequin'.")] = None,
-    size: Annotated[str | None, _wish("Picture in pixels: 512x512")] = None,
+    occlude: Annotated[str | None, _about("Parts to hide: lower_body, left_knee/head")] = None,
+    show: Annotated[str | None, _about("Parts to show; the others are hidden.")] = None,
+    scramble: Annotated[str | None, _about("seed=3,keep=structure,directions=horizontal")] = None,
+    limb_dots: Annotated[str | None, _about("number=8,lifetime=0.1,seed=1 (Beintema)")] = None,
+    blur: Annotated[float | None, _about("Blobs of this standard deviation, mm.")] = None,
+    mask: Annotated[Texts, _about("kind=scrambled,number=30,seed=2 or signal_to_noise=0.5")] = None,
+    view: View = 30.0,
+    elevation: Elevation = 0.0,
+    eye_distance: Annotated[float | None, _about("mm, for a perspective picture.")] = None,
+    duration: Annotated[float | None, _about("Seconds; 4 if left out.")] = None,
+    rate: Annotated[float | None, _about("Frames a second; 60 if left out.")] = None,
+    style: Annotated[str | None, _about("'dots', 'sticks' or 'mannequin'.")] = None,
+    size: Annotated[str | None, _about("Picture in pixels: 512x512")] = None,
     height_deg: Annotated[
-        float | None, _wish("Height of the walker in degrees of visual angle.")
+        float | None, _about("Height of the walker in degrees of visual angle.")
     ] = None,
-    distance: Annotated[float, _wish("From the eye to the screen, mm.")] = 570.0,
-    px_per_cm: Annotated[float, _wish("Pixels a centimetre of the screen.")] = 38.0,
-    with_flagged: Annotated[
-        bool, typer.Option("--with-flagged", help="Count flagged walkers too.")
-    ] = False,
+    distance: Annotated[float, _about("From the eye to the screen, mm.")] = 570.0,
+    px_per_cm: Annotated[float, _about("Pixels a centimetre of the screen.")] = 38.0,
+    with_flagged: WithFlagged = False,
 ) -> None:
     """Make a stimulus: a walker, what is done to it, and how it is shown.
 
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
+    options = dict(locals())
     from eigenwalker.stimulus.write_stimulus import write_stimulus
 
-    asked = dict(locals())
-    shown, population = _beginning(asked)
-    for name, parameters in _chain(asked, population):
-        shown = shown.then(name, **parameters)
+    if people is not None and people.suffix.lower() == ".json":
+        made, population = _of_a_stimulus(options), None
+    else:
+        population = load_people(people, with_flagged)
+        made = _of_a_population(population, options)
+    for name, parameters in _transforms(options, population):
+        made = made.then(name, **parameters)
     if height_deg is not None:
-        shown = shown.sized(height_deg, viewing_distance_mm=distance, px_per_cm=px_per_cm)
-    with _bar("Writing") as progress:
-        path = write_stimulus(shown, output, progress=progress)
-    names = [step["name"] for step in shown.transforms]
-    print(f"{', then '.join(names) if names else 'No transforms'}; {shown.timing.duration_s:g} s")
+        made = made.sized(height_deg, viewing_distance_mm=distance, px_per_cm=px_per_cm)
+    with progress_bar("Writing") as progress:
+        path = write_stimulus(made, output, progress=progress)
+    names = ", then ".join(step["name"] for step in made.transforms)
+    print(f"{names or 'No transforms'}; {made.timing.duration_s:g} s")
     if path.suffix.lower() in (".bvh", ".glb"):
         from eigenwalker.stimulus.animation import animated
 
-        print(animated(shown).slide)
+        print(animated(made).slide)
     print(f"Stimulus: {path}")
 
 
-def _beginning(asked: dict[str, Any]) -> tuple[Stimulus, Population | None]:
-    """The stimulus before any transform, of a file or of a population."""
-    from eigenwalker.datasets.built_in import BUILT_IN, load_population
+def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
+    """The stimulus before any transform."""
+    from eigenwalker.datasets.built_in import BUILT_IN
     from eigenwalker.stimulus.make import make_stimulus
-    from eigenwalker.stimulus.stimulus import Stimulus
 
-    path = asked["people"]
-    if path is not None and path.suffix.lower() == ".json":
-        return _shown_anew(Stimulus.load(path), asked), None
-    if path is None:
-        print(f"Using {BUILT_IN}.", file=sys.stderr)
-    population = load_population(path)
-    if asked["with_flagged"]:
-        population = population.trusting_all()
-    walker = _walker(population, asked["start_from"], asked["trait"], asked["information"])
-    looks = {"style": asked["style"], "rate_hz": asked["rate"]}
-    if asked["size"] is not None:
-        looks["size_px"] = _size(asked["size"])
-    made = make_stimulus(
-        walker,
-        view_deg=asked["view"],
-        elevation_deg=asked["elevation"],
-        eye_distance_mm=asked["eye_distance"],
-        duration_s=asked["duration"],
+    path, size = options["people"], options["size"]
+    looks = {"style": options["style"], "rate_hz": options["rate"]}
+    looks |= {"size_px": None if size is None else _size(size)}
+    return make_stimulus(
+        _walker(population, options),
+        view_deg=options["view"],
+        elevation_deg=options["elevation"],
+        eye_distance_mm=options["eye_distance"],
+        duration_s=options["duration"],
         provenance={"source": BUILT_IN if path is None else path.name, **population.provenance},
         **{name: value for name, value in looks.items() if value is not None},
     )
-    return made, population
 
 
-def _shown_anew(shown: Stimulus, asked: dict[str, Any]) -> Stimulus:
-    """A stimulus of a file with another duration, rate or style; its view stays."""
+def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
+    """The stimulus of a file with another duration, rate or style; its view stays."""
     from dataclasses import replace
 
+    from eigenwalker.stimulus.stimulus import Stimulus
+
     for option in ("trait", "information", "morph_to", "size", "eye_distance"):
-        if asked[option]:
+        if options[option]:
             name = option.replace("_", "-")
-            raise ValueError(f"--{name} is for populations; {asked['people'].name} is a stimulus.")
-    timing, display = shown.timing, shown.display
-    if asked["duration"] is not None:
-        timing = replace(timing, duration_s=asked["duration"])
-    if asked["rate"] is not None:
-        timing = replace(timing, rate_hz=asked["rate"])
-    if asked["style"] is not None:
-        display = replace(display, style=asked["style"])
-    return replace(shown, timing=timing, display=display)
+            raise ValueError(
+                f"--{name} is for populations; {options['people'].name} is a stimulus."
+            )
+    made = Stimulus.load(options["people"])
+    timing = {"duration_s": options["duration"], "rate_hz": options["rate"]}
+    timing = {name: value for name, value in timing.items() if value is not None}
+    style = {} if options["style"] is None else {"style": options["style"]}
+    return replace(
+        made, timing=replace(made.timing, **timing), display=replace(made.display, **style)
+    )
 
 
-def _walker(
-    population: Population, start: str, traits: list[str] | None, information: str
-) -> Walker:
+def _walker(population: Population, options: dict[str, Any]) -> Walker:
     from eigenwalker.stimulus.walker_information import with_information
 
-    if start != "average" and not (start.isdigit() and int(start) < len(population)):
-        raise ValueError(
-            f"--from {start}: expected 'average', or a walker from 0 to {len(population) - 1}."
-        )
-    vector = population.average if start == "average" else population.X[int(start)]
-    vector = _moved(population, vector, traits)
-    if information:
-        return with_information(population, vector, information)  # pyright: ignore[reportArgumentType] - checked there
+    vector = _moved(population, start_vector(population, options["start_from"]), options["trait"])
+    if options["information"]:
+        return with_information(population, vector, options["information"])
     return population.walker(vector)
 
 
-def _moved(population: Population, vector: np.ndarray, traits: list[str] | None) -> np.ndarray:
-    """A walker moved along traits, each as ``sex=+3``."""
-    from eigenwalker.analysis.trait_axis import trait_axis
-
-    for wish in traits or []:
-        name, _, alpha = wish.rpartition("=")
-        try:
-            steps = float(alpha)
-        except ValueError:
-            raise ValueError(
-                f"{wish!r} does not say how far; write a trait and standard deviations: sex=+3."
-            ) from None
-        vector = vector + steps * trait_axis(population, name).step
-    return vector
+def _moved(population: Population, vector: np.ndarray, traits: Texts) -> np.ndarray:
+    return vector + sum(steps * axis.step for axis, steps in trait_axes(population, traits))
 
 
-def _chain(
-    asked: dict[str, Any], population: Population | None
+def _transforms(
+    options: dict[str, Any], population: Population | None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The transforms asked for, in the order of the module's first lines."""
+    """Yield name and parameters of the transforms, in the order of the module's first lines."""
     for option, parameter in ORDER:
-        value = asked[option]
+        value = options[option]
         if value is None or value is False or value == []:
             continue
         if option == "morph_to":
@@ -212,8 +196,7 @@ def _chain(
             vector = _moved(population, population.average, value)
             yield "morph", {"walker": population.walker(vector)}
         elif option in ("occlude", "show"):
-            key = "parts" if option == "occlude" else "show"
-            yield "occlude", {key: value.split("/")}
+            yield "occlude", {"parts" if option == "occlude" else "show": value.split("/")}
         elif parameter is not None:
             yield option, {parameter: value}
         elif value is True:
@@ -232,16 +215,16 @@ ORDER: tuple[tuple[str, str | None], ...] = (
     *(("blur", "sd_mm"), ("mask", None)),
 )
 """Options in the order in which they act, and the parameter of those that take one number."""
-IN_WORDS = ("parts", "signal_to_noise", "dots_per_m2")
-"""Names that stand for parameters."""
+SPECIAL_PARAMETERS = ("parts", "signal_to_noise", "dots_per_m2")
+"""Texts of transforms that are not fields of theirs."""
 
 
 def _parameters(option: str, text: str) -> dict[str, Any]:
-    """Parameters of ``seed=3,box=400/1500``; a name may lack its unit."""
+    """Return the parameters of ``seed=3,box=400/1500``; a name may lack its unit."""
     from eigenwalker.stimulus.transforms import TRANSFORMS
 
-    known = [*TRANSFORMS[option].fields, *IN_WORDS]
-    found: dict[str, Any] = {}
+    known = [*TRANSFORMS[option].fields, *SPECIAL_PARAMETERS]
+    parameters: dict[str, Any] = {}
     for pair in text.split(","):
         name, equals, value = pair.strip().partition("=")
         full = [k for k in known if k == name] or [k for k in known if k.startswith(f"{name}_")]
@@ -250,21 +233,17 @@ def _parameters(option: str, text: str) -> dict[str, Any]:
                 f"--{option.replace('_', '-')} {text}: expected name=value, with names among "
                 f"{known}, got {pair!r}."
             )
-        found[full[0]] = _value(full[0], value)
-    return found
+        values = [_value(part) for part in value.split("/")]
+        several = len(values) > 1 or full[0] in ("markers", "parts")
+        parameters[full[0]] = values if several else values[0]
+    return parameters
 
 
-def _value(name: str, text: str) -> Any:
-    """A number, true, false, null, a word, or several of them between slashes."""
-    parts = [_word(part) for part in text.split("/")]
-    several = len(parts) > 1 or name in ("markers", "parts")
-    return parts if several else parts[0]
-
-
-def _word(text: str) -> Any:
-    plain = {"true": True, "false": False, "null": None, "none": None}
-    if text.lower() in plain:
-        return plain[text.lower()]
+def _value(text: str) -> Any:
+    """Return a number, true, false, null, or the word itself."""
+    constants = {"true": True, "false": False, "null": None, "none": None}
+    if text.lower() in constants:
+        return constants[text.lower()]
     for kind in (int, float):
         try:
             return kind(text)
@@ -278,14 +257,3 @@ def _size(text: str) -> tuple[int, int]:
     if not (width.isdigit() and height.isdigit()):
         raise ValueError(f"--size {text}: expected width and height in pixels, as in 512x512.")
     return int(width), int(height)
-
-
-@contextmanager
-def _bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on the error stream, and what to call as work proceeds."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(title, total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)

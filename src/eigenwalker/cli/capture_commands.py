@@ -1,0 +1,63 @@
+"""``eigenwalker info`` and ``eigenwalker convert``: one file, looked into or written anew."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eigenwalker.cli.options import Rate, Unit
+
+LONGEST_IN_LINE = 24
+"""Letters up to which entries of a list are printed one after the other."""
+
+
+def info(
+    file: Annotated[Path, typer.Argument(help="A capture, or a population file (.nc).")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    unit: Unit = None,
+    rate: Rate = None,
+) -> None:
+    """Say what is in a file, and what is wrong with it."""
+    from eigenwalker.study.inspect import inspect_file
+    from eigenwalker.study.messages import in_words
+
+    facts = inspect_file(file, unit=unit, rate_hz=rate)
+    if as_json:
+        print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
+        return
+    lines = in_words(facts)
+    width = max(len(name) for name in lines) + 2
+    for name, value in lines.items():
+        print(f"{name:<{width}}{_laid_out(value, width)}")
+
+
+def convert(
+    capture: Annotated[Path, typer.Argument(help="A capture, of any format that is read.")],
+    output: Annotated[Path, typer.Argument(help="File to write: .bvh, .c3d, .csv, .nc or .trc.")],
+    joints: Annotated[
+        bool, typer.Option("--joints", help="Write joints, not markers; .bvh always holds joints.")
+    ] = False,
+    unit: Unit = None,
+) -> None:
+    """Write a capture in another format."""
+    from eigenwalker.io.read import read_mocap
+    from eigenwalker.io.write import write_mocap
+    from eigenwalker.markers.virtual_markers import virtual_markers
+
+    walk = read_mocap(capture, unit=unit)
+    if joints or output.suffix.lower() == ".bvh":
+        walk = virtual_markers(walk, joints="full")
+    print(f"Written: {write_mocap(walk, output)}")
+
+
+def _laid_out(value: str | list[str], indent: int) -> str:
+    """Lay out one fact: short entries in running lines, sentences on lines of their own."""
+    if isinstance(value, str):
+        return value
+    if all(len(entry) <= LONGEST_IN_LINE for entry in value):
+        value = textwrap.wrap(", ".join(value), 100 - indent)
+    return f"\n{' ' * indent}".join(value)

@@ -1,0 +1,110 @@
+"""``eigenwalker classify`` and ``eigenwalker demo``: how well a trait can be told from gait."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from eigenwalker.cli.options import (
+    OpenPage,
+    People,
+    ReportFolder,
+    WithFlagged,
+    load_people,
+    open_in_browser,
+    progress_bar,
+)
+
+if TYPE_CHECKING:
+    from eigenwalker.analysis.classification import Classification, Regression
+
+INDEX = "index.html"
+BUILT_IN_TITLE = "How people walk"
+
+
+def classify(
+    people: People = None,
+    trait: Annotated[
+        str, typer.Option(help="Trait to tell: sex, weight_kg, style=feminine:masculine.")
+    ] = "sex",
+    output: ReportFolder = None,
+    permutations: Annotated[
+        int, typer.Option(help="Random permutations of the trait to compare with.")
+    ] = 200,
+    with_flagged: WithFlagged = False,
+) -> None:
+    """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
+    from eigenwalker.analysis import classification
+    from eigenwalker.analysis.contrast import contrast
+    from eigenwalker.report.classification_report import write_main_job
+
+    population = load_people(people, with_flagged)
+    classes = contrast(population, trait)
+    page = None
+    with progress_bar("Classifying") as progress:
+        settings = {"n_permutations": permutations, "progress": progress}
+        if output is not None:
+            page, result = write_main_job(output, population, trait, **settings)
+        elif classes.two_classes:
+            result = classification.classify(population, trait, **settings)
+        else:
+            result = classification.regress(population, trait, **settings)
+    print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
+    _print_result(result)
+    if page is not None:
+        print(f"Report: {page}")
+
+
+def demo(
+    people: People = None,
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write into.")] = Path(
+        "eigenwalker-demo"
+    ),
+    trait: Annotated[str, typer.Option(help="Trait of two classes to tell.")] = "sex",
+    open_page: OpenPage = True,
+    with_flagged: WithFlagged = False,
+) -> None:
+    """Classify a trait, and write a page on which anyone can play with the walkers.
+
+    index.html holds the walkers, report.html beside it what tells the trait from gait; both work
+    from the disk, without a network.
+    """
+    from eigenwalker.datasets.built_in import built_in_capture
+    from eigenwalker.explorer.interactive_page import interactive_page
+    from eigenwalker.explorer.model import page_model
+    from eigenwalker.report.blocks import Link
+    from eigenwalker.report.classification_report import write_main_job
+
+    population = load_people(people, with_flagged)
+    with progress_bar("Classifying and filming") as progress:
+        page, result = write_main_job(
+            output,
+            population,
+            trait,
+            example=built_in_capture() if people is None else None,
+            beside=Link("Play with these walkers", INDEX),
+            progress=progress,
+        )
+    model = page_model(population, first=trait, **model_names(people))
+    index = page.with_name(INDEX)
+    index.write_text(interactive_page(model, report=page.name), encoding="utf-8")
+    _print_result(result)
+    print(f"Report: {page}\nPage to play with: {index}")
+    if open_page:
+        open_in_browser(str(index))
+
+
+def model_names(people: Path | None) -> dict[str, str]:
+    """Return title and source of the model of a population file, or of the built-in one."""
+    if people is None:
+        return {"title": BUILT_IN_TITLE, "source": ""}
+    return {"title": people.stem, "source": people.name}
+
+
+def _print_result(result: Classification | Regression) -> None:
+    print(result.table_in_words().to_string(index=False))
+    print(f"\n{result.chance}")
+    if result.many_inputs:
+        print(result.many_inputs)

@@ -1,0 +1,147 @@
+"""What commands share: options, exit codes, the progress bar, and parsers of what is typed."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from eigenwalker.analysis.trait_axis import TraitAxis
+    from eigenwalker.population.population import Population
+
+EXIT_PARTIAL = 1
+"""Some files could not be used; the others were."""
+EXIT_FAILED = 2
+EXIT_INTERRUPTED = 130
+
+People = Annotated[
+    Path | None,
+    typer.Argument(help="Population file (.nc); left out, the built-in simulated population."),
+]
+WithFlagged = Annotated[bool, typer.Option("--with-flagged", help="Count flagged walkers too.")]
+Unit = Annotated[
+    str | None, typer.Option(help="Unit of length, for files that name none: mm, cm, m, in, asf.")
+]
+Rate = Annotated[float | None, typer.Option(help="Frames a second, for files that name none.")]
+PopulationFile = Annotated[
+    Path, typer.Option("-o", "--output", help="Population file to write (.nc).")
+]
+ReportFolder = Annotated[
+    Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
+]
+TraitFromName = Annotated[
+    str | None,
+    typer.Option(help="Pattern with named groups over names: 'walk_(?P<style>[a-z]+)_'."),
+]
+TraitSteps = Annotated[
+    list[str] | None,
+    typer.Option(help="Trait and standard deviations: sex=+3, weight=-2; may be repeated."),
+]
+StartFrom = Annotated[
+    str, typer.Option("--from", help="'average', the number of a walker, or a capture file.")
+]
+View = Annotated[float, typer.Option(help="Azimuth in degrees: 0 frontal, 90 profile.")]
+Elevation = Annotated[float, typer.Option(help="Degrees above the horizon.")]
+OpenPage = Annotated[
+    bool, typer.Option("--open/--no-open", help="Open the page if there is a screen.")
+]
+Seed = Annotated[int, typer.Option(help="The same seed gives the same people.")]
+
+
+def load_people(path: Path | None, with_flagged: bool) -> Population:
+    """Return the population of a file; without one the built-in population, named on stderr."""
+    from eigenwalker.datasets.built_in import BUILT_IN, load_population
+
+    if path is None:
+        print(f"Using {BUILT_IN}.", file=sys.stderr)
+    population = load_population(path)
+    return population.trusting_all() if with_flagged else population
+
+
+def parse_trait_steps(text: str) -> tuple[str, float]:
+    """Return trait and standard deviations of ``sex=+3`` or ``style=feminine:masculine=2``."""
+    trait, _, number = text.rpartition("=")
+    try:
+        steps = float(number)
+    except ValueError:
+        steps = math.nan
+    if not (trait and math.isfinite(steps)):
+        raise ValueError(
+            f"{text!r} does not say how far; write a trait and standard deviations: sex=+3."
+        )
+    return trait, steps
+
+
+def trait_axes(
+    population: Population, texts: Sequence[str] | None, **axis_options: Any
+) -> list[tuple[TraitAxis, float]]:
+    """Return the axis of each ``--trait``, and the standard deviations along it."""
+    from eigenwalker.analysis.trait_axis import trait_axis
+
+    steps = [parse_trait_steps(text) for text in texts or ()]
+    return [(trait_axis(population, trait, **axis_options), each) for trait, each in steps]
+
+
+def start_vector(population: Population, start: str) -> np.ndarray:
+    """Return the features of the walker that ``--from`` names."""
+    if start == "average":
+        return population.average
+    if start.isdecimal() and int(start) < len(population):
+        return population.X[int(start)]
+    if start.isdecimal() or not Path(start).exists():
+        raise ValueError(
+            f"--from {start}: expected 'average', a walker from 0 to {len(population) - 1}, or a "
+            "capture file."
+        )
+    from eigenwalker.study.walker_from_file import walker_from_file
+
+    first = population.walkers[0]
+    walker, facts = walker_from_file(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
+    if facts["flag"]:
+        print(f"eigenwalker: {start}: {facts['flag']}", file=sys.stderr)
+    return population.vector(walker)
+
+
+def check_choice(value: str, known: Collection[str], option: str) -> None:
+    """Refuse a value that an option does not know."""
+    if value not in known:
+        raise ValueError(f"{option} {value!r} is not known; choose from {list(known)}.")
+
+
+def check_population_file(path: Path) -> None:
+    """Refuse, before any work, a file that no population could be written to."""
+    if path.suffix != ".nc":
+        raise ValueError(f"{path}: a population is written as .nc; name it for instance people.nc.")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.parent} to write into; make it first.")
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a progress bar on stderr, where that is a terminal; yield what to call as work is done.
+
+    It is called with how much is done, and of how much.
+    """
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task(title, total=None)
+        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+
+def open_in_browser(address: str) -> None:
+    """Open a page where there is a screen to show it on."""
+    screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if screen or sys.platform in ("win32", "darwin"):
+        typer.launch(address)

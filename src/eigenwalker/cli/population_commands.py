@@ -1,0 +1,173 @@
+"""``eigenwalker fit`` and ``eigenwalker simulate``: a population, of captures or of nobody."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, TypeVar
+
+import typer
+
+from eigenwalker.cli.options import (
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_PARTIAL,
+    PopulationFile,
+    Rate,
+    TraitFromName,
+    Unit,
+    check_choice,
+    check_population_file,
+    progress_bar,
+)
+
+if TYPE_CHECKING:
+    from eigenwalker.study.fit_folder import Study
+
+T = TypeVar("T")
+
+
+def fit(
+    folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
+    output: PopulationFile,
+    traits: Annotated[
+        Path | None,
+        typer.Option(help="CSV with a column 'file' (relative to FOLDER) and the traits."),
+    ] = None,
+    trait_from_name: TraitFromName = None,
+    form: Annotated[
+        str, typer.Option(help="'eigenposture' (Troje 2002) or 'fourier' (WDP2002).")
+    ] = "eigenposture",
+    harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
+    low_pass: Annotated[
+        float | None, typer.Option(help="Cut-off in Hz of a low-pass filter, for noisy captures.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
+    unit: Unit = None,
+    rate: Rate = None,
+    table: Annotated[
+        Path | None, typer.Option(help="CSV to write all into that is known of each capture.")
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Read all anew, also what an interrupted run has read.")
+    ] = False,
+) -> None:
+    """Make a population of a folder of captures.
+
+    Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used,
+    130 when it was interrupted; the same command then goes on where it stopped.
+    """
+    from eigenwalker.study.fit_folder import fit_folder
+    from eigenwalker.study.walker_from_file import DECOMPOSE
+
+    check_choice(form, DECOMPOSE, "--form")
+    check_population_file(output)
+    checkpoint = output.with_name(f"{output.name}.part")
+    if fresh:
+        checkpoint.unlink(missing_ok=True)
+    with _resumable(checkpoint), progress_bar("Reading captures") as progress:
+        study = fit_folder(
+            folder,
+            traits=traits,
+            trait_from_name=trait_from_name,
+            form=form,  # pyright: ignore[reportArgumentType] - checked above
+            n_harmonics=harmonics,
+            unit=unit,
+            rate_hz=rate,
+            low_pass_hz=low_pass,
+            n_jobs=jobs,
+            journal=checkpoint,
+            progress=progress,
+        )
+    if table is not None:
+        study.files.to_csv(table, index=False)
+    _print_problems(study)
+    if study.population is None:
+        print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
+        raise typer.Exit(EXIT_FAILED)
+    study.population.save(output)
+    checkpoint.unlink(missing_ok=True)
+    _print_summary(study, output)
+    if len(study.refused):
+        raise typer.Exit(EXIT_PARTIAL)
+
+
+@contextmanager
+def _resumable(checkpoint: Path) -> Iterator[None]:
+    """Say, when work is interrupted, where it is kept and how to go on."""
+    if checkpoint.is_file():
+        print("Going on where an earlier run stopped; --fresh starts anew.", file=sys.stderr)
+    try:
+        yield
+    except KeyboardInterrupt:
+        where = f"What was read is kept in {checkpoint}. " if checkpoint.is_file() else ""
+        how = "The same command goes on where it stopped; with --fresh it starts anew."
+        print(f"eigenwalker: interrupted. {where}{how}", file=sys.stderr)
+        raise typer.Exit(EXIT_INTERRUPTED) from None
+
+
+def _print_problems(study: Study) -> None:
+    for status in ("flagged", "refused"):
+        files = study.files[study.files["status"] == status]
+        if len(files):
+            print(f"{len(files)} {status}:")
+            print("".join(f"  {row.file}: {row.reason}\n" for row in files.itertuples()))
+    if study.unlisted:
+        names = ", ".join(study.unlisted[:5]) + (", ..." if len(study.unlisted) > 5 else "")
+        print(f"{len(study.unlisted)} captures of the folder are not in the table: {names}")
+
+
+def _print_summary(study: Study, output: Path) -> None:
+    from eigenwalker.study.summary import summary_of
+
+    assert study.population is not None
+    read = study.files[study.files["status"] != "refused"]
+    print(
+        f"{len(read)} of {len(study.files)} captures read, "
+        f"{(read['status'] == 'flagged').sum()} of them flagged. Medians (and ranges):"
+    )
+    for name, value in summary_of(study.files).items():
+        print(f"  {name + ':':<23}{value}")
+    if "units" in study.population.provenance:
+        print(f"Units were {study.population.provenance['units']}.")
+    print(f"Population: {output}")
+
+
+def simulate(
+    output: PopulationFile,
+    women: Annotated[int, typer.Option(help="How many women.")] = 20,
+    men: Annotated[int, typer.Option(help="How many men.")] = 20,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same people.")] = 0,
+    sex_effect: Annotated[
+        float, typer.Option(help="Multiplies all differences between the sexes; 0 removes them.")
+    ] = 1.0,
+    captures: Annotated[
+        Path | None,
+        typer.Option(help="Folder to write raw captures into, with traits.csv and truth.csv."),
+    ] = None,
+    captures_as: Annotated[
+        str, typer.Option(help="Format of the captures: c3d, trc or csv.")
+    ] = "c3d",
+) -> None:
+    """Simulate walkers of known truth, and the raw captures of a whole study to rehearse with."""
+    from eigenwalker.simulation.captures import write_captures
+    from eigenwalker.simulation.people import simulate_captures, simulate_population
+
+    check_population_file(output)
+    people = {"n_women": women, "n_men": men, "seed": seed, "sex_effect": sex_effect}
+    with progress_bar("Simulating") as progress:
+        population = simulate_population(**people)
+        population.save(output)
+        print(f"Population: {output} ({len(population)} walkers)")
+        if captures is not None:
+            walks = _counted(simulate_captures(**people, markers="skin"), women + men, progress)
+            table = write_captures(walks, captures, format=captures_as)
+            print(f"Captures: {captures}; who is who: {table}")
+
+
+def _counted(things: Iterable[T], total: int, progress: Callable[[int, int], None]) -> Iterator[T]:
+    for done, thing in enumerate(things, start=1):
+        yield thing
+        progress(done, total)

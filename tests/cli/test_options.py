@@ -1,0 +1,86 @@
+"""What commands share is one thing for all of them."""
+
+from __future__ import annotations
+
+import pytest
+import typer
+
+from eigenwalker.cli import options
+from eigenwalker.cli.main import COMMANDS, app
+from eigenwalker.cli.options import EXIT_FAILED, parse_trait_steps, progress_bar
+
+
+@pytest.mark.parametrize("text", ["sex", "sex=", "sex=much", "sex=nan", "sex=inf", "=3", ""])
+def test_steps_along_a_trait_are_a_trait_and_a_finite_number(text):
+    with pytest.raises(ValueError, match=r"sex=\+3"):
+        parse_trait_steps(text)
+
+
+def test_a_trait_may_name_its_two_classes():
+    assert parse_trait_steps("style=feminine:masculine=-2") == ("style=feminine:masculine", -2)
+
+
+TAKE_A_TRAIT = {
+    "demo": ("--trait", "beauty"),
+    "classify": ("--trait", "beauty"),
+    "compare": ("people.nc", "--trait", "beauty"),
+    "synthesize": ("--trait", "beauty=1"),
+    "stimulus": ("--trait", "beauty=1"),
+}
+
+
+@pytest.mark.parametrize("command", TAKE_A_TRAIT)
+def test_every_trait_that_is_not_there_is_named(command, run_command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    from eigenwalker.simulation.people import simulate_population
+
+    simulate_population(2, 2, seed=1).save("people.nc")
+    code, _, errors = run_command(command, *TAKE_A_TRAIT[command])
+    assert (code, "'beauty'" in errors) == (EXIT_FAILED, True)
+
+
+@pytest.mark.parametrize(
+    ("command", "option"),
+    [("synthesize", "--trait"), ("stimulus", "--trait"), ("stimulus", "--morph-to")],
+)
+@pytest.mark.parametrize("number", ["nan", "inf", "much"])
+def test_steps_that_lead_nowhere_are_refused_by_all(
+    command, option, number, run_command, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    code, _, errors = run_command(command, option, f"sex={number}")
+    assert code == EXIT_FAILED
+    assert f"'sex={number}' does not say how far" in errors
+    assert "invalid value" not in errors
+
+
+def test_every_command_that_takes_a_trait_is_tested_here():
+    group = typer.main.get_command(app)
+    taking = {
+        name
+        for name in COMMANDS
+        for parameter in group.get_command(None, name).params
+        if "--trait" in parameter.opts
+    }
+    assert taking == set(TAKE_A_TRAIT)
+
+
+def test_options_are_shared_not_copied():
+    """Options of one name have one help text, but for those that mean another thing."""
+    group = typer.main.get_command(app)
+    helps = {}
+    for name in COMMANDS:
+        for parameter in group.get_command(None, name).params:
+            helps.setdefault(parameter.opts[0], {})[name] = getattr(parameter, "help", None)
+    for option in ("--unit", "--from", "--view", "--elevation", "--open"):
+        assert len(set(helps[option].values())) == 1, helps[option]
+
+
+def test_the_progress_bar_is_silent_off_a_terminal(capsys):
+    with progress_bar("Working") as progress:
+        progress(1, 2)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_exit_codes_are_apart():
+    assert len({options.EXIT_PARTIAL, options.EXIT_FAILED, options.EXIT_INTERRUPTED, 0}) == 4
