@@ -13,7 +13,7 @@ from side_by_side import machine, print_table, seconds
 from sklearn.decomposition import PCA
 
 import eigenwalker as ew
-from eigenwalker.decomposition.decomposition import decompose_pca, eigenpostures_of
+from eigenwalker.decomposition import decompose_pca, eigenpostures_of
 
 N_WALKERS, N_FRAMES, RATE_HZ = 40, 1400, 120.0
 HARMONICS = np.array([1, 1, 2, 2])

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.decomposition.decomposition import decompose_fourier
+from eigenwalker.decomposition import decompose_fourier
 from eigenwalker.plotting.projection import observer_axes, project
 from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, USUAL, bare, new_figure
 from eigenwalker.plotting.walkers import draw_body

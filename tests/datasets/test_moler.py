@@ -10,7 +10,7 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
 from eigenwalker.datasets.built_in import load_population
 from eigenwalker.datasets.moler import read_mm, read_walkers_mat
-from eigenwalker.decomposition.decomposition import decompose_fourier
+from eigenwalker.decomposition import decompose_fourier
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.walker_tables import walker_to_mm
 

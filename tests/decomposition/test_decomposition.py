@@ -13,7 +13,7 @@ from sklearn.decomposition import PCA
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.decomposition import decompose_fourier, decompose_pca
 
 WHOLE_STRIDES = np.arange(1500) / 120
 """Ten strides of 0.8 Hz, 150 frames each."""

@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given, settings, strategies as st
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.core.fourier import share_explained
+from eigenwalker.core import share_explained
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories, sampling_rate
 from eigenwalker.gait.heading import stance_speed

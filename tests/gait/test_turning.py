@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.core.fourier import share_explained
+from eigenwalker.core import share_explained
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.gait.filtering import low_passed

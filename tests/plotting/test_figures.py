@@ -14,7 +14,7 @@ from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.decomposition import decompose_pca
 from eigenwalker.plotting.components import figure_scores, figure_variance, scores_of
 from eigenwalker.plotting.curves import figure_curves, figure_regression_curves
 from eigenwalker.plotting.eigenpostures import figure_eigenpostures

@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from xarray import DataArray
 
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.population.correspondence import (
     MIN_SIMILARITY,
     correspond,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.decomposition.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
 
 WHOLE_STRIDES = np.arange(1500) / 120

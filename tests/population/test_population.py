@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.io import netcdf_file
 
 import eigenwalker as ew
-from eigenwalker.decomposition.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.population.population import FLAG, Population

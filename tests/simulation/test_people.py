@@ -6,7 +6,7 @@ import pytest
 
 from eigenwalker.analysis.jackknife import jackknife_curves
 from eigenwalker.datasets.built_in import load_population
-from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.decomposition import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers

@@ -1,4 +1,8 @@
-"""Regression on a stride's harmonics: what of a movement repeats with every stride."""
+"""Harmonics of a stride: their basis, regression on it, and the shift of the time origin.
+
+Coefficients stand in one order everywhere: the constant where there is one, then sin 1, cos 1,
+sin 2, cos 2 ...
+"""
 
 from __future__ import annotations
 
@@ -6,18 +10,28 @@ import numpy as np
 
 
 def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
-    """Return 1, sin, cos, sin 2, cos 2 ... at the given moments (WDP2002, eq. 1).
+    r"""Return the constant, and sine and cosine of each harmonic, at the given moments.
+
+    .. math:: 1, \sin \omega t, \cos \omega t, \sin 2 \omega t, \cos 2 \omega t, \ldots
 
     Parameters
     ----------
     cycles : array of shape (time,)
         Time in strides.
     n_harmonics : int
-        Harmonics wanted.
+        Number of harmonics.
 
     Returns
     -------
     array of shape (time, 1 + 2 * harmonic)
+
+    See Also
+    --------
+    centred_harmonics : The same for evenly spaced frames, and faster.
+
+    References
+    ----------
+    Troje (2002), eq. 15. Troje (2002), The little difference, eq. 1.
 
     Examples
     --------
@@ -32,13 +46,88 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     return basis
 
 
-def regress(basis: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the weights with which columns of `basis` explain `values` best.
+def centred_harmonics(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
+    """Return the harmonic basis of evenly spaced frames, as rows, time 0 in their middle.
+
+    Parameters
+    ----------
+    n_frames : int
+        Number of frames.
+    cycles_per_frame : float
+        Stride frequency over frame rate.
+    n_harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    array of shape (1 + 2 * harmonic, frame)
+
+    Examples
+    --------
+    >>> centred_harmonics(3, 0.25, 1).round(9).tolist()
+    [[1.0, 1.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]
+
+    """
+    turn = unit_phasors(2 * np.pi * cycles_per_frame, n_frames)
+    rows = np.ones((1 + 2 * n_harmonics, n_frames))
+    power = turn
+    for harmonic in range(n_harmonics):
+        rows[2 * harmonic + 1] = np.imag(power)
+        rows[2 * harmonic + 2] = np.real(power)
+        power = power * turn
+    return rows
+
+
+def unit_phasors(angle: float, n_frames: int) -> np.ndarray:
+    """Return exp(i angle t) for frames t about their middle; few exponentials, many products."""
+    within = int(np.sqrt(n_frames)) + 1
+    fine = np.exp(1j * angle * np.arange(within))
+    coarse = np.exp(1j * angle * (np.arange(0, n_frames, within) - (n_frames - 1) / 2))
+    return np.multiply.outer(coarse, fine).ravel()[:n_frames]
+
+
+def fit_basis(basis: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the weights with which the columns of a basis explain values best.
 
     Through an orthogonal factorisation, so that nearly dependent columns do no harm.
     """
     q, r = np.linalg.qr(basis)
     return np.linalg.solve(r, q.T @ values)
+
+
+def fit_harmonics(
+    postures: np.ndarray, cycles_per_frame: float, n_harmonics: int = 2
+) -> tuple[np.ndarray, float]:
+    """Return postures as a Fourier series of a known frequency, by least squares.
+
+    Parameters
+    ----------
+    postures : array of shape (time, feature)
+        Evenly sampled.
+    cycles_per_frame : float
+        Stride frequency over frame rate.
+    n_harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    coefficients : array of shape (1 + 2 * harmonic, feature)
+        Of 1, sin 1, cos 1, sin 2, cos 2 ..., time counting from the middle of the postures.
+    residual : float
+        Sum of squares that is left.
+
+    References
+    ----------
+    Troje (2002), The little difference, eq. 1. Moler (2016).
+
+    """
+    shifted = postures - postures[0]
+    rows = centred_harmonics(len(postures), cycles_per_frame, n_harmonics)
+    products = rows @ shifted
+    coefficients = np.linalg.solve(rows @ rows.T, products)
+    residual = float(np.vdot(shifted, shifted) - np.vdot(coefficients, products))
+    coefficients[0] += postures[0]
+    return coefficients, max(residual, 0.0)
 
 
 def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int = 2) -> float:
@@ -51,12 +140,12 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     cycles : array of shape (time,)
         Time in strides.
     n_harmonics : int
-        Harmonics that may explain.
+        Number of harmonics.
 
     Returns
     -------
     float
-        R2, 1 where nothing is left; 0 where nothing moves.
+        R2: 1 where nothing is left; 0 where nothing moves.
 
     Examples
     --------
@@ -68,6 +157,41 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     """
     centred = movement - movement.mean(axis=0)
     basis = harmonic_basis(cycles, n_harmonics)
-    residual = centred - basis @ regress(basis, centred)
+    residual = centred - basis @ fit_basis(basis, centred)
     total = np.vdot(centred, centred)
     return float(1 - np.vdot(residual, residual) / total) if total > 0 else 0.0
+
+
+def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
+    r"""Return Fourier coefficients on a clock whose zero comes later by an angle of the stride.
+
+    .. math:: \sin h (\omega t + \alpha) = \cos h\alpha \, \sin h \omega t
+              + \sin h\alpha \, \cos h \omega t
+
+    Parameters
+    ----------
+    coefficients : array of shape (2 * harmonic, ...)
+        Of sin 1, cos 1, sin 2, cos 2 ..., without the constant.
+    angle : float
+        How much later the new origin is, in radians of the fundamental; a negative one delays the
+        movement. Harmonic h moves h times as far.
+
+    Returns
+    -------
+    array of shape (2 * harmonic, ...)
+
+    Examples
+    --------
+    A sine, seen from a quarter of a cycle later, is a cosine:
+
+    >>> shift_origin(np.array([1.0, 0.0]), np.pi / 2).round(9).tolist()
+    [0.0, 1.0]
+
+    """
+    harmonics = np.arange(1, len(coefficients) // 2 + 1)
+    turn = (harmonics * angle).reshape(-1, *[1] * (coefficients.ndim - 1))
+    sine, cosine = coefficients[0::2], coefficients[1::2]
+    shifted = np.empty_like(coefficients, dtype=float)
+    shifted[0::2] = sine * np.cos(turn) - cosine * np.sin(turn)
+    shifted[1::2] = sine * np.sin(turn) + cosine * np.cos(turn)
+    return shifted

@@ -289,35 +289,3 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
             coefficients[2 * harmonic - 2] += posture * np.cos(phase)
             coefficients[2 * harmonic - 1] += posture * np.sin(phase)
     return coefficients
-
-
-def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
-    """Return Fourier coefficients on a clock whose zero comes later by an angle of the stride.
-
-    Parameters
-    ----------
-    coefficients : array of shape (2 * harmonic, ...)
-        Of sin 1, cos 1, sin 2, cos 2 ...
-    angle : float
-        How much later the new origin is, in radians of the fundamental; harmonic h moves h times
-        as far (J10).
-
-    Returns
-    -------
-    array of shape (2 * harmonic, ...)
-
-    Examples
-    --------
-    A sine, looked at from a quarter of a cycle later, is a cosine:
-
-    >>> shift_origin(np.array([1.0, 0.0]), np.pi / 2).round(9).tolist()
-    [0.0, 1.0]
-
-    """
-    harmonics = np.arange(1, len(coefficients) // 2 + 1)
-    turn = (harmonics * angle).reshape(-1, *[1] * (coefficients.ndim - 1))
-    sine, cosine = coefficients[0::2], coefficients[1::2]
-    shifted = np.empty_like(coefficients, dtype=float)
-    shifted[0::2] = sine * np.cos(turn) - cosine * np.sin(turn)
-    shifted[1::2] = sine * np.sin(turn) + cosine * np.cos(turn)
-    return shifted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenwalker.core.fourier import harmonic_basis, regress
+from eigenwalker.core.fourier import fit_basis, harmonic_basis
 from eigenwalker.gait.steady_strides import closing_step
 
 DRIFT_BELOW = 0.4
@@ -44,7 +44,7 @@ def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         return _way_of_one_stride(path, cycles)
     basis = np.column_stack([cycles, harmonic_basis(cycles, N_HARMONICS)])
-    return regress(basis, path)[0]
+    return fit_basis(basis, path)[0]
 
 
 def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
@@ -77,7 +77,7 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     waves = np.cos(np.pi * np.multiply.outer(middles, orders))
     slow = np.column_stack([np.ones(n_frames), middles - 0.5, waves])
     harmonics = harmonic_basis(cycles, N_HARMONICS)[:, 1:]
-    weights = regress(np.column_stack([slow, harmonics]), path)
+    weights = fit_basis(np.column_stack([slow, harmonics]), path)
     return slow @ weights[: slow.shape[1]]
 
 

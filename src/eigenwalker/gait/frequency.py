@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.fourier import share_explained
+from eigenwalker.core.fourier import share_explained, unit_phasors
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
 
@@ -308,7 +308,7 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
     rows[0] = 1
     if trend:
         rows[1] = frames / n
-    turning = power = rotations(angle, n)
+    turning = power = unit_phasors(angle, n)
     for h in range(1, n_harmonics + 1):
         cos, sin = n_fixed + 2 * h - 2, n_fixed + 2 * h - 1
         rows[cos], rows[sin] = np.real(power), np.imag(power)
@@ -325,11 +325,3 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
     curvature = np.vdot(amplitudes, products[n_basis:, n_basis:] @ amplitudes)
     curvature -= np.vdot(cross, inverse @ cross)
     return float(gradient / curvature) if curvature > 0 else 0.0
-
-
-def rotations(angle: float, n: int) -> np.ndarray:
-    """Return exp(i angle t) for n frames t about their middle; few exponentials, many products."""
-    within = int(np.sqrt(n)) + 1
-    fine = np.exp(1j * angle * np.arange(within))
-    coarse = np.exp(1j * angle * (np.arange(0, n, within) - (n - 1) / 2))
-    return np.multiply.outer(coarse, fine).ravel()[:n]

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.walker import Walker
 
 SIDES = ("left", "right")
 
@@ -161,6 +162,35 @@ def stance_speed(walk: xr.DataArray) -> float:
     walk = check_trajectories(walk, complete=True)
     ground = ground_velocity(walk.values, walk.marker.values.tolist(), sampling_rate(walk))
     return float("nan") if ground is None else -float(ground[0])
+
+
+def ground_speed(walker: Walker) -> float:
+    """Return the forward speed of a walker: its own, or else that of its standing feet.
+
+    Parameters
+    ----------
+    walker : Walker
+        Its ``speed_mm_s`` is taken where it is known.
+
+    Returns
+    -------
+    float
+        Millimetres a second. NaN where the speed is not known and an ankle is missing.
+
+    See Also
+    --------
+    stance_speed : The speed of standing feet, found in two strides of 100 moments each.
+
+    Examples
+    --------
+    >>> walker = ew.load_population().walkers[0]
+    >>> ground_speed(walker) == walker.speed_mm_s
+    True
+
+    """
+    if np.isfinite(walker.speed_mm_s):
+        return walker.speed_mm_s
+    return stance_speed(walker.trajectories(np.linspace(0, 2 * walker.period_s, 200)))
 
 
 def sides_swapped(positions: np.ndarray, markers: Sequence[str]) -> bool:

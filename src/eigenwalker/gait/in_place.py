@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.blas_threads import one_blas_thread
-from eigenwalker.core.fourier import regress
+from eigenwalker.core.fourier import fit_basis
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.gait.drift import mean_velocity, slow_drift
@@ -222,7 +222,7 @@ def _placed(
 def _wander(drift: np.ndarray, cycles: np.ndarray) -> float:
     """Return the root mean square of the way from a straight line walked at constant speed."""
     line = np.column_stack([np.ones(len(cycles)), cycles])
-    aside = drift - line @ regress(line, drift)
+    aside = drift - line @ fit_basis(line, drift)
     return float(np.sqrt(np.einsum("ta,ta->t", aside, aside).mean()))
 
 

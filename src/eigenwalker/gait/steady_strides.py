@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.core.fourier import harmonic_basis, regress
+from eigenwalker.core.fourier import fit_basis, harmonic_basis
 from eigenwalker.gait.frequency import frequency_of_scores
 
 N_HARMONICS = 3
@@ -160,7 +160,7 @@ def _departure(
     cycles = np.arange(len(movement)) * frequency / rate_hz
     basis = harmonic_basis(cycles, N_HARMONICS)
     centre = inside.mean(axis=0)
-    weights = regress(basis[slice(*window)], inside - centre)
+    weights = fit_basis(basis[slice(*window)], inside - centre)
     residual = movement - centre - basis @ weights
     variance = np.vdot(inside - centre, inside - centre) / len(inside)
     return np.einsum("tf,tf->t", residual, residual) / variance, frequency

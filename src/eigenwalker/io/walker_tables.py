@@ -17,7 +17,7 @@ from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_row
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker, fourier_coefficients
 from eigenwalker.gait.floor_origin import find_origin
-from eigenwalker.gait.heading import stance_speed
+from eigenwalker.gait.heading import ground_speed
 
 SIN_FIRST = ("mean", "sin1", "cos1", "sin2", "cos2")
 """The order of WDP2002, of the code of Moler's walker.m, and of the BML tables."""
@@ -250,11 +250,8 @@ def on_the_floor(walker: Walker) -> Walker:
     Its speed is that of its feet on the ground, if it is not known.
     """
     walk = walker.trajectories(np.linspace(0, 2 * walker.period_s, 200, endpoint=False))
-    speed = walker.speed_mm_s
-    if np.isnan(speed) and {"left_ankle", "right_ankle"} <= set(walker.markers):
-        speed = stance_speed(walk)
     origin = find_origin(walk.values, walker.markers)
-    return replace(walker, p0=walker.p0 - origin, speed_mm_s=speed)
+    return replace(walker, p0=walker.p0 - origin, speed_mm_s=ground_speed(walker))
 
 
 def _column_places(columns: Sequence[str]) -> dict[str, int]:

@@ -23,8 +23,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.core.walker import Walker, fourier_coefficients, shift_origin
-from eigenwalker.decomposition.decomposition import is_negative, origin_angle
+from eigenwalker.core.fourier import shift_origin
+from eigenwalker.core.walker import Walker, fourier_coefficients
+from eigenwalker.decomposition.fourier import origin_angle
+from eigenwalker.decomposition.pca import is_negative
 from eigenwalker.population.features import FeatureLayout, wrap_phase
 
 _MAX_ROUNDS = 50

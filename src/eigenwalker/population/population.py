@@ -13,7 +13,7 @@ import pandas as pd
 
 from eigenwalker.core.walker import Walker
 from eigenwalker.core.walker_svg import beside, html_table
-from eigenwalker.gait.heading import stance_speed
+from eigenwalker.gait.heading import ground_speed
 from eigenwalker.population.correspondence import (
     Correspondence,
     correspond,
@@ -204,7 +204,7 @@ class Population:
 
         """
         walker = self.layout.walker(vector)
-        return replace(walker, speed_mm_s=_speed(walker))
+        return replace(walker, speed_mm_s=ground_speed(walker))
 
     def vector(self, walker: Walker) -> np.ndarray:
         """Return any walker as a point of this population's feature space.
@@ -410,13 +410,6 @@ def flags_of(traits: pd.DataFrame) -> list[str]:
 def joined_flags(*flags: Iterable[str]) -> list[str]:
     """Return all that several sources say of each walker, in one line a walker."""
     return [" ".join(said for said in each if said) for each in zip(*flags, strict=True)]
-
-
-def _speed(walker: Walker) -> float:
-    """Speed of the feet on the ground, NaN for a body without ankles."""
-    if not {"left_ankle", "right_ankle"} <= set(walker.markers):
-        return float("nan")
-    return stance_speed(walker.trajectories(np.linspace(0, 2 * walker.period_s, 200)))
 
 
 def names_of(population: Population) -> list[str]:

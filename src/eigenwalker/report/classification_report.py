@@ -25,7 +25,7 @@ from eigenwalker.analysis.plausibility import plausibility
 from eigenwalker.analysis.trait_axis import TraitAxis, trait_axis
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.plotting.components import figure_scores, figure_variance
 from eigenwalker.plotting.curves import figure_curves, figure_regression_curves
 from eigenwalker.plotting.eigenpostures import figure_eigenpostures

@@ -12,7 +12,7 @@ from joblib import Parallel, delayed
 
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.core.blas_threads import one_blas_thread
-from eigenwalker.decomposition.decomposition import decompose_pca
+from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.person import PARAMETERS

@@ -13,7 +13,8 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 
 from eigenwalker.core.walker import Form, Walker
-from eigenwalker.decomposition.decomposition import decompose_fourier, decompose_pca
+from eigenwalker.decomposition.fourier import decompose_fourier
+from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import explained_by, read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
