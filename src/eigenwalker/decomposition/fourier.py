@@ -9,7 +9,7 @@ import xarray as xr
 
 from eigenwalker.core.fourier import shift_origin
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.eigenpostures import PHASE_REFERENCE, WalkComponents
+from eigenwalker.decomposition.walk_components import PHASE_REFERENCE, WalkComponents
 
 
 def decompose_fourier(

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.walker import Walker
-from eigenwalker.decomposition.eigenpostures import PHASE_REFERENCE, WalkComponents
+from eigenwalker.decomposition.walk_components import PHASE_REFERENCE, WalkComponents
 
 _ROUNDING = 1e-9
 
