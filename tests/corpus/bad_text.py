@@ -25,9 +25,9 @@ CUT = {
     "bvh": "12 frames, as it declares, but got (10|11): the file is cut short",
     "amc": "10 bones in each frame, but got 9 in frame 12: the file is cut short",
     "trc": "12 frames, as it declares, but got 11: the file is cut short",
-    "sto": "nrows=12, as it declares, but got 11: the file is cut short",
+    "sto": "12 frames, as it declares, but got 11: the file is cut short",
     "qualisys_tsv": "12 frames, as it declares, but got 11: the file is cut short",
-    "csv": "12 frames, as it declares, but got 11: the file is cut short, or",
+    "csv": "12 frames, as it declares, but got 11: the file is cut short",
     "data3d": "three lines a frame, but got 35: the file is cut short",
 }
 """What is said of a file that lacks its last line; the others cannot tell that."""

@@ -36,7 +36,7 @@ import numpy as np
 from corpus.sound_files import KINDS, Files, sound_files, walk_of
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.datasets.bml import read_bml_axes
-from eigenwalker.io.assumed_rate import RateAssumed
+from eigenwalker.io.capture_file import RateAssumed
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.mat_arrays import mat_arrays

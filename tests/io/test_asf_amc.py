@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import eigenwalker as ew
 from eigenwalker.core.trajectories import sampling_rate
-from eigenwalker.io.assumed_rate import RateAssumed
+from eigenwalker.io.capture_file import RateAssumed
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.acclaim_grammar import parse_amc, parse_asf

@@ -9,7 +9,9 @@ from hypothesis import given, settings, strategies as st
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.bvh import looks_like_bvh, read_bvh
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit, UnitGuessed
 
@@ -48,7 +50,7 @@ ROWS = """1.00 95.00 3.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00
 
 
 def _read(text: str, unit: Unit | None = CM):
-    return read_bvh(text.encode(), source="a.bvh", unit=unit)
+    return read_bvh(CaptureFile(Path("a.bvh"), text.encode(), unit=unit))
 
 
 def test_positions_are_those_worked_out_by_hand():
@@ -248,8 +250,8 @@ def test_a_file_cut_anywhere_is_refused():
     end = len(whole.rstrip())
     for length in range(end):
         with pytest.raises(UnreadableFile):
-            read_bvh(whole[:length], source="a.bvh", unit=CM)
-    read_bvh(whole[:end], source="a.bvh", unit=CM)
+            read_bvh(CaptureFile(Path("a.bvh"), whole[:length], unit=CM))
+    read_bvh(CaptureFile(Path("a.bvh"), whole[:end], unit=CM))
 
 
 def test_deep_nesting_and_too_many_joints_are_refused_at_once():
@@ -273,7 +275,7 @@ def test_damaged_files_end_in_data_or_the_one_error():
             else:
                 del damaged[at : at + int(rng.integers(1, 30))]
         try:
-            walk = read_bvh(bytes(damaged), source="a.bvh", unit=CM)
+            walk = read_bvh(CaptureFile(Path("a.bvh"), bytes(damaged), unit=CM))
         except UnreadableFile:
             outcomes.add("refused")
         else:
@@ -297,7 +299,7 @@ def test_real_captures_agree_with_bvhio(captures: Path, name):
         warnings.simplefilter("ignore", PendingDeprecationWarning)  # of the vectors it imports
         import bvhio
     path = captures / name
-    walk = read_bvh(path.read_bytes(), source=name, unit=CM)
+    walk = read_bvh(CaptureFile(path, path.read_bytes(), unit=CM))
     body = bvhio.readAsHierarchy(str(path))
     for frame in (0, 40, walk.sizes["time"] - 1):
         body.loadPose(frame)
@@ -312,7 +314,7 @@ def test_real_captures_have_the_units_and_rates_of_their_readme(captures: Path):
     expected = {CAPTURES[0]: ("asf", 120), CAPTURES[1]: ("cm", 30)}
     for name, (unit, rate) in expected.items():
         with pytest.warns(UnitGuessed):
-            walk = read_bvh((captures / name).read_bytes(), source=name)
+            walk = read_mocap(captures / name)
         assert (walk.attrs["unit"], walk.attrs["up_axis"]) == (unit, "y")
         assert sampling_rate(walk) == pytest.approx(rate)
 
@@ -321,4 +323,4 @@ def test_real_captures_cut_short_are_refused(captures: Path):
     whole = (captures / CAPTURES[1]).read_bytes()
     for percent in range(1, 100, 3):
         with pytest.raises(UnreadableFile):
-            read_bvh(whole[: len(whole) * percent // 100], source="a.bvh", unit=CM)
+            read_bvh(CaptureFile(Path("a.bvh"), whole[: len(whole) * percent // 100], unit=CM))

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.c3d import looks_like_c3d, read_c3d
 from eigenwalker.io.up_axis_and_unit import Unit, UnitGuessed
@@ -102,7 +103,7 @@ def _file(
 
 
 def _read(content: bytes, unit: Unit | None = None):
-    return read_c3d(content, source="a.c3d", unit=unit)
+    return read_c3d(CaptureFile(Path("a.c3d"), content, unit=unit))
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -326,7 +327,7 @@ def test_damaged_files_end_in_data_or_the_one_error():
                 at = int(rng.integers((24, 700, len(damaged))[number % 3]))
                 damaged[at] = rng.integers(256)
             try:
-                walk = read_c3d(bytes(damaged), source="a.c3d", unit=Unit("mm", 1.0))
+                walk = read_c3d(CaptureFile(Path("a.c3d"), bytes(damaged), unit=Unit("mm", 1.0)))
             except UnreadableFile:
                 outcomes.add("refused")
             else:

@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.mot import looks_like_mot, read_mot
 
@@ -26,7 +29,7 @@ def _sto(walk, *, suffix="_t{}", vectors=False, head="") -> str:
 
 def _read(text: str | bytes, **options):
     content = text if isinstance(text, bytes) else text.encode()
-    return read_mot(content, source="a.sto", **options)
+    return read_mot(CaptureFile(Path("a.sto"), content, **options))
 
 
 @pytest.mark.parametrize("suffix", ["_t{}", "_{}", "_p{}", ".{}"])

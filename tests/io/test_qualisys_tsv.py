@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
@@ -37,7 +40,7 @@ def _tsv(walk, *, in_front=0, header=True, missing="0.000", closed=False) -> str
 
 def _read(text: str | bytes, **options):
     content = text if isinstance(text, bytes) else text.encode()
-    return read_qualisys_tsv(content, source="a.tsv", **options)
+    return read_qualisys_tsv(CaptureFile(Path("a.tsv"), content, **options))
 
 
 @pytest.mark.parametrize("in_front", [0, 1, 2])

@@ -4,11 +4,14 @@ import os
 import pickle
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import eigenwalker as ew
+from corpus.sound_files import sound_files
+from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.read import FORMATS, read_mocap
+from eigenwalker.io.read import SUFFIXES, read_mocap
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
 
 BVH = b"""HIERARCHY
@@ -109,5 +112,49 @@ def test_the_error_travels_between_processes():
 
 
 def test_every_format_has_its_place_in_the_table():
-    assert {form.suffix for form in FORMATS} >= {".bvh", ".c3d", ".amc"}
+    assert set(SUFFIXES) >= {".bvh", ".c3d", ".amc"}
     assert ew.read_mocap is read_mocap
+
+
+def test_defaults_count_only_where_the_file_names_nothing(text_walk, tmp_path: Path):
+    values = text_walk.values[20:]
+    names = [f"{name}_{axis}" for name in text_walk.marker.values for axis in "xyz"]
+    rows = "\n".join(",".join(f"{v:.3f}" for v in frame.ravel()) for frame in values)
+    bare, named = tmp_path / "bare.csv", tmp_path / "named.csv"
+    bare.write_text(",".join(names) + "\n" + rows + "\n")
+    named.write_text("# unit: mm; rate_hz: 50\n" + bare.read_text())
+    defaults = {"default_unit": "cm", "default_rate_hz": 25}
+    walk = read_mocap(bare, **defaults)
+    np.testing.assert_allclose(walk.values, 10 * values, atol=1e-2)
+    assert sampling_rate(walk) == pytest.approx(25)
+    assert (walk.attrs["unit"], walk.attrs["unit_guessed"]) == ("cm", False)
+    walk = read_mocap(named, **defaults)
+    np.testing.assert_allclose(walk.values, values, atol=1e-3)
+    assert sampling_rate(walk) == pytest.approx(50)
+    for wrong in ({"default_unit": "furlong"}, {"default_rate_hz": 0}, {"partial": "some"}):
+        with pytest.raises(ValueError, match="is no"):
+            read_mocap(named, **wrong)
+
+
+@pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
+@pytest.mark.parametrize("kind", ["bvh", "c3d", "trc", "sto", "qualisys_tsv", "csv"])
+def test_the_whole_frames_of_a_cut_file_can_be_kept(kind, tmp_path: Path):
+    for number, files in enumerate(sound_files(kind)):
+        name, content = next(iter(files.items()))
+        path = tmp_path / f"{number}{name}"
+        path.write_bytes(content)
+        whole = read_mocap(path)
+        assert "n_frames_cut" not in read_mocap(path, partial="keep").attrs
+        padding = len(content) - len(content.rstrip(b"\0"))
+        for end in (len(content) - padding - 4, (2 * len(content)) // 3 + 150):
+            path.write_bytes(content[:end])
+            with pytest.raises(UnreadableFile, match="cut short"):
+                read_mocap(path)
+            part = read_mocap(path, partial="keep")
+            n_frames = part.sizes["time"]
+            assert 0 < n_frames < whole.sizes["time"]
+            assert part.attrs["n_frames_cut"] == whole.sizes["time"] - n_frames
+            np.testing.assert_array_equal(part.values, whole.values[:n_frames])
+    path.write_bytes(content[: (2 * len(content)) // 3 + 150])
+    with pytest.raises(UnreadableFile, match='partial="keep"'):
+        read_mocap(path)

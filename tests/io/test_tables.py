@@ -11,9 +11,9 @@ import pytest
 
 import eigenwalker as ew
 from eigenwalker.core.trajectories import sampling_rate
-from eigenwalker.io.assumed_rate import RateAssumed
+from eigenwalker.io.capture_file import CaptureFile, RateAssumed
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.read import FORMATS, is_capture, read_mocap
+from eigenwalker.io.read import READERS, is_capture, read_mocap
 from eigenwalker.io.readers.pose_json import BODY_25, MEDIAPIPE, holds_poses
 from eigenwalker.io.readers.skeleton_table import read_skeleton_table
 from eigenwalker.io.readers.unmarked_table import looks_like_table
@@ -410,7 +410,13 @@ def test_what_a_table_begins_with():
     assert looks_like_table("time\tnose_x\n".encode("utf-16"))
     for content in (b"", b"\x00\x01", b"Dear colleague", b"42"):
         assert not looks_like_table(content)
-    assert {form.name for form in FORMATS} >= {"TRC", "STO", "Vicon CSV", "Qualisys TSV", "table"}
+    assert {reader.name for reader in READERS} >= {
+        "TRC",
+        "STO/MOT",
+        "Vicon CSV",
+        "Qualisys TSV",
+        "table",
+    }
 
 
 @quietly
@@ -467,7 +473,7 @@ def test_unit_guesses_of_tables_are_warned_of(text_walk, tmp_path):
     with pytest.warns(UnitGuessed):
         _read(tmp_path, _csv(text_walk.marker.values, _y_up(text_walk)))
     text = _csv(text_walk.marker.values, _y_up(text_walk)).encode()
-    walk = read_skeleton_table(b"# unit: m\n" + text, source="a.csv")
+    walk = read_skeleton_table(CaptureFile(Path("a.csv"), b"# unit: m\n" + text))
     assert not walk.attrs["unit_guessed"]
 
 

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.trc import looks_like_trc, read_trc
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
@@ -32,7 +34,7 @@ def _trc(walk, *, unit="mm", rate="50.00", decimals=5, sep="\t", end="\n", names
 
 def _read(text: str | bytes, **options):
     content = text if isinstance(text, bytes) else text.encode()
-    return read_trc(content, source="a.trc", **options)
+    return read_trc(CaptureFile(Path("a.trc"), content, **options))
 
 
 @pytest.mark.parametrize("unit", ["mm", "cm", "m"])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.vicon_csv import looks_like_vicon_csv, read_vicon_csv
@@ -24,7 +25,7 @@ def _csv(walk, *, sep=",", end="\r\n", unit="mm", first=1, title="Trajectories")
 
 def _read(text: str | bytes, **options):
     content = text if isinstance(text, bytes) else text.encode()
-    return read_vicon_csv(content, source="a.csv", **options)
+    return read_vicon_csv(CaptureFile(Path("a.csv"), content, **options))
 
 
 def test_what_was_written_is_read(text_walk):

@@ -14,6 +14,7 @@ import xarray as xr
 import eigenwalker as ew
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import MILLIMETRES, sampling_rate
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.netcdf import read_netcdf
@@ -159,7 +160,7 @@ def test_netcdf_cut_short_or_of_another_kind_is_refused(walk, tmp_path: Path):
     whole = write_mocap(walk[:4], tmp_path / "walk.nc").read_bytes()
     for percent in range(1, 100):
         with pytest.raises(UnreadableFile):
-            read_netcdf(whole[: len(whole) * percent // 100], source="walk.nc")
+            read_netcdf(CaptureFile(Path("walk.nc"), whole[: len(whole) * percent // 100]))
     xr.Dataset({"a": 1.0}).to_netcdf(tmp_path / "other.nc", engine="scipy")
     with pytest.raises(UnreadableFile, match="label_trajectories"):
         read_mocap(tmp_path / "other.nc")
@@ -173,7 +174,7 @@ def test_damaged_netcdf_ends_in_data_or_in_the_one_error(walk, tmp_path: Path):
         for at in rng.integers(0, len(whole) if rng.random() < 0.3 else 900, rng.integers(1, 8)):
             damaged[at] = rng.integers(256)
         try:
-            read_netcdf(bytes(damaged), source="walk.nc")
+            read_netcdf(CaptureFile(Path("walk.nc"), bytes(damaged)))
         except UnreadableFile:
             continue
 

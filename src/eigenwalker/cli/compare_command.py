@@ -355,7 +355,7 @@ def _apart(first: Path, second: Path) -> tuple[str, str]:
 @contextmanager
 def _told_as_options() -> Iterator[None]:
     """Say what readers warn of in words of this command line, of many files the first few."""
-    from eigenwalker.io.assumed_rate import RateAssumed
+    from eigenwalker.io.capture_file import RateAssumed
     from eigenwalker.io.up_axis_and_unit import UnitGuessed
 
     with warnings.catch_warnings(record=True) as caught:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from eigenwalker.core.walker import Walker
+from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.sniff import content_of
 from eigenwalker.io.walker_tables import (
     BML_MARKERS,
     BML_RATE_HZ,
@@ -128,7 +128,7 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     """
     path = Path(path)
     try:
-        content = json.loads(content_of(path, most_bytes=_MOST_BYTES), parse_int=float)
+        content = json.loads(read_bytes(path, max_bytes=_MOST_BYTES), parse_int=float)
     except (ValueError, RecursionError) as error:
         if isinstance(error, UnreadableFile):
             raise

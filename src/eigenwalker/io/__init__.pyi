@@ -1,4 +1,4 @@
-from .assumed_rate import RateAssumed as RateAssumed
+from .capture_file import RateAssumed as RateAssumed
 from .errors import UnreadableFile as UnreadableFile
 from .interchange import (
     from_movement as from_movement,

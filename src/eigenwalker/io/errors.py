@@ -1,14 +1,14 @@
-"""The one error that a file which cannot be read ends in."""
+"""The one error for a file that cannot be read."""
 
 from __future__ import annotations
 
-AGAIN = "export or copy the file again"
+EXPORT_AGAIN = "export or copy the file again"
 
 
 class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
-    """A file does not hold what a reader needs.
+    """A file does not hold what its reader needs.
 
-    Whatever is wrong with a file, readers raise this and nothing else, so that one bad file among
+    Readers raise this error and no other, whatever is wrong with a file, so that one bad file among
     many can be reported and the rest read.
 
     Parameters
@@ -17,10 +17,14 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
         Name of the file.
     expected : str
         What a sound file would hold.
-    came : str
-        What stood there instead.
+    got : str
+        What stands there instead.
     advice : str
         What the owner of the file can do.
+
+    See Also
+    --------
+    read_mocap
 
     Examples
     --------
@@ -30,23 +34,21 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
 
     """
 
-    def __init__(self, source: str, expected: str, came: str, advice: str = AGAIN) -> None:
-        super().__init__(source, expected, came, advice)
+    def __init__(self, source: str, expected: str, got: str, advice: str = EXPORT_AGAIN) -> None:
+        super().__init__(source, expected, got, advice)
         self.source = source
         self.expected = expected
-        self.came = came
+        self.got = got
         self.advice = advice
 
     def __str__(self) -> str:
         return printable(
-            f"{self.source}: expected {self.expected}, but got {self.came}; {self.advice}."
+            f"{self.source}: expected {self.expected}, but got {self.got}; {self.advice}."
         )
 
 
 def printable(text: str) -> str:
-    r"""Return a text in one line, without what a terminal would act on.
-
-    Names in files, and of files, may hold anything.
+    r"""Return a text in one line, without characters that control a terminal.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-"""What a file that nobody here reads is instead, in words for whoever owns it."""
+"""What a file seems to be that no reader takes, in words for its owner."""
 
 from __future__ import annotations
 
 import re
 
-_WORDS = 32
+_MAX_QUOTED = 32
 """Letters of a text that are quoted."""
 _SIGNATURES = (
     (rb"\x89HDF\r\n\x1a\n", "a NetCDF-4 or HDF5 file"),
@@ -26,7 +26,7 @@ _SIGNATURES = (
 )
 
 
-def kind_of(content: bytes) -> str:
+def file_type_of(content: bytes) -> str:
     """Return what a file seems to be, as the end of a sentence.
 
     Parameters
@@ -41,9 +41,9 @@ def kind_of(content: bytes) -> str:
 
     Examples
     --------
-    >>> kind_of(b"%PDF-1.7"), kind_of(b"Dear colleague")
+    >>> file_type_of(b"%PDF-1.7"), file_type_of(b"Dear colleague")
     ('a PDF document', 'a text that begins with "Dear colleague"')
-    >>> kind_of(bytes(range(256)))
+    >>> file_type_of(bytes(range(256)))
     'a file of no kind that is known here'
 
     """
@@ -54,7 +54,7 @@ def kind_of(content: bytes) -> str:
     words = " ".join(_text(beginning).split())
     if not words or not words.isprintable():
         return "a file of no kind that is known here"
-    quoted = words if len(words) <= _WORDS else f"{words[:_WORDS].rstrip()} ..."
+    quoted = words if len(words) <= _MAX_QUOTED else f"{words[:_MAX_QUOTED].rstrip()} ..."
     return f'a text that begins with "{quoted}"'
 
 

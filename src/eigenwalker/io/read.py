@@ -1,20 +1,21 @@
-"""One function for all formats: what a file is called and what it holds decide who reads it."""
+"""One function for all formats: the content of a file decides which reader takes it."""
 
 from __future__ import annotations
 
 import math
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal
 
-import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import MILLIMETRES
-from eigenwalker.io.errors import AGAIN, UnreadableFile
-from eigenwalker.io.file_types import kind_of, with_article
-from eigenwalker.io.readers.asf_amc import find_skeleton, looks_like_acclaim, read_asf_amc
+from eigenwalker.io.capture_file import CaptureFile, read_bytes
+from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
+from eigenwalker.io.file_types import file_type_of, with_article
+from eigenwalker.io.readers.asf_amc import looks_like_acclaim, read_asf_amc, skeleton_beside
 from eigenwalker.io.readers.bvh import looks_like_bvh, read_bvh
 from eigenwalker.io.readers.c3d import looks_like_c3d, read_c3d
 from eigenwalker.io.readers.mot import looks_like_mot, read_mot
@@ -23,93 +24,121 @@ from eigenwalker.io.readers.pose_json import holds_poses, looks_like_json, read_
 from eigenwalker.io.readers.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
 from eigenwalker.io.readers.trc import looks_like_trc, read_trc
 from eigenwalker.io.readers.unmarked_table import (
-    DESCRIPTION,
+    find_description,
     holds_points,
     looks_like_table,
     read_table,
 )
 from eigenwalker.io.readers.vicon_csv import looks_like_vicon_csv, read_vicon_csv
-from eigenwalker.io.sniff import beside, content_of
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 
 BEGINNING = 100_000
-"""Bytes of a file that tell whether it is meant as a capture."""
+"""Bytes of a file from which it is decided whether it is meant as a capture."""
 
 
-class Format(NamedTuple):
-    """A kind of file: what it is called, how to know it, and who reads it.
+@dataclass(frozen=True)
+class Reader:
+    """A format that is read: how its files are known, and the function that reads them.
 
-    `wants` names what its reader takes beside the bytes: ``"path"`` where a file beside it is
-    needed, ``"rate_hz"`` where files may name no rate. Where other files have the suffix too,
-    `among_others` tells from the beginning of a file and its path whether it is meant as a capture.
+    Parameters
+    ----------
+    name : str
+        Name of the format.
+    suffixes : tuple of str
+        Usual suffixes of its files.
+    looks_like : function of bytes
+        Whether the content of a file is of this format.
+    read : function of a CaptureFile
+        Gives trajectories or raises `UnreadableFile`.
+    is_meant : function of bytes and Path, optional
+        Where other files have the suffix too: whether a file is meant as a capture, by its
+        beginning and its path.
+    companion : function of Path, optional
+        Finds the file beside a capture without which it cannot be read as it is.
+
     """
 
     name: str
-    suffix: str
+    suffixes: tuple[str, ...]
     looks_like: Callable[[bytes], bool]
-    read: Callable[..., xr.DataArray]
-    wants: tuple[str, ...] = ()
-    among_others: Callable[[bytes, Path], bool] | None = None
+    read: Callable[[CaptureFile], xr.DataArray]
+    is_meant: Callable[[bytes, Path], bool] | None = None
+    companion: Callable[[Path], Path | None] | None = None
 
 
-def _by(looks_like: Callable[[bytes], bool]) -> Callable[[bytes, Path], bool]:
+def _by_content(looks_like: Callable[[bytes], bool]) -> Callable[[bytes, Path], bool]:
     return lambda beginning, _path: looks_like(beginning)
 
 
-_RATE = ("rate_hz",)
-_PATH_AND_RATE = ("path", "rate_hz")
-FORMATS = (
-    Format("BVH", ".bvh", looks_like_bvh, read_bvh),
-    Format("C3D", ".c3d", looks_like_c3d, read_c3d),
-    Format("ASF/AMC", ".amc", looks_like_acclaim, read_asf_amc, _PATH_AND_RATE),
-    Format("NetCDF", ".nc", looks_like_netcdf, read_netcdf, among_others=holds_trajectories),
-    Format("TRC", ".trc", looks_like_trc, read_trc, _RATE),
-    Format("STO", ".sto", looks_like_mot, read_mot, _RATE),
-    Format("MOT", ".mot", looks_like_mot, read_mot, _RATE),
-    Format(
-        "Vicon CSV", ".csv", looks_like_vicon_csv, read_vicon_csv, _RATE, _by(looks_like_vicon_csv)
+READERS = (
+    Reader("BVH", (".bvh",), looks_like_bvh, read_bvh),
+    Reader("C3D", (".c3d",), looks_like_c3d, read_c3d),
+    Reader("ASF/AMC", (".amc",), looks_like_acclaim, read_asf_amc, companion=skeleton_beside),
+    Reader("NetCDF", (".nc",), looks_like_netcdf, read_netcdf, holds_trajectories),
+    Reader("TRC", (".trc",), looks_like_trc, read_trc),
+    Reader("STO/MOT", (".sto", ".mot"), looks_like_mot, read_mot),
+    Reader(
+        "Vicon CSV",
+        (".csv",),
+        looks_like_vicon_csv,
+        read_vicon_csv,
+        _by_content(looks_like_vicon_csv),
     ),
-    Format(
+    Reader(
         "Qualisys TSV",
-        ".tsv",
+        (".tsv",),
         looks_like_qualisys_tsv,
         read_qualisys_tsv,
-        _RATE,
-        _by(looks_like_qualisys_tsv),
+        _by_content(looks_like_qualisys_tsv),
     ),
-    Format("JSON", ".json", looks_like_json, read_pose_json, _RATE, holds_poses),
-    Format("table", ".csv", looks_like_table, read_table, _PATH_AND_RATE, holds_points),
-    Format("table", ".txt", looks_like_table, read_table, _PATH_AND_RATE, holds_points),
+    Reader("JSON", (".json",), looks_like_json, read_pose_json, holds_poses),
+    Reader("table", (".csv", ".txt"), looks_like_table, read_table, holds_points, find_description),
 )
-"""Every format that is read. A reader takes the bytes of a file and its name as ``source``."""
+"""Every format that is read, in the order in which they are tried."""
+SUFFIXES = tuple(dict.fromkeys(suffix for reader in READERS for suffix in reader.suffixes))
+"""Suffixes of files that may be captures."""
 
 
 def read_mocap(
-    path: str | os.PathLike[str], *, unit: str | None = None, rate_hz: float | None = None
+    path: str | os.PathLike[str],
+    *,
+    unit: str | None = None,
+    rate_hz: float | None = None,
+    default_unit: str | None = None,
+    default_rate_hz: float | None = None,
+    partial: Literal["refuse", "keep"] = "refuse",
 ) -> xr.DataArray:
-    """Return what a file holds as trajectories, as captured.
+    """Return what a file of motion capture holds as trajectories, as captured.
+
+    Read are C3D, BVH, motions (AMC) with their skeleton (ASF) beside them, TRC, OpenSim's STO and
+    MOT, exports of Vicon (CSV) and Qualisys (TSV), JSON and tables of points, and NetCDF as
+    `write_mocap` writes it. The content of a file decides, not its name.
 
     Parameters
     ----------
     path : str or path
-        A file of any of the `FORMATS`, such as C3D, BVH, TRC, or a motion (AMC) with its skeleton
-        (ASF) beside it. What it holds decides, not what it is called.
+        File to read.
     unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
-        Unit of length, for files that name none (all BVH) or the wrong one. If left out, it is the
-        one the file names, or else the one in which the body is as tall as people are; that
-        is warned of with `UnitGuessed`. ``"asf"`` is the unit of CMU skeletons, inch/0.45.
+        Unit of length, in place of the one in the file. If left out, it is the one that the file
+        names, else the one in which the body is as tall as people are, with a warning
+        (`UnitGuessed`). ``"asf"`` is the unit of CMU skeletons, inch/0.45.
     rate_hz : float, optional
-        Frames a second, for files that name none (most AMC) or the wrong one. If left out, it is
-        the one the file names, or else the usual one of its kind; that is warned of with
-        `RateAssumed`.
+        Frames a second, in place of those in the file. If left out, they are those that the file
+        names, else the usual ones of its format, with a warning (`RateAssumed`).
+    default_unit, default_rate_hz : optional
+        Unit and frames a second for a file that names none; other files keep their own.
+    partial : {"refuse", "keep"}
+        What to do with a file that declares more frames than it has (BVH, C3D, TRC, STO, Qualisys
+        TSV, tables with a number of frames in the first line): refuse it, or take its whole frames.
+        ``attrs["n_frames_cut"]`` is then the number of frames that are missing at the end.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        Positions in millimetres, z up; NaN where a marker was not seen. ``attrs`` tell ``source``
-        (name of the file), ``format``, ``up_axis`` (the one of the file) and whether that is known
-        (``up_axis_known``), ``unit`` (of the file), whether it is guessed (``unit_guessed``) and
-        why it was taken (``unit_reason``). Where joints have orientations, they are in the
+        Positions in millimetres, z up; NaN where a marker was not seen. ``attrs`` hold ``source``
+        (name of the file), ``format``, ``up_axis`` (upward axis of the file) and whether that is
+        known (``up_axis_known``), ``unit`` (of the file), whether it is guessed (``unit_guessed``)
+        and the reason for it (``unit_reason``). Where joints have orientations, they are in the
         coordinate ``rotation`` (time, marker, axis), as rotation vectors in radians.
 
     Raises
@@ -117,7 +146,12 @@ def read_mocap(
     UnreadableFile
         If there is no such file, or it is damaged, cut short, or of another format.
     ValueError
-        If `unit` is not known, or `rate_hz` no rate.
+        If an argument makes no sense.
+
+    See Also
+    --------
+    write_mocap : Writes such files.
+    eigenwalker.markers.virtual_markers : Makes the 15 joints of what was read.
 
     Examples
     --------
@@ -129,45 +163,63 @@ def read_mocap(
 
     """
     path = Path(path)
-    content = content_of(path)
-    known = MILLIMETRES | UNITS
-    if unit is not None and unit not in known:
-        raise ValueError(f"unit={unit!r} is not known; give one of {sorted(known)}.")
-    if rate_hz is not None and not 0 < rate_hz < math.inf:
-        raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")
-    named = None if unit is None else Unit(unit, known[unit], "named by the caller")
-    for form in FORMATS:
-        if form.looks_like(content):
-            wanted = {name: {"path": path, "rate_hz": rate_hz}[name] for name in form.wants}
-            walk = form.read(content, source=path.name, unit=named, **wanted)
-            return walk if "rate_hz" in wanted else _at_rate(walk, rate_hz)
-    if content.startswith(b"MATLAB") or path.suffix.lower() == ".mat":
-        raise UnreadableFile(
-            path.name, "a capture that says what it is", "a MATLAB file, which does not", _OF_MATLAB
-        )
-    of_its_suffix = [form for form in FORMATS if form.suffix == path.suffix.lower()]
-    by_name = [form.name for form in of_its_suffix if form.among_others is None]
-    raise UnreadableFile(
-        path.name,
-        with_article(f"{' or '.join(by_name)} file, as it is called") if by_name else _CAPTURE,
-        kind_of(content),
-        AGAIN if by_name else "export it as one of these",
+    content = read_bytes(path)
+    if partial not in ("refuse", "keep"):
+        raise ValueError(f"partial={partial!r} is not known; give 'refuse' or 'keep'.")
+    file = CaptureFile(
+        path,
+        content,
+        unit=_checked_unit("unit", unit),
+        rate_hz=_checked_rate("rate_hz", rate_hz),
+        default_unit=_checked_unit("default_unit", default_unit),
+        default_rate_hz=_checked_rate("default_rate_hz", default_rate_hz),
+        keep_partial=partial == "keep",
     )
+    for reader in READERS:
+        if reader.looks_like(content):
+            return reader.read(file)
+    raise _unknown_file(file)
 
 
-_NAMES = list(dict.fromkeys(form.name for form in FORMATS if form.name != "table"))
-_CAPTURE = f"a capture ({', '.join(_NAMES)} or a table of points)"
-_OF_MATLAB = (
-    "read an array of it by read_mat(path, variable, markers=..., rate_hz=...), walkers by "
-    "read_walkers_mat(path) or read_mm(path)"
-)
+def _checked_unit(argument: str, unit: str | None) -> Unit | None:
+    known = MILLIMETRES | UNITS
+    if unit is None:
+        return None
+    if unit not in known:
+        raise ValueError(f"{argument}={unit!r} is not known; give one of {sorted(known)}.")
+    return Unit(unit, known[unit], "named by the caller")
+
+
+def _checked_rate(argument: str, rate_hz: float | None) -> float | None:
+    if rate_hz is not None and not 0 < rate_hz < math.inf:
+        raise ValueError(f"{argument}={rate_hz} is no frame rate; give frames a second, above 0.")
+    return rate_hz
+
+
+def _unknown_file(file: CaptureFile) -> UnreadableFile:
+    """Return the error about a file that no reader takes."""
+    suffix = file.path.suffix.lower()
+    if file.content.startswith(b"MATLAB") or suffix == ".mat":
+        return file.error(
+            "a capture that says what it is",
+            "a MATLAB file, which does not",
+            "read an array of it by read_mat(path, variable, markers=..., rate_hz=...), walkers by "
+            "read_walkers_mat(path) or read_mm(path)",
+        )
+    got = file_type_of(file.content)
+    by_name = [r.name for r in READERS if suffix in r.suffixes and r.is_meant is None]
+    if by_name:
+        expected = f"{with_article(' or '.join(by_name))} file, as it is called"
+        return file.error(expected, got, EXPORT_AGAIN)
+    names = ", ".join(reader.name for reader in READERS if reader.name != "table")
+    expected = f"a capture ({names} or a table of points)"
+    return file.error(expected, got, "export it as one of these")
 
 
 def is_capture(path: Path) -> bool:
     """Return whether a file in a folder is meant as a capture, sound or not.
 
-    Its suffix tells, and for suffixes that other files have too, such as ``.csv``, what it begins
-    with.
+    Its suffix decides; for suffixes that other files have too, such as ``.csv``, its beginning.
 
     Parameters
     ----------
@@ -179,18 +231,18 @@ def is_capture(path: Path) -> bool:
     bool
 
     """
-    forms = [form for form in FORMATS if form.suffix == path.suffix.lower()]
-    if not forms or not path.is_file():
+    readers = [reader for reader in READERS if path.suffix.lower() in reader.suffixes]
+    if not readers or not path.is_file():
         return False
     try:
         with path.open("rb") as file:
             beginning = file.read(BEGINNING)
     except OSError:
         return True  # to be refused with the reason
-    return any(form.among_others is None or form.among_others(beginning, path) for form in forms)
+    return any(reader.is_meant is None or reader.is_meant(beginning, path) for reader in readers)
 
 
-def explained_by(path: Path) -> list[Path]:
+def companion_files(path: Path) -> list[Path]:
     """Return the files beside a capture without which it cannot be read as it is.
 
     Parameters
@@ -204,17 +256,5 @@ def explained_by(path: Path) -> list[Path]:
         The skeleton of an AMC file, the description of a table; for most captures none.
 
     """
-    if path.suffix.lower() == ".amc":
-        try:
-            return [find_skeleton(path)]
-        except UnreadableFile:
-            return []
-    description = beside(path, DESCRIPTION)
-    return [description] if description else []
-
-
-def _at_rate(walk: xr.DataArray, rate_hz: float | None) -> xr.DataArray:
-    """Return a capture on the clock that the caller names, if one is named."""
-    if rate_hz is None:
-        return walk
-    return walk.assign_coords(time=np.arange(walk.sizes["time"]) / rate_hz)
+    companions = [reader.companion(path) for reader in READERS if reader.companion]
+    return [companion for companion in companions if companion]

@@ -1,217 +1,199 @@
-"""Tables in text: from bytes to lines, from lines to cells, from cells to numbers."""
+"""The one reader of text tables: what stands in which column -> trajectories.
+
+Each format (TRC, STO, Vicon CSV, Qualisys TSV, tables of points) has a grammar of its own for the
+lines above the numbers, in `readers`. Rows, columns, times and counts are the same for all.
+"""
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
+import xarray as xr
 
-from eigenwalker.io.errors import AGAIN, UnreadableFile
-from eigenwalker.io.numbers import MOST_DISTANT
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.text_cells import cells, cut_number, refuse_cut_number, table_of
+from eigenwalker.io.timestamps import Clocked, on_clock
+from eigenwalker.io.to_trajectories import labelled_points, own_name, trajectories_of
+from eigenwalker.io.up_axis_and_unit import Unit
 
-MISSING = frozenset(
-    ("", "nan", "-nan", "na", "n/a", "null", "none", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind")
-)
-"""What programs write in a cell where nothing was measured, in small letters."""
-
-_PLAIN = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
-_TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1a")
+_UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
 
 
-def is_text(content: bytes) -> bool:
-    """Return whether a file holds text, by its first bytes.
-
-    Examples
-    --------
-    >>> is_text(b"time,nose_x"), is_text(bytes(16))
-    (True, False)
-
-    """
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return True
-    return not any(byte < 32 and byte not in _TEXT_CONTROLS for byte in content[:1024])
-
-
-def lines_of(content: bytes, source: str) -> list[str]:
-    """Return the lines of a text, in whatever way its program writes letters and ends lines.
+@dataclass(frozen=True)
+class TextTable:
+    """Lines of numbers, and which columns hold the points.
 
     Parameters
     ----------
-    content : bytes
-        The whole file: UTF-8 with or without a mark, UTF-16 with one, or else Windows' letters.
-    source : str
-        Its name, for messages.
-
-    Returns
-    -------
-    list of str
-        Without those at the end that are empty.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is no text.
-
-    """
-    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
-    try:
-        text = content.decode("utf-16" if wide else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", errors="replace")
-    if "\0" in text:
-        raise UnreadableFile(source, "text", "bytes that are no letters", AGAIN)
-    return re.split(r"\r\n|\n|\r", text.rstrip("\n\r\x1a "))
-
-
-def separator_of(line: str) -> str | None:
-    """Return what separates the cells of a line; None for blanks.
-
-    Examples
-    --------
-    >>> separator_of("Frame;X 1;Y 1"), separator_of("1.0  2.0") is None
-    (';', True)
-
-    """
-    return next((mark for mark in "\t;," if mark in line), None)
-
-
-def cells(line: str, separator: str | None) -> list[str]:
-    """Return the cells of a line without blanks and quotation marks around them.
-
-    Examples
-    --------
-    >>> cells('1, "Hip, left" ,2', ",")
-    ['1', 'Hip, left', '2']
-
-    """
-    if separator and '"' in line:
-        try:
-            row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
-            return [cell.strip() for cell in row]
-        except csv.Error:  # cells that are too long, or a mark in a wrong place
-            pass
-    return [cell.strip().strip('"') for cell in line.split(separator)]
-
-
-def table_of(
-    lines: Sequence[str],
-    n_columns: int,
-    *,
-    separator: str | None,
-    source: str,
-    first: int = 1,
-    short_by: int = 0,
-    columns: Sequence[int] | None = None,
-) -> np.ndarray:
-    """Return lines of numbers as an array of shape (line, column), NaN for empty cells.
-
-    Where cells are not separated by commas, numbers may have decimal commas.
-
-    Parameters
-    ----------
-    lines : sequence of str
-        One row a line.
+    names : sequence of str
+        Names of the points.
+    columns : sequence of (int, int, int)
+        Columns of x, y and z of each point.
+    rows : sequence of str
+        The lines, one a frame.
     n_columns : int
         Cells a line.
     separator : str or None
         What stands between cells; None for blanks.
-    source : str
-        Name of the file, for messages.
-    first : int
+    first_line : int
         Number of the first line in the file, for messages.
+    time_column : int, optional
+        Column of the times, in seconds.
+    n_frames : int, optional
+        Frames that the file declares.
+    only_these : bool
+        Whether other columns may hold anything.
     short_by : int
-        A line but the last may end before a multiple of so many cells which are empty, as when an
-        editor cut blanks from the ends of lines.
-    columns : sequence of int, optional
-        The columns that are wanted; others may hold anything.
+        As `table_of` takes it.
+    ends_file : bool
+        Whether the file ends with the table, and so may be cut within it.
 
-    Returns
-    -------
-    array of shape (line, column)
+    """
+
+    names: Sequence[str]
+    columns: Sequence[tuple[int, int, int]]
+    rows: Sequence[str]
+    n_columns: int
+    separator: str | None
+    first_line: int = 1
+    time_column: int | None = None
+    n_frames: int | None = None
+    only_these: bool = False
+    short_by: int = 0
+    ends_file: bool = True
+
+
+def interleaved(n_points: int, first: int) -> list[tuple[int, int, int]]:
+    """Return the columns of points that stand side by side, x y z x y z ..."""
+    return [(first + 3 * i, first + 3 * i + 1, first + 3 * i + 2) for i in range(n_points)]
+
+
+@dataclass(frozen=True)
+class TableValues:
+    """Numbers of a table: positions (time, marker, 3), times, and attributes about the frames."""
+
+    positions: np.ndarray
+    time: np.ndarray | None = None
+    attrs: Mapping[str, object] = field(default_factory=dict[str, object])
+
+
+def table_values(file: CaptureFile, table: TextTable) -> TableValues:
+    """Return the positions and times in a table; NaN where a cell is empty.
 
     Raises
     ------
     UnreadableFile
-        If there is no line, or one has fewer or more cells, or something else than numbers.
+        If the table is cut short or damaged.
 
     """
-    if not lines:
-        raise UnreadableFile(source, "a line of numbers or more", "none")
-    comma = separator != "," and any(re.search(r"\d,\d", line) for line in lines[:20])
-    rows: list[np.ndarray] = []
-    room = sum(map(len, lines)) + n_columns
-    for at, line in enumerate(lines):
-        plain = line.replace(",", ".") if comma else line
-        words = cells(plain, separator) if '"' in plain else plain.split(separator)
-        if len(words) > n_columns:
-            words = [*words[:n_columns], *(word for word in words[n_columns:] if word.strip())]
-        lack = n_columns - len(words)
-        if lack > 0 and short_by and lack % short_by == 0 and at < len(lines) - 1 and lack < room:
-            words += [""] * lack
-            room -= lack
-        if len(words) != n_columns:
-            late = ": the file is cut short" if lack > 0 and at == len(lines) - 1 else ""
-            raise UnreadableFile(
-                source,
-                f"{n_columns} cells in line {first + at}",
-                f"{len(words)}{late}",
-            )
-        wanted = words if columns is None else [words[column] for column in columns]
-        rows.append(_row(wanted, first + at, source))
-    return np.array(rows).reshape(len(rows), n_columns if columns is None else len(columns))
+    rows = _whole_rows(file, table)
+    attrs = {} if table.n_frames is None else file.check_frames(table.n_frames, len(rows))
+    wanted = [column for triple in table.columns for column in triple]
+    if table.time_column is not None:
+        wanted.append(table.time_column)
+    values = table_of(
+        rows,
+        table.n_columns,
+        separator=table.separator,
+        source=file.name,
+        first=table.first_line,
+        short_by=table.short_by,
+        columns=wanted if table.only_these else None,
+    )
+    if table.ends_file and len(rows) == len(table.rows):
+        refuse_cut_number(file.content, rows, file.name)
+    if not table.only_these:
+        values = values[:, wanted]
+    n_points = len(table.names)
+    return TableValues(
+        values[:, : 3 * n_points].reshape(len(values), n_points, 3),
+        values[:, -1] if table.time_column is not None else None,
+        attrs,
+    )
 
 
-def _row(words: list[str], line: int, source: str) -> np.ndarray:
-    try:
-        row = np.array([float(word) for word in words])
-        sound = all(word.isascii() and "_" not in word for word in words)  # 1_0 is not 10 here
-    except ValueError:
-        row, sound = np.zeros(0), False
-    if not sound or not np.all(np.isnan(row) | (np.abs(row) < MOST_DISTANT)):
-        row = np.array([_cell(word.strip(), line, source) for word in words])
-    return row
+def _whole_rows(file: CaptureFile, table: TextTable) -> Sequence[str]:
+    """Return the lines without the last, if a partial file to be kept may end within it."""
+    rows = table.rows
+    if not file.keep_partial or table.n_frames is None or not rows:
+        return rows
+    if file.content.rstrip(b"\0").endswith((b"\n", b"\r")):
+        return rows
+    is_cut = (
+        len(rows) < table.n_frames
+        or len(cells(rows[-1], table.separator)) < table.n_columns
+        or cut_number(file.content, rows)
+    )
+    return rows[:-1] if is_cut else rows
 
 
-def _cell(word: str, line: int, source: str) -> float:
-    if word.lower() in MISSING:
-        return np.nan
-    value = float(word) if _PLAIN.fullmatch(word) else np.inf
-    if not abs(value) < MOST_DISTANT:
-        raise UnreadableFile(source, f"a finite number in line {line}", repr(word[:40]))
-    return value
+def table_trajectories(
+    file: CaptureFile,
+    values: TableValues,
+    names: Sequence[str],
+    *,
+    format_name: str,
+    rate_hz: float | None = None,
+    start_s: float = 0.0,
+    unit: Unit | None = None,
+    usual_unit: Unit | None = None,
+    up: str | None = None,
+    usual_up: str = "z",
+) -> xr.DataArray:
+    """Return the points of a table as trajectories.
 
-
-def refuse_cut_number(content: bytes, lines: Sequence[str], source: str) -> None:
-    """Refuse a file that ends within its last number, as far as that can be seen.
-
-    It can where the file has no end of line at its end and all earlier lines have the same number
-    of decimals in their last cell.
+    Unlabelled points, and a subject's name before all names, are left out.
 
     Parameters
     ----------
-    content : bytes
-        The whole file.
-    lines : sequence of str
-        Its lines of numbers.
-    source : str
-        Its name, for messages.
+    file : CaptureFile
+        The file, and what the caller knows of it.
+    values : TableValues
+        Positions in the unit and frame of the file, and times.
+    names : sequence of str
+        One name a marker.
+    rate_hz, start_s : float, optional
+        Frames a second that the file declares, to which times are held, and the time of the first
+        frame of a table without times.
+    format_name, unit, usual_unit, up, usual_up
+        As `trajectories_of` takes them.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
 
     Raises
     ------
     UnreadableFile
-        If the last number is shorter than those above it.
+        If times do not fit the rate, or no labelled point was seen.
 
     """
-    if len(lines) < 2 or content[-1:].isspace() or content[-2:] in (b"\n\0", b"\r\0"):
-        return
-    between = r"[\t;]" if re.search(r"[\t;]", lines[0]) else r"[\s,]"
-    last = [re.split(between, line)[-1].strip() for line in lines[-20:]]
-    decimals = [len(word.replace(",", ".").partition(".")[2]) for word in last]
-    if len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]:
-        raise UnreadableFile(
-            source,
-            f"{decimals[0]} decimals in each last number of a line",
-            f"{last[-1]!r} at its end: the file is cut short",
-        )
+    clocked = Clocked(values.positions, rate_hz or 0.0, start_s)
+    if values.time is not None:
+        clocked = on_clock(file, values.positions, values.time, rate_hz)
+    positions, names, attrs = labelled_points(clocked.positions, names, _is_labelled)
+    positions[np.isnan(positions).any(axis=2)] = np.nan
+    if np.isnan(positions).all():
+        got = f"{len(positions)} frames of {len(names)} labelled points that were never seen"
+        raise file.error("positions of labelled points", got)
+    walk = trajectories_of(
+        file,
+        positions,
+        names,
+        format_name=format_name,
+        rate_hz=clocked.rate_hz,
+        start_s=clocked.start_s,
+        unit=unit,
+        usual_unit=usual_unit,
+        up=up,
+        usual_up=usual_up,
+    )
+    walk.attrs.update(attrs, **values.attrs)
+    return walk
+
+
+def _is_labelled(name: str) -> bool:
+    return bool(own_name(name)) and not _UNLABELLED.fullmatch(own_name(name))

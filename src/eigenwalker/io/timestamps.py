@@ -7,36 +7,37 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 
 RATES_HZ = (0.1, 1e5)
 """No capture has fewer or more frames a second."""
-AGREE = 0.01
+MAX_DISAGREEMENT = 0.01
 """How much, as a share, a declared rate and that of written times may differ."""
-UNEVEN = 0.1
-"""Times that are off an even clock by less than this share of a frame are taken for rounded."""
-MOST_GAPS = 10
-"""Where fewer than one in so many frames is there, it is no capture."""
+MAX_JITTER = 0.1
+"""Times that are off an even clock by less than this share of a frame count as rounded."""
+MAX_GAPS = 10
+"""A table with fewer than one in this many frames is no capture."""
 
 _RATE = re.compile(r"(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
 class Clocked(NamedTuple):
-    """Positions on an even clock."""
+    """Positions at evenly spaced times: frames a second, and the time of the first frame."""
 
     positions: np.ndarray
     rate_hz: float
-    start_s: float
+    start_s: float = 0.0
 
 
-def rate_of(word: str, where: str, source: str) -> float:
+def parse_rate(word: str, where: str, source: str) -> float:
     """Return the frames a second that a file declares.
 
     Examples
     --------
-    >>> rate_of("100,00", "DataRate", "a.trc")
+    >>> parse_rate("100,00", "DataRate", "a.trc")
     100.0
-    >>> rate_of("0", "DataRate", "a.trc")
+    >>> parse_rate("0", "DataRate", "a.trc")
     Traceback (most recent call last):
     ...
     eigenwalker.io.errors.UnreadableFile: a.trc: expected frames a second between 0.1 and
@@ -53,6 +54,45 @@ def rate_of(word: str, where: str, source: str) -> float:
             "put it right, or name it: read_mocap(..., rate_hz=...)",
         )
     return rate
+
+
+def declared_rate(file: CaptureFile, word: str, where: str) -> float:
+    """Return the frames a second that a file declares, or that the caller names instead."""
+    if file.rate_hz is not None:
+        return file.rate_hz
+    try:
+        return parse_rate(word, where, file.name)
+    except UnreadableFile:
+        if file.default_rate_hz is None:
+            raise
+        return file.default_rate_hz
+
+
+def on_clock(
+    file: CaptureFile, positions: np.ndarray, time: np.ndarray, rate_hz: float | None = None
+) -> Clocked:
+    """Return positions at even times: at the rate that the caller names, else by written times.
+
+    Parameters
+    ----------
+    file : CaptureFile
+        Its ``rate_hz`` replaces all times; its ``default_rate_hz`` does where they are unusable.
+    positions : array of shape (time, marker, 3)
+        In any unit.
+    time : array of shape (time,)
+        Seconds, as written in the file.
+    rate_hz : float, optional
+        Frames a second that the file declares.
+
+    """
+    if file.rate_hz is not None:
+        return Clocked(positions, file.rate_hz)
+    try:
+        return on_even_clock(positions, time, file.name, rate_hz)
+    except UnreadableFile:
+        if file.default_rate_hz is None:
+            raise
+        return Clocked(positions, file.default_rate_hz)
 
 
 def on_even_clock(
@@ -72,7 +112,7 @@ def on_even_clock(
     source : str
         Name of the file, for messages.
     rate_hz : float, optional
-        Frames a second that the file declares; told by the times if left out.
+        Frames a second that the file declares; computed from the times if left out.
 
     Returns
     -------
@@ -81,65 +121,63 @@ def on_even_clock(
     Raises
     ------
     UnreadableFile
-        If times go back, stand still, have no rate, or another one than the file declares.
+        If times go back, or do not fit the rate.
 
     Examples
     --------
-    >>> walk = np.arange(4.0)[:, None, None] * np.ones((4, 1, 3))
+    >>> walk = np.arange(4.0)[:, None, None] * np.ones(3)
     >>> even = on_even_clock(walk, np.array([0, 0.1, 0.2, 0.4]), "a.csv")
     >>> round(even.rate_hz, 6), even.positions[:, 0, 0].tolist()
     (10.0, [0.0, 1.0, 2.0, nan, 3.0])
 
     """
     steps = np.diff(time)
-    if rate_hz and _as_declared(time, rate_hz):
+    if rate_hz and _fits_rate(time, rate_hz):
         return Clocked(positions, rate_hz, float(time[0]))
     if not np.isfinite(time).all() or not (steps > 0).all():
         late = int(np.argmin(np.append(steps > 0, False))) + 2
         pair = time[max(late - 2, 0) : late]
-        came = f"{', then '.join(f'{each:g}' for each in pair)} s at frame {late} of the table"
-        raise UnreadableFile(source, "times that go on", came)
+        got = f"{', then '.join(f'{each:g}' for each in pair)} s at frame {late} of the table"
+        raise UnreadableFile(source, "times that go on", got)
     if len(time) < 2:
         if rate_hz is None:
             raise UnreadableFile(source, "two frames or more", f"{len(time)}")
         return Clocked(positions, rate_hz, float(time[0]) if len(time) else 0.0)
     step = 1 / rate_hz if rate_hz else float(np.median(steps))
-    counts = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / step), 1))])
+    frames = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / step), 1))])
     length = time[-1] - time[0]
-    written = counts[-1] / length
-    agree = abs(length - counts[-1] * step) <= AGREE * length + 0.5 * step
+    written = frames[-1] / length
+    agree = abs(length - frames[-1] * step) <= MAX_DISAGREEMENT * length + 0.5 * step
     if rate_hz and not (agree and np.median(steps) < 1.5 * step):
-        written = 1 / float(np.median(steps))
         raise UnreadableFile(
             source,
             f"times of {rate_hz:g} frames a second, as it declares",
-            f"{written:.4g}",
+            f"{1 / float(np.median(steps)):.4g}",
             "put one of them right, or name the rate: read_mocap(..., rate_hz=...)",
         )
-    rate = rate_hz or _round(written, length)
-    if not RATES_HZ[0] <= rate <= RATES_HZ[1] or counts[-1] > MOST_GAPS * len(time):
-        came = f"{written:.4g}, with {int(counts[-1]) + 1 - len(time)} frames left out"
-        raise UnreadableFile(source, "times of a capture", came, "are they seconds?")
-    n_frames = int(counts[-1]) + 1
+    rate = rate_hz or _without_rounding(written, length)
+    if not RATES_HZ[0] <= rate <= RATES_HZ[1] or frames[-1] > MAX_GAPS * len(time):
+        got = f"{written:.4g}, with {int(frames[-1]) + 1 - len(time)} frames left out"
+        raise UnreadableFile(source, "times of a capture", got, "are they seconds?")
+    n_frames = int(frames[-1]) + 1
     even = np.full((n_frames, *positions.shape[1:]), np.nan)
-    even[counts.astype(int)] = positions
-    off = np.abs(time - time[0] - counts / written) / step
-    if rate_hz is None and off.max() > UNEVEN:
+    even[frames.astype(int)] = positions
+    jitter = np.abs(time - time[0] - frames / written) / step
+    if rate_hz is None and jitter.max() > MAX_JITTER:
         even = _interpolated(positions, time, time[0] + np.arange(n_frames) / rate, step)
     return Clocked(even, float(rate), float(time[0]))
 
 
-def _as_declared(time: np.ndarray, rate_hz: float) -> bool:
-    """Return whether times are those of a rate, but for their decimals."""
+def _fits_rate(time: np.ndarray, rate_hz: float) -> bool:
+    """Return whether times are those of a rate, but for the decimals that were rounded off."""
     if not len(time):
         return False
     off = np.abs(time - time[0] - np.arange(len(time)) / rate_hz)
-    return bool(
-        (off <= max(0.0101, 0.5 / rate_hz) if len(time) > 3 else off <= 0.5 / rate_hz).all()
-    )
+    half_frame = 0.5 / rate_hz
+    return bool((off <= (max(0.0101, half_frame) if len(time) > 3 else half_frame)).all())
 
 
-def _round(rate: float, length: float) -> float:
+def _without_rounding(rate: float, length: float) -> float:
     """Return the whole rate that written times mean, if they were rounded to milliseconds."""
     whole = round(rate)
     return float(whole) if whole and abs(1 - rate / whole) * length < 1.1e-3 else rate

@@ -1,15 +1,15 @@
-"""What all readers of tables end in: points with names -> trajectories in millimetres, z up."""
+"""The last step of every reader: named points -> trajectories in millimetres, z up."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
+from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.trajectories import MILLIMETRES, label_trajectories
-from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
     Unit,
@@ -33,7 +33,6 @@ _SPELLINGS = {
     "foot": "ft",
     "feet": "ft",
 }
-_UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
 
 
 def unit_named(text: str) -> Unit | None:
@@ -50,111 +49,147 @@ def unit_named(text: str) -> Unit | None:
     return Unit(name, MILLIMETRES[name]) if name in MILLIMETRES else None
 
 
-def without_zeros(positions: np.ndarray) -> np.ndarray:
-    """Return positions with NaN for points at 0, 0, 0 exactly, where a format means that so."""
-    return np.where((positions == 0).all(axis=2, keepdims=True), np.nan, positions)
+def without_zeros(positions: np.ndarray, *, unless_always: bool = False) -> np.ndarray:
+    """Return positions with NaN for points at 0, 0, 0 exactly, where a format means that so.
+
+    With `unless_always`, a point that is at 0, 0, 0 in all frames stays there.
+    """
+    at_zero = (positions == 0).all(axis=2)
+    if unless_always:
+        at_zero &= ~at_zero.all(axis=0)
+    return np.where(at_zero[..., None], np.nan, positions)
 
 
-def as_captured(
-    positions: np.ndarray,
-    names: Sequence[str],
-    *,
-    rate_hz: float,
-    source: str,
-    format_name: str,
-    unit: Unit | None = None,
-    file_unit: Unit | None = None,
-    usual_unit: Unit | None = None,
-    up: str | None = None,
-    usual_up: str = "z",
-    start_s: float = 0.0,
-) -> xr.DataArray:
-    """Return points of a table as trajectories.
+def without_subject(names: Sequence[str]) -> tuple[list[str], str]:
+    """Return the names without the one subject that stands before them, and the subject.
 
-    Unlabelled points, and a subject's name before all names, are left out.
+    Examples
+    --------
+    >>> without_subject(["Anna:LKNE", "Anna:RKNE"])
+    (['LKNE', 'RKNE'], 'Anna')
+
+    """
+    subjects = {name.rpartition(":")[0] for name in names} - {""}
+    plain = [own_name(name) for name in names]
+    if len(subjects) != 1 or len(set(plain)) < len(plain) or not all(plain):
+        return list(names), ""
+    return plain, subjects.pop()
+
+
+def labelled_points(
+    positions: np.ndarray, names: Sequence[str], is_labelled: Callable[[str], bool]
+) -> tuple[np.ndarray, list[str], dict[str, object]]:
+    """Return the points that a person labelled, without the name of the subject.
 
     Parameters
     ----------
     positions : array of shape (time, marker, 3)
+        In any unit and frame.
+    names : sequence of str
+        One name a marker, with or without a subject before it (``Anna:LKNE``).
+    is_labelled : function of a name
+        Whether a point is a marker with a name of its own; others are left out.
+
+    Returns
+    -------
+    positions : array of shape (time, labelled marker, 3)
+    names : list of str
+        Different names.
+    attrs : dict
+        ``subject``, ``left_out`` and ``repeated``, the names of points.
+
+    """
+    names = [name.strip() for name in names]
+    labelled = [i for i, name in enumerate(names) if is_labelled(name)]
+    left_out = [name for name in names if not is_labelled(name)]
+    names = [names[i] for i in labelled]
+    plain, subject = without_subject(numbered(names))
+    attrs = {"subject": subject, "left_out": left_out, "repeated": repeated(names)}
+    return positions[:, labelled], plain, attrs
+
+
+def own_name(name: str) -> str:
+    """Return the name of a marker without that of its subject."""
+    return name.rpartition(":")[2].strip()
+
+
+def trajectories_of(
+    file: CaptureFile,
+    positions: np.ndarray,
+    names: Sequence[str],
+    *,
+    format_name: str,
+    rate_hz: float,
+    start_s: float = 0.0,
+    unit: Unit | None = None,
+    usual_unit: Unit | None = None,
+    up: str | None = None,
+    usual_up: str = "z",
+    quaternions: np.ndarray | None = None,
+    unit_source: str | None = None,
+) -> xr.DataArray:
+    """Return the points of a file as trajectories, upright and in millimetres.
+
+    Parameters
+    ----------
+    file : CaptureFile
+        The file, and the unit that the caller names for it.
+    positions : array of shape (time, marker, 3)
         In the unit and frame of the file; NaN where a point is missing.
     names : sequence of str
         One name a marker.
-    rate_hz : float
-        Frames a second.
-    source, format_name : str
-        Names of file and format.
+    format_name : str
+        Name of the format, for the attributes.
+    rate_hz, start_s : float
+        Frames a second, and the time of the first frame.
     unit : Unit, optional
-        Unit that the caller names.
-    file_unit : Unit, optional
         Unit that the file names.
     usual_unit : Unit, optional
-        Unit in which the format is mostly written. It is taken if head and feet, where they are
+        Unit in which the format is mostly written. It is used if head and feet, where they are
         known, then are as far apart as in people, within a factor of 2. Otherwise, the unit is
-        guessed.
+        guessed from the height of the body.
     up : str, optional
-        Axis that the file says is up, such as ``"-y"``; the body tells if it is left out.
+        Axis that the file says is up, such as ``"-y"``; the posture of the body decides if it is
+        left out.
     usual_up : str
         Axis that is mostly up in this format, where neither file nor body tell.
-    start_s : float
-        Time of the first frame.
+    quaternions : array of shape (time, marker, 4), optional
+        Orientations (x, y, z, w) in the frame of the file, for the coordinate ``rotation``.
+    unit_source : str, optional
+        Name of the file that should name the unit, where that is another one.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
 
-    Raises
-    ------
-    UnreadableFile
-        If there is no labelled point that was seen.
-
     """
-    plain = [name.strip() for name in names]
-    kept = [i for i, name in enumerate(plain) if name and not _UNLABELLED.fullmatch(_own(name))]
-    positions = positions[:, kept]
-    positions[np.isnan(positions).any(axis=2)] = np.nan
-    if np.isnan(positions).all():
-        came = f"{len(positions)} frames of {len(kept)} labelled points that were never seen"
-        raise UnreadableFile(source, "positions of labelled points", came)
-    names, subject = _without_subject(numbered([plain[i] for i in kept]))
     known_up = up or up_axis(positions, names)
-    positions = positions @ turn_upright(known_up or usual_up).T
-    usual = usual_unit if usual_unit and _fits(positions, names, usual_unit) else None
-    named = unit or file_unit or usual
-    taken = named or guess_unit(positions, names, source=source)
+    turn = turn_upright(known_up or usual_up)
+    positions = positions @ turn.T
+    usual = usual_unit if usual_unit and _fits_a_body(positions, names, usual_unit) else None
+    known_unit = file.unit or unit or file.default_unit or usual
+    used = known_unit or guess_unit(positions, names, source=unit_source or file.name)
     walk = label_trajectories(
-        positions * taken.millimetres, markers=names, rate_hz=rate_hz, start_s=start_s
+        positions * used.millimetres, markers=names, rate_hz=rate_hz, start_s=start_s
     )
+    if quaternions is not None:
+        turned = Rotation.from_matrix(turn) * Rotation.from_quat(quaternions.reshape(-1, 4))
+        walk = walk.assign_coords(rotation=(walk.dims, turned.as_rotvec().reshape(walk.shape)))
     walk.attrs.update(
-        source=source,
+        source=file.name,
         format=format_name,
         up_axis=known_up or usual_up,
         up_axis_known=known_up is not None,
-        unit=taken.name,
-        unit_guessed=named is None,
-        unit_reason=taken.reason,
-        subject=subject,
-        left_out=[name for i, name in enumerate(plain) if i not in set(kept)],
-        repeated=repeated([plain[i] for i in kept]),
+        unit=used.name,
+        unit_guessed=known_unit is None,
+        unit_reason=used.reason,
     )
     return walk
 
 
-def _fits(positions: np.ndarray, names: Sequence[str], unit: Unit) -> bool:
+def _fits_a_body(positions: np.ndarray, names: Sequence[str], unit: Unit) -> bool:
     """Return whether a body is between half and twice as tall as people, or cannot be measured."""
     if not all(part.size for part in head_and_feet(positions, names)):
         return True
     height = body_height(positions, names) * unit.millimetres
     return not (height < PLAUSIBLE_MM[0] / 2 or height > PLAUSIBLE_MM[1] * 2)
-
-
-def _own(name: str) -> str:
-    return name.rpartition(":")[2].strip()
-
-
-def _without_subject(names: list[str]) -> tuple[list[str], str]:
-    """Return the names without the one subject that stands before them, and the subject."""
-    subjects = {name.rpartition(":")[0] for name in names} - {""}
-    plain = [_own(name) for name in names]
-    if len(subjects) != 1 or len(set(plain)) < len(plain) or not all(plain):
-        return names, ""
-    return plain, subjects.pop()

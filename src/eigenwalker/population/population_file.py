@@ -21,10 +21,10 @@ import xarray as xr
 from eigenwalker._version import __version__
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import CaptureFit, Walker
+from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.file_types import kind_of
+from eigenwalker.io.file_types import file_type_of
 from eigenwalker.io.readers.netcdf import dataset_of, looks_like_netcdf
-from eigenwalker.io.sniff import content_of
 from eigenwalker.population.correspondence import Correspondence, Reference
 
 FORMAT = "eigenwalker population"
@@ -105,9 +105,9 @@ def read_population(path: Path) -> Stored:
         If the file is none of ours, is damaged, or comes from a newer version.
 
     """
-    content = content_of(path, expected=_EXPECTED)
+    content = read_bytes(path, expected=_EXPECTED)
     if not looks_like_netcdf(content):
-        raise UnreadableFile(path.name, _EXPECTED, kind_of(content), _MAKE)
+        raise UnreadableFile(path.name, _EXPECTED, file_type_of(content), _MAKE)
     dataset = dataset_of(content, path.name, expected=_EXPECTED)
     if str(dataset.attrs.get("format")) != FORMAT:
         came = "a NetCDF file that holds no walkers of eigenwalker"

@@ -9,9 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from eigenwalker.io.read import FORMATS, is_capture
+from eigenwalker.io.read import SUFFIXES, is_capture
 
-SUFFIXES = tuple(dict.fromkeys(form.suffix for form in FORMATS))
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
 

@@ -16,7 +16,7 @@ from eigenwalker.core.walker import Form, Walker
 from eigenwalker.decomposition.fourier import decompose_fourier
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
-from eigenwalker.io.read import explained_by, read_mocap
+from eigenwalker.io.read import companion_files, read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import FLAG
 from eigenwalker.quality.findings import assess
@@ -185,7 +185,7 @@ def _state(folder: Path, name: str) -> list[int]:
     path = folder / name
     if not path.is_file():
         return []
-    stats = [file.stat() for file in (path, *explained_by(path))]
+    stats = [file.stat() for file in (path, *companion_files(path))]
     return [number for stat in stats for number in (stat.st_size, stat.st_mtime_ns)]
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.progress import Progress
-from eigenwalker.io.assumed_rate import RateAssumed
+from eigenwalker.io.capture_file import RateAssumed
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.metric.comparison_pipeline import comparable_walk

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.numbers import number, numbers
-from eigenwalker.io.timestamps import rate_of
+from eigenwalker.io.text_cells import number, numbers
+from eigenwalker.io.timestamps import parse_rate
 
-MOST_BONES = 2000
+MAX_BONES = 2000
 """More bones are no person's skeleton but a damaged file."""
 ROOT = "root"
 
@@ -44,7 +44,7 @@ class Bone:
     axis_order : str
         About which axes of the room, one after the other, such as ``"xyz"``.
     channels : tuple of str
-        What the motion tells of it, such as ``("rx", "ry", "rz")``.
+        Numbers a frame in the motion, such as ``("rx", "ry", "rz")``.
 
     """
 
@@ -66,7 +66,7 @@ class Acclaim(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """For each bone its channels, array (time, channel); degrees and rate where the file tells."""
+    """Channels of each bone, array (time, channel); degrees and rate where the file names them."""
 
     channels: dict[str, np.ndarray]
     degrees: bool | None
@@ -86,9 +86,9 @@ def parse_asf(text: str, source: str) -> Acclaim:
 
     """
     sections = _sections(text)
-    for wanted in ("root", "bonedata", "hierarchy"):
-        if wanted not in sections:
-            raise UnreadableFile(source, f"a section :{wanted} in the skeleton", "none")
+    for expected in ("root", "bonedata", "hierarchy"):
+        if expected not in sections:
+            raise UnreadableFile(source, f"a section :{expected} in the skeleton", "none")
     units = {line[0].lower(): line[1] for line in sections.get("units", []) if len(line) > 1}
     entry = {line[0].lower(): line[1:] for line in sections["root"]}
     described = {ROOT: _root(entry, source)}
@@ -97,8 +97,8 @@ def parse_asf(text: str, source: str) -> Acclaim:
         if bone.name.lower() in described:
             raise UnreadableFile(source, "each bone once", f"{bone.name!r} twice")
         described[bone.name.lower()] = bone
-        if len(described) > MOST_BONES:
-            raise UnreadableFile(source, "a person's skeleton", f"more than {MOST_BONES} bones")
+        if len(described) > MAX_BONES:
+            raise UnreadableFile(source, "a person's skeleton", f"more than {MAX_BONES} bones")
     (links,) = [*_blocks(sections["hierarchy"], "hierarchy", source)][:1] or [[]]
     length = number(units["length"], "the unit of length", source) if "length" in units else None
     return Acclaim(
@@ -134,8 +134,8 @@ def _blocks(lines: _Lines, section: str, source: str) -> list[_Lines]:
         elif word != "end" and is_open:
             blocks[-1].append(line)
         elif word != "end" or not is_open:
-            came = " ".join(line)[:40]
-            raise UnreadableFile(source, f"begin and end in turn in :{section}", repr(came))
+            got = " ".join(line)[:40]
+            raise UnreadableFile(source, f"begin and end in turn in :{section}", repr(got))
         is_open = word != "end"
     if is_open or not blocks:
         raise UnreadableFile(source, f"blocks with an end in :{section}", "none: it is cut short")
@@ -163,9 +163,9 @@ def _bone(block: _Lines, source: str) -> Bone:
     norm = np.linalg.norm(direction)
     length = number(entry["length"][0], f"the length of {name}", source)
     if length < 0 or (length > 0 and not 0.9 < norm < 1.1):
-        came = f"{length:g} along a direction of length {norm:.3g}"
-        wanted = f"a length of {name} above 0, along a direction of length 1"
-        raise UnreadableFile(source, wanted, came)
+        got = f"{length:g} along a direction of length {norm:.3g}"
+        expected = f"a length of {name} above 0, along a direction of length 1"
+        raise UnreadableFile(source, expected, got)
     return Bone(
         name=name,
         parent=-1,
@@ -225,7 +225,7 @@ def _in_order(described: dict[str, Bone], links: _Lines, source: str) -> list[Bo
 
 
 def parse_amc(text: str, source: str) -> Motion:
-    """Return the channels of all bones that an AMC file tells.
+    """Return the channels of all bones in an AMC file.
 
     Raises
     ------
@@ -248,7 +248,7 @@ def parse_amc(text: str, source: str) -> Motion:
     return Motion(
         channels=channels,
         degrees=True if "degrees" in keywords else False if "radians" in keywords else None,
-        rate_hz=rate_of(rate[0], "samples-per-second", source) if rate else None,
+        rate_hz=parse_rate(rate[0], "samples-per-second", source) if rate else None,
     )
 
 
@@ -285,8 +285,8 @@ def _table(rows: _Lines, name: str, source: str) -> np.ndarray:
     size = len(rows[0])
     ragged = [frame for frame, row in enumerate(rows, 1) if len(row) != size]
     if ragged:
-        came = f"{len(rows[ragged[0] - 1])} in its frame no. {ragged[0]}"
-        raise UnreadableFile(source, f"{size} numbers of {name} in each frame", came)
+        got = f"{len(rows[ragged[0] - 1])} in its frame no. {ragged[0]}"
+        raise UnreadableFile(source, f"{size} numbers of {name} in each frame", got)
     return np.array(
         [numbers(row, f"{name} in frame no. {frame}", source) for frame, row in enumerate(rows, 1)]
     ).reshape(len(rows), size)
@@ -296,5 +296,5 @@ def _refuse_cut_number(lines: _Lines, source: str) -> None:
     """Refuse a file whose last number is shorter than all others of its column: it ends within."""
     column = [len(words[-1]) for words in lines if words[0] == lines[-1][0]]
     if len(column) > 1 and column[-1] < min(column[:-1]):
-        came = f"{lines[-1][-1]!r} as the last: the file is cut short"
-        raise UnreadableFile(source, "the last number as long as others", came)
+        got = f"{lines[-1][-1]!r} as the last: the file is cut short"
+        raise UnreadableFile(source, "the last number as long as others", got)

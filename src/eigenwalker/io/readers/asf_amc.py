@@ -8,6 +8,7 @@ and M from its channels, ``R = R_parent C M C^-1``, and it reaches from the end 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,25 +16,23 @@ import xarray as xr
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.kinematics import forward_kinematics
-from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.io.assumed_rate import assume_rate
+from eigenwalker.io.capture_file import CaptureFile, read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.acclaim_grammar import Acclaim, Bone, Motion, parse_amc, parse_asf
-from eigenwalker.io.sniff import content_of
+from eigenwalker.io.to_trajectories import trajectories_of
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
     Unit,
     body_height,
-    guess_unit,
     turn_upright,
     up_axis,
 )
 from eigenwalker.markers.marker_sets import numbered
 
 CMU_RATE_HZ = 120.0
-"""AMC files tell no rate; the CMU collection, where nearly all of them come from, has this one."""
+"""AMC files name no rate; the CMU collection, where nearly all of them come from, has this one."""
 INCH_MM = 25.4
-MOST_POSITIONS = 100_000_000
+MAX_POSITIONS = 100_000_000
 """More bones times frames are no capture of a person but a damaged file."""
 
 _FIRST_WORDS = re.compile(rb"(?:\s*#[^\n]*\n)*\s*:([a-z-]+)", re.IGNORECASE)
@@ -53,81 +52,38 @@ def _first_keyword(content: bytes) -> str:
     return hit[1].decode().lower() if hit else ""
 
 
-def read_asf_amc(
-    content: bytes,
-    *,
-    source: str,
-    path: Path,
-    unit: Unit | None = None,
-    rate_hz: float | None = None,
-) -> xr.DataArray:
-    """Return where the bones of an Acclaim motion end.
+def read_asf_amc(file: CaptureFile) -> xr.DataArray:
+    """Return the trajectories of the ends of the bones in an Acclaim motion.
 
-    Parameters
-    ----------
-    content : bytes
-        The whole motion (AMC).
-    source : str
-        Its name, for messages.
-    path : Path
-        Where it lies: the skeleton is the ASF file beside it of the same name, or of the part of
-        the name that tells the subject (35.asf for 35_01.amc), or the only one in the folder.
-    unit : Unit, optional
-        Unit of lengths; the one that the skeleton tells if left out.
-    rate_hz : float, optional
-        Frames a second; assumed to be 120, with a warning, where neither this nor the file tells.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        In millimetres, z up. A marker is the end of the bone whose name it has, ``root`` where the
-        body hangs. The coordinate ``rotation`` (time, marker, axis) holds how each bone is turned
-        in the room from where it is at rest, as rotation vectors in radians.
-
-    Raises
-    ------
-    UnreadableFile
-        If motion or skeleton are damaged or cut short, do not belong together, or there is no one
-        skeleton.
-
+    The skeleton is the one that `find_skeleton` finds beside the motion. A marker is the end of the
+    bone whose name it has, ``root`` where the body hangs. The coordinate ``rotation``
+    (time, marker, axis) holds how each bone is turned in the room from where it is at rest, as
+    rotation vectors in radians.
     """
-    if _first_keyword(content) in _OF_SKELETONS:
-        raise UnreadableFile(
-            source,
-            "a motion (.amc)",
-            "the skeleton alone",
-            "name the motion, which finds the skeleton beside it",
-        )
-    motion = parse_amc(_text(content), source)
-    beside = find_skeleton(path)
-    skeleton = parse_asf(_text(content_of(beside)), beside.name)
-    ends, turns = _pose(skeleton, motion, source, beside.name)
+    if _first_keyword(file.content) in _OF_SKELETONS:
+        advice = "name the motion, which finds the skeleton beside it"
+        raise file.error("a motion (.amc)", "the skeleton alone", advice)
+    motion = parse_amc(_text(file.content), file.name)
+    beside = find_skeleton(file.path)
+    skeleton = parse_asf(_text(read_bytes(beside)), beside.name)
+    ends, orientations = _pose(file, skeleton, motion, beside.name)
     names = numbered([bone.name for bone in skeleton.bones])
     up = up_axis(ends, names)
-    turn = turn_upright(up or "y")
-    ends = ends @ turn.T
-    told = unit or _told_unit(skeleton, ends, names)
-    unit = told or guess_unit(ends, names, source=beside.name)
-    known_rate = rate_hz or motion.rate_hz
-    rate = known_rate or CMU_RATE_HZ
-    walk = label_trajectories(ends * unit.millimetres, markers=names, rate_hz=rate)
-    turned = (Rotation.from_matrix(turn) * Rotation.from_quat(turns.reshape(-1, 4))).as_rotvec()
-    walk = walk.assign_coords(rotation=(walk.dims, turned.reshape(walk.shape)))
-    walk.attrs.update(
-        source=source,
-        format="ASF/AMC",
-        skeleton=beside.name,
-        up_axis=up or "y",
-        up_axis_known=up is not None,
-        unit=unit.name,
-        unit_guessed=told is None,
-        unit_reason=unit.reason,
-        rate_assumed=False,
+    reason = "as nearly all motions of this format have it"
+    rate_hz, assumed = file.frame_rate(motion.rate_hz, usual_hz=CMU_RATE_HZ, reason=reason)
+    walk = trajectories_of(
+        file,
+        ends,
+        names,
+        format_name="ASF/AMC",
+        rate_hz=rate_hz,
+        usual_unit=_usual_unit(skeleton, ends @ turn_upright(up or "y").T, names),
+        up=up,
+        usual_up="y",
+        quaternions=orientations,
+        unit_source=beside.name,
     )
-    if known_rate is None:
-        reason = "as nearly all motions of this format have it"
-        walk.attrs.update(assume_rate(rate, source=source, reason=reason))
-    return walk
+    return walk.assign_attrs({"skeleton": beside.name, "rate_assumed": False, **assumed})
 
 
 def _text(content: bytes) -> str:
@@ -167,38 +123,42 @@ def find_skeleton(motion: Path) -> Path:
     )
 
 
+def skeleton_beside(motion: Path) -> Path | None:
+    """Return the skeleton that lies beside a motion; None for other files, or if there is none."""
+    try:
+        return find_skeleton(motion) if motion.suffix.lower() == ".amc" else None
+    except UnreadableFile:
+        return None
+
+
 def _pose(
-    skeleton: Acclaim, motion: Motion, source: str, beside: str
+    file: CaptureFile, skeleton: Acclaim, motion: Motion, beside: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return where all bones end and how they are turned, in the frame and unit of the files."""
+    """Return ends and orientations of all bones, in the frame and unit of the files."""
+    own_skeleton = "put its own skeleton beside it"
     bones, channels = skeleton.bones, motion.channels
-    known = {bone.name.lower() for bone in bones}
-    if strange := sorted(set(channels) - known) or not channels:
-        came = f"{strange}, which it lacks" if channels else "none"
-        raise UnreadableFile(
-            source, f"motions of the bones of {beside}", came, "put its own skeleton beside it"
-        )
+    unknown = sorted(set(channels) - {bone.name.lower() for bone in bones})
+    if unknown or not channels:
+        got = f"{unknown}, which it lacks" if channels else "none"
+        raise file.error(f"motions of the bones of {beside}", got, own_skeleton)
     n_frames = len(next(iter(channels.values())))
-    if n_frames * len(bones) > MOST_POSITIONS:
-        raise UnreadableFile(
-            source, "the capture of one person", f"{n_frames} frames", "cut it into shorter files"
-        )
+    if n_frames * len(bones) > MAX_POSITIONS:
+        advice = "cut it into shorter files"
+        raise file.error("the capture of one person", f"{n_frames} frames", advice)
     degrees = skeleton.degrees if motion.degrees is None else motion.degrees
-    turns, moves = [], np.zeros((n_frames, 3))
+    turns: list[np.ndarray] = []
+    root = np.tile(skeleton.position, (n_frames, 1))
     for bone in bones:
-        values = channels.get(bone.name.lower(), np.zeros((n_frames, len(bone.channels))))
-        if values.shape[1] != len(bone.channels):
-            raise UnreadableFile(
-                source,
-                f"{len(bone.channels)} numbers of {bone.name} in each frame, as {beside} says",
-                f"{values.shape[1]}",
-                "put its own skeleton beside it",
-            )
+        n_channels = len(bone.channels)
+        values = channels.get(bone.name.lower(), np.zeros((n_frames, n_channels)))
+        if values.shape[1] != n_channels:
+            expected = f"{n_channels} numbers of {bone.name} in each frame, as {beside} says"
+            raise file.error(expected, f"{values.shape[1]}", own_skeleton)
         turns.append(_turns(bone, values, degrees=degrees, axis_degrees=skeleton.degrees))
         for column, channel in enumerate(bone.channels):
             if channel.startswith("t"):
-                moves[:, "xyz".index(channel[1])] += values[:, column]
-    return _ends(bones, np.stack(turns, axis=1), skeleton.position + moves)
+                root[:, "xyz".index(channel[1])] += values[:, column]
+    return _ends(bones, np.stack(turns, axis=1), root)
 
 
 def _turns(bone: Bone, values: np.ndarray, *, degrees: bool, axis_degrees: bool) -> np.ndarray:
@@ -232,8 +192,8 @@ def _ends(bones: list[Bone], turns: np.ndarray, root: np.ndarray) -> tuple[np.nd
     return positions[:, 1::2], orientations[:, 1::2]
 
 
-def _told_unit(skeleton: Acclaim, ends: np.ndarray, names: list[str]) -> Unit | None:
-    """Return the unit of the skeleton: inches over its ``length``, if people are so tall.
+def _usual_unit(skeleton: Acclaim, ends: np.ndarray, names: Sequence[str]) -> Unit | None:
+    """Return inches over the ``length`` of the skeleton, if people are as tall then.
 
     By Acclaim's definition that is a factor of no unit, and inches are a custom (of the CMU
     collection, with 0.45).

@@ -8,26 +8,24 @@ joints other than the root, frame times rounded to a few digits.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.io.errors import AGAIN, UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.text_cells import number, plain_numbers
 from eigenwalker.io.timestamps import RATES_HZ
 
-MOST_JOINTS = 2000
+MAX_JOINTS = 2000
 """More joints are no person's skeleton but a damaged file."""
-MOST_DISTANT = 1e9
-"""No length, angle or time in a sound file is larger than this."""
 USUAL_RATES_HZ = (
     *(24, 25, 30, 48, 50, 60, 72, 75, 80, 90, 96, 100, 120, 125, 128, 144, 150, 160, 180, 192),
     *(200, 240, 250, 256, 300, 360, 400, 480, 500, 512, 600, 960, 1000),
     *(24000 / 1001, 30000 / 1001, 60000 / 1001, 120000 / 1001, 240000 / 1001),
 )
 
-_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECLARED = re.compile(
     r"\s*Frames\s*(?::\s*)?(\d{1,9})\s*Frame\s+Time\s*(?::\s*)?(\S+)", re.IGNORECASE
 )
@@ -50,8 +48,15 @@ class Motion(NamedTuple):
     rate_hz: float
 
 
-def parse_bvh(text: str, source: str) -> tuple[list[Joint], Motion]:
+def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, int]]:
     """Return the joints of a BVH file, parents before children, and their channels.
+
+    Returns
+    -------
+    joints : list of Joint
+    motion : Motion
+    attrs : dict
+        ``n_frames_cut`` of a partial file that is to be kept; else empty.
 
     Raises
     ------
@@ -59,28 +64,27 @@ def parse_bvh(text: str, source: str) -> tuple[list[Joint], Motion]:
         If the text is against the grammar, or holds other frames than it declares.
 
     """
-    head, table = _split(text, source)
-    joints = _hierarchy(head, source)
-    return joints, _motion(table, sum(len(joint.channels) for joint in joints), source)
+    head, table = _split(file, file.content.decode("utf-8-sig", errors="replace"))
+    joints = _hierarchy(file, head)
+    motion, attrs = _motion(file, table, sum(len(joint.channels) for joint in joints))
+    return joints, motion, attrs
 
 
-def _split(text: str, source: str) -> tuple[str, str]:
+def _split(file: CaptureFile, text: str) -> tuple[str, str]:
     """Return the HIERARCHY and what follows the word MOTION."""
     parts = re.split(r"(?im)^[^\S\n]*MOTION\b", text, maxsplit=1)
     if len(parts) < 2:
-        raise UnreadableFile(
-            source, "a line MOTION after the skeleton", "none: the file is cut short"
-        )
+        raise file.error("a line MOTION after the skeleton", "none: the file is cut short")
     return parts[0], parts[1]
 
 
-def _hierarchy(text: str, source: str) -> list[Joint]:
+def _hierarchy(file: CaptureFile, text: str) -> list[Joint]:
     """Return the joints in the order of their channels, parents before children."""
     words = iter(re.sub(r"([{}])", r" \1 ", text).split())
     joints: list[Joint] = []
     open_joints: list[int] = []
     if next(words, "").upper() != "HIERARCHY":
-        raise UnreadableFile(source, "the word HIERARCHY at its beginning", "another")
+        raise file.error("the word HIERARCHY at its beginning", "another")
     for word in words:
         match word.upper():
             case "ROOT" | "JOINT" | "END":
@@ -91,24 +95,18 @@ def _hierarchy(text: str, source: str) -> list[Joint]:
                 joints.append(Joint(name, parent))
                 open_joints.append(len(joints) - 1)
             case "OFFSET" if open_joints:
-                x, y, z = (_number(next(words, ""), "an OFFSET", source) for _ in range(3))
+                x, y, z = (number(next(words, ""), "an OFFSET", file.name) for _ in range(3))
                 joints[open_joints[-1]].offset = (x, y, z)
             case "CHANNELS" if open_joints:
-                joints[open_joints[-1]].channels = _channels(words, source)
+                joints[open_joints[-1]].channels = _channels(file, words)
             case "}" if open_joints:
                 open_joints.pop()
             case _:
-                raise UnreadableFile(
-                    source, "ROOT, JOINT, End Site, OFFSET, CHANNELS or }", repr(word[:40])
-                )
-        if len(joints) > MOST_JOINTS:
-            raise UnreadableFile(
-                source, "the skeleton of a person", f"more than {MOST_JOINTS} joints"
-            )
+                raise file.error("ROOT, JOINT, End Site, OFFSET, CHANNELS or }", repr(word[:40]))
+        if len(joints) > MAX_JOINTS:
+            raise file.error("the skeleton of a person", f"more than {MAX_JOINTS} joints")
     if open_joints or not joints:
-        raise UnreadableFile(
-            source, "a closed skeleton", f"{len(open_joints)} joints without their }}"
-        )
+        raise file.error("a closed skeleton", f"{len(open_joints)} joints without their }}")
     return joints
 
 
@@ -119,80 +117,65 @@ def _until_brace(words: Iterator[str]) -> Iterator[str]:
         yield word
 
 
-def _channels(words: Iterator[str], source: str) -> tuple[str, ...]:
+def _channels(file: CaptureFile, words: Iterator[str]) -> tuple[str, ...]:
     count = next(words, "")
     if not re.fullmatch(r"\d", count):
-        raise UnreadableFile(source, "a number of CHANNELS up to 6", repr(count[:40]))
+        raise file.error("a number of CHANNELS up to 6", repr(count[:40]))
     channels = tuple(next(words, "") for _ in range(int(count)))
     plain = tuple(channel.lower() for channel in channels)
     unknown = [c for c in plain if not re.fullmatch(r"[xyz](position|rotation)", c)]
     if unknown or len(set(plain)) < len(plain):
-        raise UnreadableFile(
-            source, "CHANNELS such as Xposition and Zrotation, each once", f"{channels}"
-        )
+        raise file.error("CHANNELS such as Xposition and Zrotation, each once", f"{channels}")
     return plain
 
 
-def _number(word: str, where: str, source: str) -> float:
-    number = float(word) if _NUMBER.fullmatch(word) else np.nan
-    if not abs(number) < MOST_DISTANT:
-        advice = "write numbers with a decimal point" if "," in word else AGAIN
-        raise UnreadableFile(source, f"a finite number in {where}", repr(word[:40]), advice)
-    return number
-
-
-def _motion(text: str, n_channels: int, source: str) -> Motion:
+def _motion(file: CaptureFile, text: str, n_channels: int) -> tuple[Motion, dict[str, int]]:
     """Return the table of channels and the rate, declared against delivered."""
     declared = _DECLARED.match(text)
     if not declared:
-        raise UnreadableFile(
-            source, "the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip())
-        )
+        raise file.error("the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip()))
     n_frames = int(declared[1])
-    step = _number(declared[2], "the frame time", source)
+    step = number(declared[2], "the frame time", file.name)
     rows = [row for line in text[declared.end() :].splitlines() if (row := line.split())]
-    if len(rows) != n_frames:
-        why = "the file is cut short" if len(rows) < n_frames else "the count is wrong"
-        raise UnreadableFile(source, f"{n_frames} frames, as it declares", f"{len(rows)}: {why}")
+    cut = "" if text[-1].isspace() else _cut_number(rows)
+    may_be_cut = file.keep_partial and len(rows) <= n_frames and not text.endswith("\n")
+    if may_be_cut and rows and (len(rows) < n_frames or len(rows[-1]) < n_channels or cut):
+        rows.pop()  # the file may end within its last line
+    attrs = file.check_frames(n_frames, len(rows))
     ragged = [i for i, row in enumerate(rows) if len(row) != n_channels]
     if not n_frames or ragged:
-        came = f"{len(rows[ragged[0]])} in frame {ragged[0] + 1}" if ragged else "no frames"
-        raise UnreadableFile(source, f"{n_channels} numbers a frame", came)
-    if not text[-1].isspace():
-        _refuse_cut_number(rows, source)
+        got = f"{len(rows[ragged[0]])} in frame {ragged[0] + 1}" if ragged else "no frames"
+        raise file.error(f"{n_channels} numbers a frame", got)
+    if cut and not attrs:
+        expected = "as many decimals in the last number as in all others"
+        raise file.error(expected, f"{cut} at its end: the file is cut short")
     if step <= 0:
-        raise UnreadableFile(source, "a frame time above 0", declared[2][:40])
+        raise file.error("a frame time above 0", declared[2][:40])
     if not RATES_HZ[0] <= 1 / step <= RATES_HZ[1]:
-        wanted = f"frames a second between {RATES_HZ[0]:g} and {RATES_HZ[1]:g}"
-        came = f"{1 / step:.3g}, by the frame time {declared[2][:40]}"
-        raise UnreadableFile(source, wanted, came, "put the frame time right")
-    return Motion(_table(rows, source), _rate(declared[2]))
+        expected = f"frames a second between {RATES_HZ[0]:g} and {RATES_HZ[1]:g}"
+        got = f"{1 / step:.3g}, by the frame time {declared[2][:40]}"
+        raise file.error(expected, got, "put the frame time right")
+    return Motion(_table(file, rows), _rate(declared[2])), attrs
 
 
-def _refuse_cut_number(rows: list[list[str]], source: str) -> None:
-    """Refuse a file whose last number has fewer decimals than all others: it ends within it."""
+def _cut_number(rows: Sequence[Sequence[str]]) -> str:
+    """Return the last number if it has fewer decimals than all others: the file ends within it."""
     decimals = [len(word.partition(".")[2]) for row in rows for word in row]
-    if len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]:
-        raise UnreadableFile(
-            source,
-            f"{decimals[0]} decimals in each number",
-            f"{rows[-1][-1]!r} as the last: the file is cut short",
+    is_cut = len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]
+    return repr(rows[-1][-1]) if is_cut else ""
+
+
+def _table(file: CaptureFile, rows: Sequence[Sequence[str]]) -> np.ndarray:
+    table = plain_numbers([word for row in rows for word in row])
+    if table is None or np.isnan(table).any():
+        table = np.array(
+            [
+                number(word, f"frame {at}", file.name)
+                for at, row in enumerate(rows, 1)
+                for word in row
+            ]
         )
-
-
-def _table(rows: list[list[str]], source: str) -> np.ndarray:
-    try:
-        table = np.array(rows, dtype=float)
-    except ValueError:
-        table = None
-    if not all(word.isascii() and "_" not in word for row in rows for word in row):
-        table = None  # numpy takes 1_0 for 10, where it is more likely a damaged 1.0
-    if table is None or not (np.abs(table) < MOST_DISTANT).all():
-        for row, words in enumerate(rows, 1):
-            for word in words:
-                _number(word, f"frame {row}", source)
-        raise UnreadableFile(source, "numbers", "something else")
-    return table
+    return table.reshape(len(rows), -1)
 
 
 def _rate(written: str) -> float:

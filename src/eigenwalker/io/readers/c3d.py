@@ -8,11 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.trajectories import MILLIMETRES, label_trajectories
-from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.readers.c3d_sections import MAGIC, Header, Parameters, c3d_sections
-from eigenwalker.io.up_axis_and_unit import Unit, guess_unit, turn_upright, up_axis
-from eigenwalker.markers.marker_sets import numbered, repeated
+from eigenwalker.io.to_trajectories import labelled_points, own_name, trajectories_of, unit_named
+from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
 _UNLABELLED = re.compile(
     r"\*\d*|u_\d+|new[ _]?\d+|un(labell?ed|named|identified).*|no[ _]?name.*", re.IGNORECASE
@@ -27,19 +26,6 @@ _MEASURES = {
     "WRISTWIDTH": "wrist_width",
     "SHOULDEROFFSET": "shoulder_offset",
 }
-_SPELLINGS = {
-    "millimeters": "mm",
-    "millimetres": "mm",
-    "centimeters": "cm",
-    "centimetres": "cm",
-    "meters": "m",
-    "metres": "m",
-    "meter": "m",
-    "metre": "m",
-    "inches": "in",
-    "inch": "in",
-    "feet": "ft",
-}
 
 
 def looks_like_c3d(content: bytes) -> bool:
@@ -47,134 +33,77 @@ def looks_like_c3d(content: bytes) -> bool:
     return len(content) > 1 and content[1] == MAGIC and content[0] > 0
 
 
-def read_c3d(content: bytes, *, source: str, unit: Unit | None = None) -> xr.DataArray:
-    """Return where the markers of a C3D file are.
+def read_c3d(file: CaptureFile) -> xr.DataArray:
+    """Return the trajectories of the markers in a C3D file; NaN where a marker was not seen.
 
     Angles, forces, moments, powers and unlabelled points are left out, and named in
-    ``attrs["left_out"]``; what a laboratory's model computed as positions stays.
-
-    Parameters
-    ----------
-    content : bytes
-        The whole file.
-    source : str
-        Its name, for messages.
-    unit : Unit, optional
-        Unit of its lengths, where the file names none or the wrong one.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        In millimetres, z up, on the clock of the capture: its first frame is frame 1 at 0 s, and
-        a file may begin later. NaN where a marker was not seen.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is no C3D, damaged or cut short.
-
+    ``attrs["left_out"]``; what a laboratory's model computed as positions stays. Frame 1 of the
+    capture is at 0 s, and a file may begin later.
     """
-    header, parameters, samples = c3d_sections(content, source)
-    rate_hz = _rate(header, parameters, source)
-    positions, names, left_out = _markers(samples, parameters, source)
-    twice = repeated(names)
-    names, subject = _without_subject(numbered(names))
-    up, up_known = _up(positions, names, parameters)
-    positions = positions @ turn_upright(up).T
-    named = unit or _unit(parameters)
-    unit = named or guess_unit(positions, names, source=source)
-    walk = label_trajectories(
-        positions * unit.millimetres,
-        markers=names,
-        rate_hz=rate_hz,
-        start_s=max(header.first_frame - 1, 0) / rate_hz,
+    header, parameters, samples, cut = c3d_sections(file)
+    rate_hz = _rate(file, header, parameters)
+    positions, names, attrs = _markers(file, samples, parameters)
+    walk = trajectories_of(
+        file,
+        positions,
+        names,
+        format_name="C3D",
+        rate_hz=file.rate_hz or rate_hz,
+        start_s=0.0 if file.rate_hz else max(header.first_frame - 1, 0) / rate_hz,
+        unit=_unit(parameters),
+        up=_up(positions, names, parameters),
     )
-    walk.attrs.update(
-        source=source,
-        format="C3D",
-        up_axis=up,
-        up_axis_known=up_known,
-        unit=unit.name,
-        unit_guessed=named is None,
-        unit_reason=unit.reason,
-        subject=subject,
-        left_out=left_out,
-        repeated=twice,
-        **_measures(parameters),
-    )
-    return walk
+    return walk.assign_attrs(**attrs, **_measures(parameters), **cut)
 
 
-def _rate(header: Header, parameters: Parameters, source: str) -> float:
+def _rate(file: CaptureFile, header: Header, parameters: Parameters) -> float:
     rates = (parameters.number("POINT:RATE"), header.rate_hz)
     sound = [rate for rate in rates if rate is not None and np.isfinite(rate) and rate > 0]
     if not sound or max(sound) > 1.01 * min(sound) or not 0.1 <= sound[0] <= 1e5:
-        raise UnreadableFile(
-            source,
-            "one frame rate in header and parameters",
-            f"{header.rate_hz} and {rates[0]}",
-        )
+        got = f"{header.rate_hz} and {rates[0]}"
+        raise file.error("one frame rate in header and parameters", got)
     return round(sound[0], 6)
 
 
 def _markers(
-    samples: np.ndarray, parameters: Parameters, source: str
-) -> tuple[np.ndarray, list[str], list[str]]:
-    """Return positions and names of the markers, and the names of the other points."""
+    file: CaptureFile, samples: np.ndarray, parameters: Parameters
+) -> tuple[np.ndarray, list[str], dict[str, object]]:
+    """Return positions and names of the markers, and attributes about the other points."""
+    n_points = samples.shape[1]
     labels = parameters.texts("POINT:LABELS")
     if not labels:
-        labels = [f"point_{number}" for number in range(1, samples.shape[1] + 1)]
-    labels += ["*"] * (samples.shape[1] - len(labels))
+        labels = [f"point_{number}" for number in range(1, n_points + 1)]
+    labels += ["*"] * (n_points - len(labels))
     others = {name for group in _NO_POSITION_GROUPS for name in parameters.texts(f"POINT:{group}")}
-    names: list[str] = []
-    kept: list[int] = []
-    left_out: list[str] = []
-    for index, label in enumerate(labels[: samples.shape[1]]):
-        plain = label.rsplit(":", 1)[-1].strip()
-        unlabelled = not plain or _UNLABELLED.fullmatch(plain)
-        if unlabelled or label in others or _NO_POSITION.search(plain):
-            left_out.append(label)
-        else:
-            kept.append(index)
-            names.append(label)
+
+    def is_marker(label: str) -> bool:
+        own = own_name(label)
+        is_labelled = own and not _UNLABELLED.fullmatch(own)
+        return bool(is_labelled) and label not in others and not _NO_POSITION.search(own)
+
+    positions, names, attrs = labelled_points(samples, labels[:n_points], is_marker)
     if not names:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "labelled markers",
             f"{len(labels)} points, all unlabelled or no positions",
             "label them first in the program that captured them",
         )
-    return samples[:, kept], names, left_out
+    return positions, names, attrs
 
 
-def _without_subject(names: list[str]) -> tuple[list[str], str]:
-    """Return the names without the one subject that stands before them, and the subject."""
-    subjects = {name.rpartition(":")[0] for name in names} - {""}
-    plain = [name.rpartition(":")[2].strip() for name in names]
-    if len(subjects) != 1 or len(set(plain)) < len(plain) or not all(plain):
-        return names, ""
-    return plain, subjects.pop()
-
-
-def _up(positions: np.ndarray, names: Sequence[str], parameters: Parameters) -> tuple[str, bool]:
-    """Return the axis that points up: the body tells, else the screen axes of the file.
+def _up(positions: np.ndarray, names: Sequence[str], parameters: Parameters) -> str | None:
+    """Return the axis that points up: by the posture of the body, else the screen axes of the file.
 
     Many programs fill in the screen axes without knowing them, so the body goes first.
     """
     if up := up_axis(positions, names):
-        return up, True
+        return up
     screen = "".join(parameters.texts("POINT:Y_SCREEN")[:1]).replace("+", "").strip().lower()
-    if re.fullmatch(r"-?[xyz]", screen):
-        return screen, True
-    return "z", False
+    return screen if re.fullmatch(r"-?[xyz]", screen) else None
 
 
 def _unit(parameters: Parameters) -> Unit | None:
-    for text in parameters.texts("POINT:UNITS"):
-        name = _SPELLINGS.get(text.lower(), text.lower())
-        if name in MILLIMETRES:
-            return Unit(name, MILLIMETRES[name])
-    return None
+    return next((u for text in parameters.texts("POINT:UNITS") if (u := unit_named(text))), None)
 
 
 def _measures(parameters: Parameters) -> dict[str, float]:

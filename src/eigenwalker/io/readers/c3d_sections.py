@@ -14,14 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.text_cells import MAX_SIZE
 
 BLOCK = 512
 MAGIC = 0x50
-MOST_PARAMETER_BLOCKS = 255
-MOST_CONTINUED = 30
-MOST_DISTANT = 1e9
-"""No marker is further off than this, in whatever unit."""
+MAX_PARAMETER_BLOCKS = 255
+MAX_CONTINUED = 30
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
 
 
@@ -63,7 +62,7 @@ class Parameters(dict[str, Parameter]):
 
     def texts(self, name: str) -> list[str]:
         """Return the texts of a parameter and of those that continue it (LABELS, LABELS2, ...)."""
-        parts = [name, *(f"{name}{number}" for number in range(2, MOST_CONTINUED))]
+        parts = [name, *(f"{name}{number}" for number in range(2, MAX_CONTINUED))]
         return [text for part in parts if part in self for text in self[part].texts()]
 
 
@@ -82,14 +81,18 @@ class Header(NamedTuple):
 
 
 class Sections(NamedTuple):
-    """What a file holds; positions (time, point, 3) in its own unit, NaN where missing."""
+    """What a file holds; positions (time, point, 3) in its own unit, NaN where missing.
+
+    `attrs` has ``n_frames_cut`` of a partial file that is to be kept; else it is empty.
+    """
 
     header: Header
     parameters: Parameters
     positions: np.ndarray
+    attrs: dict[str, int]
 
 
-def c3d_sections(content: bytes, source: str) -> Sections:
+def c3d_sections(file: CaptureFile) -> Sections:
     """Return the sections of a C3D file.
 
     Raises
@@ -98,23 +101,22 @@ def c3d_sections(content: bytes, source: str) -> Sections:
         If they do not fit each other or the length of the file.
 
     """
-    header = _header(content, source)
-    parameters = _parameters(content, header, source)
-    return Sections(header, parameters, _samples(content, header, parameters, source))
+    header = _header(file)
+    parameters = _parameters(file, header)
+    return Sections(header, parameters, *_samples(file, header, parameters))
 
 
-def _header(content: bytes, source: str) -> Header:
+def _header(file: CaptureFile) -> Header:
+    content = file.content
     block = content[0] if content else 0
     at = (block - 1) * BLOCK
     if len(content) < BLOCK or not block or len(content) < at + 4:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "a header and parameters of 512 bytes each or more",
             f"{len(content)} bytes: the file is cut short",
         )
     if content[at + 3] not in PROCESSORS:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "the mark of an Intel, DEC or MIPS file (84 to 86) at its parameters",
             str(content[at + 3]),
         )
@@ -150,10 +152,11 @@ def _wide(floats: np.ndarray) -> np.ndarray:
         return floats.astype(float)
 
 
-def _parameters(content: bytes, header: Header, source: str) -> Parameters:
+def _parameters(file: CaptureFile, header: Header) -> Parameters:
     """Return the parameters by ``GROUP:NAME``; of one given twice, the first."""
+    content = file.content
     at = (header.parameter_block - 1) * BLOCK + 4
-    end = min(len(content), at + MOST_PARAMETER_BLOCKS * BLOCK)
+    end = min(len(content), at + MAX_PARAMETER_BLOCKS * BLOCK)
     if header.data_block > header.parameter_block:
         end = min(end, (header.data_block - 1) * BLOCK)
     order = ">" if header.processor == "MIPS" else "<"
@@ -176,8 +179,7 @@ def _parameters(content: bytes, header: Header, source: str) -> Parameters:
                 break
             at += step
     except struct.error:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "whole parameters",
             "an end within them: the file is cut short",
         ) from None
@@ -202,22 +204,25 @@ def _text(raw: bytes) -> str:
     return text.replace("\0", " ").strip()
 
 
-def _samples(content: bytes, header: Header, parameters: Parameters, source: str) -> np.ndarray:
-    """Return positions in the file's unit, array (time, point, 3), NaN where a point is missing."""
+def _samples(
+    file: CaptureFile, header: Header, parameters: Parameters
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Return positions in the file's unit, NaN where a point is missing, and what is cut off."""
     declared_points = parameters.number("POINT:USED")
     if header.n_points == 0 or declared_points not in (None, header.n_points):
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "the number of points in its header, one or more, to be that of its parameters",
             f"{header.n_points} and {declared_points}",
         )
-    scale = _scale(header, parameters, source)
+    scale = _scale(file, header, parameters)
     words = 4 * header.n_points + header.n_analog
     stride = words * (4 if scale < 0 else 2)
     start = (max(header.data_block, 1) - 1) * BLOCK
-    available = max(len(content) - start, 0)
-    n_frames = _frames(header, parameters, stride, available, source)
-    raw = content[start : start + n_frames * stride]
+    available = max(len(file.content) - start, 0)
+    n_declared = _declared_frames(file, header, parameters, stride, available)
+    n_frames = min(available // stride, n_declared)
+    attrs = file.check_frames(n_declared, n_frames)
+    raw = file.content[start : start + n_frames * stride]
     if scale < 0:
         table = _floats(raw, header.processor)
     else:
@@ -225,36 +230,34 @@ def _samples(content: bytes, header: Header, parameters: Parameters, source: str
     points = table.reshape(n_frames, words)[:, : 4 * header.n_points]
     points = points.reshape(n_frames, header.n_points, 4)
     positions = points[..., :3] * (1.0 if scale < 0 else scale)
-    if (np.abs(positions) > MOST_DISTANT).any():
-        raise UnreadableFile(source, "finite positions", "infinite or absurd ones")
+    if (np.abs(positions) > MAX_SIZE).any():
+        raise file.error("finite positions", "infinite or absurd ones")
     positions[(points[..., 3] < 0) | np.isnan(positions).any(axis=2)] = np.nan
-    return _without_zeros(positions)
+    return _without_zeros(positions), attrs
 
 
-def _scale(header: Header, parameters: Parameters, source: str) -> float:
+def _scale(file: CaptureFile, header: Header, parameters: Parameters) -> float:
     """Return the factor of integer samples, or a negative number for float samples."""
     scale = parameters.number("POINT:SCALE")
     scale = header.scale if scale is None else scale
     agree = np.isfinite(header.scale) and np.sign(scale) == np.sign(header.scale)
     if not np.isfinite(scale) or not scale or not agree:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             "one scale of the samples in header and parameters",
             f"{header.scale} and {scale}",
         )
     if scale > 0 and abs(scale - header.scale) > 1e-4 * scale:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             f"the scale {header.scale} of the header",
             f"{scale} in its parameters",
         )
     return scale
 
 
-def _frames(
-    header: Header, parameters: Parameters, stride: int, available: int, source: str
+def _declared_frames(
+    file: CaptureFile, header: Header, parameters: Parameters, stride: int, available: int
 ) -> int:
-    """Return the number of frames: the one declared, if all were delivered.
+    """Return the number of frames that the file declares.
 
     The header counts to 65535; longer files, and those of some programs, declare the number
     in parameters. Where declarations differ, that one counts which the length of the file bears
@@ -269,17 +272,10 @@ def _frames(
         if (number := parameters.number(name)) is not None:
             counts.append(int(number))
     counts = [count for count in counts if count > 0]
-    delivered = available // stride
     fitting = [n for n in counts if 0 <= available - n * stride < BLOCK]
     declared = fitting[0] if fitting else max(counts, default=0)
     if not declared:
-        raise UnreadableFile(source, "one frame or more", "none")
-    if delivered < declared:
-        raise UnreadableFile(
-            source,
-            f"{declared} frames, as it declares",
-            f"{delivered}: the file is cut short",
-        )
+        raise file.error("one frame or more", "none")
     return declared
 
 

@@ -11,10 +11,10 @@ import xarray as xr
 
 from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_rows
 from eigenwalker.core.trajectories import DIMS, label_trajectories
+from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.mat_arrays import mat_arrays
 from eigenwalker.io.sandbox import arrays_from_child
-from eigenwalker.io.sniff import content_of
 
 _SHOWN = 10
 
@@ -40,7 +40,7 @@ def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
 
     """
     path = Path(path)
-    content_of(path)
+    read_bytes(path)
     return arrays_from_child(mat_arrays, path, expected="a MATLAB file")
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import AXES, DIMS, sampling_rate, trajectories_at
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.numbers import MOST_DISTANT
-from eigenwalker.io.up_axis_and_unit import Unit
+from eigenwalker.io.text_cells import MAX_SIZE
 
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
@@ -30,41 +30,23 @@ def holds_trajectories(beginning: bytes, _path: Path) -> bool:
     return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
 
 
-def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.DataArray:
-    """Return the trajectories of a NetCDF file.
+def read_netcdf(file: CaptureFile) -> xr.DataArray:
+    """Return the trajectories in a NetCDF file, with what was known of the capture.
 
-    Parameters
-    ----------
-    content : bytes
-        The whole file.
-    source : str
-        Its name, for messages.
-    unit : Unit, optional
-        Unit of its lengths, if it is not the millimetres that it says.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        In millimetres, with what was known of the capture: ``attrs["original_source"]`` is the name
-        of the file it came from first.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file holds anything else, or is damaged or cut short.
-
+    ``attrs["original_source"]`` is the name of the file from which they were first read.
     """
-    dataset = dataset_of(content, source, expected=_EXPECTED)
+    dataset = dataset_of(file.content, file.name, expected=_EXPECTED)
     if str(dataset.attrs.get("format")) != FORMAT:
-        raise UnreadableFile(source, _EXPECTED, "a NetCDF file that holds other things", _OPEN)
+        raise file.error(_EXPECTED, "a NetCDF file that holds other things", _OPEN)
     if str(version := dataset.attrs.get("format_version")) != str(VERSION):
-        raise UnreadableFile(
-            source, f"version {VERSION} of the format", f"version {version}", "update eigenwalker"
-        )
+        expected = f"version {VERSION} of the format"
+        raise file.error(expected, f"version {version}", "update eigenwalker")
     try:
-        walk = _trajectories(dataset, 1.0 if unit is None else unit.millimetres)
+        walk = _trajectories(dataset, 1.0 if file.unit is None else file.unit.millimetres)
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise UnreadableFile(source, _EXPECTED, f"a damaged file ({error})") from error
+        raise file.error(_EXPECTED, f"a damaged file ({error})") from error
+    if file.rate_hz is not None:
+        walk = walk.assign_coords(time=np.arange(walk.sizes["time"]) / file.rate_hz)
     known = {
         str(name).removeprefix("capture_"): value
         for name, value in dataset.attrs.items()
@@ -74,19 +56,19 @@ def read_netcdf(content: bytes, *, source: str, unit: Unit | None = None) -> xr.
         known.setdefault("original_source", known["source"])
     walk.attrs.update(
         known,
-        source=source,
+        source=file.name,
         format="NetCDF",
         up_axis="z",
         up_axis_known=True,
-        unit="mm" if unit is None else unit.name,
+        unit="mm" if file.unit is None else file.unit.name,
         unit_guessed=False,
-        unit_reason="" if unit is None else unit.reason,
+        unit_reason="" if file.unit is None else file.unit.reason,
     )
     return walk
 
 
 def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
-    """Return what a NetCDF file of version 3 holds, whoever wrote it.
+    """Return what a NetCDF file of version 3 holds, by any program.
 
     No C library is needed for it: a damaged file can raise, but not crash the program.
     """
@@ -105,7 +87,7 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
     if position["axis"].values.tolist() != list(AXES) or position.attrs.get("units") != "mm":
         raise ValueError("axes or units are none of ours")
     values = np.asarray(position.values, dtype=float)
-    if (np.abs(values) > MOST_DISTANT).any():
+    if (np.abs(values) > MAX_SIZE).any():
         raise ValueError("infinite or absurd positions")
     with np.errstate(invalid="ignore"):  # of NaN that a processor would signal
         values = values * millimetres

@@ -15,12 +15,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from eigenwalker.io.column_names import points_of
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.numbers import MOST_DISTANT
-from eigenwalker.io.readers.skeleton_table import Skeleton, trajectories_of
-from eigenwalker.io.text_table import is_text, lines_of
-from eigenwalker.io.up_axis_and_unit import Unit
+from eigenwalker.io.readers.skeleton_table import body_trajectories
+from eigenwalker.io.text_cells import MAX_SIZE, is_text, lines_of, points_of
+from eigenwalker.io.text_table import TableValues
 
 MEDIAPIPE = (
     *("nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye"),
@@ -67,50 +66,24 @@ def holds_poses(beginning: bytes, path: Path) -> bool:
     return looks_like_json(beginning) and _WORDS.search(beginning) is not None
 
 
-def read_pose_json(
-    content: bytes, *, source: str, unit: Unit | None = None, rate_hz: float | None = None
-) -> xr.DataArray:
-    """Return where the points of a JSON document are.
-
-    Parameters
-    ----------
-    content : bytes
-        The whole file.
-    source : str
-        Its name, for messages.
-    unit : Unit, optional
-        Unit of its lengths, where the file names none (``"unit"``).
-    rate_hz : float, optional
-        Frames a second, where the file names neither these nor times.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        In millimetres, z up.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is no JSON, or holds no points in space of one person.
-
-    """
+def read_pose_json(file: CaptureFile) -> xr.DataArray:
+    """Return the trajectories of the points in a JSON document, of one person."""
     try:
-        data = json.loads("\n".join(lines_of(content, source)))
+        data = json.loads("\n".join(lines_of(file.content, file.name)))
+    except UnreadableFile:
+        raise
     except (ValueError, RecursionError) as error:
-        if isinstance(error, UnreadableFile):
-            raise
-        raise UnreadableFile(source, "JSON", str(error)[:80]) from error
+        raise file.error("JSON", str(error)[:80]) from error
     top = data if isinstance(data, dict) else {}
-    called = {"unit": "unit", "up": "up"} | dict.fromkeys(_RATES, "rate_hz")
-    notes = {note: str(top[key])[:40] for key, note in called.items() if key in top}
+    keys = {"unit": "unit", "up": "up"} | dict.fromkeys(_RATES, "rate_hz")
+    notes = {note: str(top[key])[:40] for key, note in keys.items() if key in top}
     frames = next((top[key] for key in _FRAMES if isinstance(top.get(key), list)), data)
     if isinstance(frames, dict):
         frames = _records(frames)
     if not isinstance(frames, list) or not frames:
-        raise UnreadableFile(source, "a list of frames", f"{type(frames).__name__}")
-    names, positions = _positions(frames, top, source)
-    skeleton = Skeleton(names, positions, _times(frames), notes)
-    return trajectories_of(skeleton, source=source, unit=unit, rate_hz=rate_hz)
+        raise file.error("a list of frames", f"{type(frames).__name__}")
+    names, positions = _positions(file, frames, top)
+    return body_trajectories(file, TableValues(positions, _times(frames)), names, notes)
 
 
 def _records(columns: dict) -> list[dict]:
@@ -124,61 +97,58 @@ def _records(columns: dict) -> list[dict]:
     return [dict(zip(lists, row, strict=True)) for row in zip(*lists.values(), strict=True)]
 
 
-def _positions(frames: list, top: dict, source: str) -> tuple[list[str], np.ndarray]:
+def _positions(file: CaptureFile, frames: list, top: dict) -> tuple[list[str], np.ndarray]:
     """Return names and positions of the points of all frames."""
-    named = [_points(frame, source) for frame in frames]
+    named = [_points(file, frame) for frame in frames]
     first = next((points for points in named if points), {})
     names = next((top[key] for key in ("names", "keypoint_names", "markers") if key in top), None)
     if names is not None and not (
         isinstance(names, list) and len(names) == len(first) and all(map(str, names))
     ):
-        raise UnreadableFile(source, f"{len(first)} names, one a point", f"{str(names)[:60]}")
+        raise file.error(f"{len(first)} names, one a point", f"{str(names)[:60]}")
     if names is None and first and all(key.isdecimal() for key in first):
         names = NAMES.get(len(first))
         if names is None:
-            raise UnreadableFile(
-                source,
+            raise file.error(
                 f"names of the {len(first)} points",
                 "none",
                 'add "names": ["nose", ...] at the top',
             )
     if len(first) < 3:
-        raise UnreadableFile(
-            source, "points x, y, z in each frame", f"{str(frames[0])[:60]}", _PICTURE
-        )
+        raise file.error("points x, y, z in each frame", f"{str(frames[0])[:60]}", _PICTURE)
     if any(points and list(points) != list(first) for points in named):
-        raise UnreadableFile(source, "the same points in each frame", "others in some")
+        raise file.error("the same points in each frame", "others in some")
     missing = [np.full(3, np.nan)] * len(first)
     positions = np.array([list(points.values()) or missing for points in named], dtype=float)
     return [str(name) for name in (names or first)], positions
 
 
-def _points(frame: object, source: str) -> dict[str, np.ndarray]:
+def _points(file: CaptureFile, frame: object) -> dict[str, np.ndarray]:
     """Return the points of a frame by name or number; none where nobody was seen."""
     if isinstance(frame, dict):
         if "people" in frame:
-            frame = _one(frame["people"], source)
+            frame = _one(file, frame["people"])
         if isinstance(frame, dict):
             if "pose_keypoints_2d" in frame and not frame.get("pose_keypoints_3d"):
-                raise UnreadableFile(source, "points in space", "pose_keypoints_2d", _PICTURE)
+                raise file.error("points in space", "pose_keypoints_2d", _PICTURE)
             key = next((key for key in _POINTS if key in frame), None)
             if key is None:
-                return _flat(frame, source) or _named(frame, source)
+                return _flat(file, frame) or _named(file, frame)
             frame = frame[key]
     if isinstance(frame, dict):
-        return {str(name): _point(point, source) for name, point in frame.items()}
+        return {str(name): _point(file, point) for name, point in frame.items()}
     if not isinstance(frame, list):
         return {}
     if frame and all(isinstance(value, (int, float)) for value in frame) and len(frame) % 4 == 0:
-        return {str(i): _point(frame[i * 4 : i * 4 + 3], source) for i in range(len(frame) // 4)}
+        return {str(i): _point(file, frame[i * 4 : i * 4 + 3]) for i in range(len(frame) // 4)}
     if frame and _is_list_of_points(frame[0]):
-        return _points(_one(frame, source), source)
+        return _points(file, _one(file, frame))
     points: dict[str, np.ndarray] = {}
     for at, point in enumerate(frame):
         name = point.get("name", at) if isinstance(point, dict) else at
-        points[str(name)] = _point(point, source)
+        points[str(name)] = _point(file, point)
     if len(points) < len(frame):
-        raise UnreadableFile(source, "points of different names", "a name twice")
+        raise file.error("points of different names", "a name twice")
     return points
 
 
@@ -186,35 +156,35 @@ def _is_list_of_points(value: object) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], (list, dict))
 
 
-def _one(people: object, source: str) -> object:
+def _one(file: CaptureFile, people: object) -> object:
     """Return the only person of a frame, or nobody."""
     if not isinstance(people, list) or len(people) > 1:
-        came = f"{len(people)}" if isinstance(people, list) else f"{str(people)[:40]}"
-        raise UnreadableFile(source, "one person", came, "keep the points of one")
+        got = f"{len(people)}" if isinstance(people, list) else f"{str(people)[:40]}"
+        raise file.error("one person", got, "keep the points of one")
     return people[0] if people else {}
 
 
-def _flat(frame: dict, source: str) -> dict[str, np.ndarray]:
+def _flat(file: CaptureFile, frame: dict) -> dict[str, np.ndarray]:
     """Return the points of a record with entries such as ``nose_x``."""
     keys = [str(key) for key in frame]
     points = points_of(keys)
     values = list(frame.values())
     return {
-        name: _point([values[column] for column in columns], source)
+        name: _point(file, [values[column] for column in columns])
         for name, columns in zip(points.names, points.columns, strict=True)
     }
 
 
-def _named(frame: dict, source: str) -> dict[str, np.ndarray]:
+def _named(file: CaptureFile, frame: dict) -> dict[str, np.ndarray]:
     """Return the points that stand in a record by name: entries that have an x, y and z."""
     points = {
         str(name): point for name, point in frame.items()
         if isinstance(point, dict) and {"x", "y", "z"} <= set(point)
     }  # fmt: skip
-    return {name: _point(point, source) for name, point in points.items()}
+    return {name: _point(file, point) for name, point in points.items()}
 
 
-def _point(point: object, source: str) -> np.ndarray:
+def _point(file: CaptureFile, point: object) -> np.ndarray:
     """Return x, y, z of a point; NaN where it is null."""
     if point is None:
         return np.full(3, np.nan)
@@ -222,16 +192,16 @@ def _point(point: object, source: str) -> np.ndarray:
         point = [point.get(axis, math.inf) for axis in "xyz"]
     values = list(point) if isinstance(point, list) else []
     if len(values) < 3:
-        raise UnreadableFile(source, "points x, y, z", f"{str(point)[:60]}", _PICTURE)
-    return np.array([_number(value, source) for value in values[:3]])
+        raise file.error("points x, y, z", f"{str(point)[:60]}", _PICTURE)
+    return np.array([_number(file, value) for value in values[:3]])
 
 
-def _number(value: object, source: str) -> float:
+def _number(file: CaptureFile, value: object) -> float:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return math.nan
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MOST_DISTANT:
-        came = "none" if value == math.inf else f"{str(value)[:40]!r}"
-        raise UnreadableFile(source, "a finite number for each of x, y, z", came)
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MAX_SIZE:
+        got = "none" if value == math.inf else f"{str(value)[:40]!r}"
+        raise file.error("a finite number for each of x, y, z", got)
     return float(value)
 
 
@@ -239,7 +209,7 @@ def _times(frames: list) -> np.ndarray | None:
     """Return the times of the frames in seconds, if each has one."""
     for key, unit in _TIMES.items():
         times = [frame.get(key) if isinstance(frame, dict) else None for frame in frames]
-        if all(isinstance(t, (int, float)) and abs(t) < MOST_DISTANT * 1e6 for t in times):
+        if all(isinstance(t, (int, float)) and abs(t) < MAX_SIZE * 1e6 for t in times):
             time = np.array(times, dtype=float) * unit
             late = unit == 1.0 and len(time) > 1 and np.median(np.diff(time)) >= 1
             return time * 1e-3 if late else time

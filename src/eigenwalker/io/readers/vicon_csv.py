@@ -7,16 +7,17 @@ line of units, and a line a frame; an empty line ends it.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.text_table import cells, lines_of, refuse_cut_number, separator_of, table_of
-from eigenwalker.io.timestamps import on_even_clock, rate_of
-from eigenwalker.io.to_trajectories import as_captured, unit_named
-from eigenwalker.io.up_axis_and_unit import Unit
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.text_cells import cells, lines_of, separator_of
+from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
+from eigenwalker.io.timestamps import declared_rate, on_even_clock
+from eigenwalker.io.to_trajectories import unit_named
 
 BLOCKS = ("trajectories", "model outputs")
 """The blocks that hold positions; devices, events and joints are passed over."""
@@ -25,6 +26,7 @@ _TITLE = re.compile(
     rb'^(?:\xef\xbb\xbf)?[ \t,;"]*(trajectories|model outputs)[ \t,;"]*$', re.I | re.M
 )
 _HEAD = re.compile(rb'^"?frame"? *[,;\t][ \t]*"?sub\s?frame', re.I | re.M)
+_EDGES = ' \t,;"'
 
 
 class _Block(NamedTuple):
@@ -43,48 +45,18 @@ def looks_like_vicon_csv(content: bytes) -> bool:
     return bool(_TITLE.search(beginning) and _HEAD.search(beginning))
 
 
-def read_vicon_csv(
-    content: bytes, *, source: str, unit: Unit | None = None, rate_hz: float | None = None
-) -> xr.DataArray:
-    """Return where the markers of a Vicon export are.
+def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
+    """Return the trajectories of the markers in a Vicon export.
 
-    Parameters
-    ----------
-    content : bytes
-        The whole file.
-    source : str
-        Its name, for messages.
-    unit : Unit, optional
-        Unit of its lengths, where the one in the file is wrong.
-    rate_hz : float, optional
-        Frames a second, where those in the file are wrong.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        In millimetres, z up, on the clock of the capture: frame 1 is at 0 s. Of model outputs,
-        those in lengths are kept, and origins of segments are called as in C3D files (``LFEO``).
-
-    Raises
-    ------
-    UnreadableFile
-        If it holds no positions, is damaged or cut short.
-
+    Frame 1 of the capture is at 0 s. Of model outputs, those in units of length are taken, and
+    origins of segments are called as in C3D files (``LFEO``).
     """
-    lines = lines_of(content, source)
-    blocks = [
-        block
-        for at, line in enumerate(lines)
-        if line.strip(' \t,;"').lower() in BLOCKS
-        and (block := _block(lines, at, content, source, rate_hz))
-    ]
+    lines = lines_of(file.content, file.name)
+    starts = [at for at, line in enumerate(lines) if line.strip(_EDGES).lower() in BLOCKS]
+    blocks = [block for at in starts if (block := _block(file, lines, at))]
     if not blocks:
-        raise UnreadableFile(
-            source,
-            "a block of Trajectories in lengths",
-            "none",
-            "tick Trajectories when exporting",
-        )
+        wanted = "a block of Trajectories in lengths"
+        raise file.error(wanted, "none", "tick Trajectories when exporting")
     whole = blocks[0]
     for block in blocks[1:]:
         if block.rate_hz == whole.rate_hz and np.array_equal(block.frames, whole.frames):
@@ -94,62 +66,58 @@ def read_vicon_csv(
                 units=whole.units | block.units,
             )
     if len(whole.units) > 1:
-        raise UnreadableFile(source, "one unit of length", f"{sorted(whole.units)}")
-    even = on_even_clock(whole.positions, (whole.frames - 1) / whole.rate_hz, source, whole.rate_hz)
-    return as_captured(
-        even.positions,
+        raise file.error("one unit of length", f"{sorted(whole.units)}")
+    time = (whole.frames - 1) / whole.rate_hz
+    even = on_even_clock(whole.positions, time, file.name, whole.rate_hz)
+    return table_trajectories(
+        file,
+        TableValues(even.positions),
         whole.names,
-        rate_hz=whole.rate_hz,
-        source=source,
         format_name="Vicon CSV",
-        unit=unit,
-        file_unit=unit_named(next(iter(whole.units))),
+        rate_hz=whole.rate_hz,
         start_s=even.start_s,
+        unit=unit_named(next(iter(whole.units))),
     )
 
 
-def _block(
-    lines: list[str], at: int, content: bytes, source: str, rate_hz: float | None
-) -> _Block | None:
+def _block(file: CaptureFile, lines: Sequence[str], at: int) -> _Block | None:
     """Return the block whose title stands on a line; None if nothing in it is a position."""
     if len(lines) < at + 6:
-        raise UnreadableFile(source, "six lines in a block or more", f"{len(lines) - at}")
+        raise file.error("six lines in a block or more", f"{len(lines) - at}")
     separator = separator_of(lines[at + 3])
-    head = cells(lines[at + 3], separator)
-    rate = rate_hz or rate_of(lines[at + 1].strip(' \t,;"'), "rate of the block", source)
+    names, head, units = (cells(lines[at + row], separator) for row in (2, 3, 4))
+    rate_hz = declared_rate(file, lines[at + 1].strip(_EDGES), "rate of the block")
     if [word.lower().replace(" ", "") for word in head[:2]] != ["frame", "subframe"]:
-        raise UnreadableFile(source, "the columns Frame and Sub Frame", repr(lines[at + 3][:40]))
+        raise file.error("the columns Frame and Sub Frame", repr(lines[at + 3][:40]))
     while head and not head[-1]:
         head.pop()
-    names, units = (cells(lines[at + row], separator) for row in (2, 4))
-    columns = _columns(names, head, units)
-    rows = []
-    for line in lines[at + 5 :]:
-        if not line.strip(" \t,;"):
-            break
-        rows.append(line)
-    table = table_of(rows, len(head), separator=separator, source=source, first=at + 6)
-    if at + 5 + len(rows) == len(lines):
-        refuse_cut_number(content, rows, source)
-    frames = table[:, 0] + 0.0
-    if not len(rows) or not np.all(np.isfinite(frames)):
-        raise UnreadableFile(source, "numbered frames", f"{len(rows)} lines, some without numbers")
-    if not columns:
-        return None
-    return _Block(
-        list(columns),
-        table[:, [triple for triple, _ in columns.values()]],
-        frames,
-        rate,
-        {unit for _, unit in columns.values()},
+    points = _points(names, head, units)
+    end = next((i for i in range(at + 5, len(lines)) if not lines[i].strip(" \t,;")), len(lines))
+    table = TextTable(
+        list(points),
+        [columns for columns, _ in points.values()],
+        lines[at + 5 : end],
+        n_columns=len(head),
+        separator=separator,
+        first_line=at + 6,
+        time_column=0,
+        ends_file=end == len(lines),
     )
+    values = table_values(file, table)
+    if values.time is None or not np.all(np.isfinite(values.time)):
+        got = f"{len(table.rows)} lines, some without numbers"
+        raise file.error("numbered frames", got)
+    if not points:
+        return None
+    in_units = {unit for _, unit in points.values()}
+    return _Block(list(points), values.positions, values.time + 0.0, rate_hz, in_units)
 
 
-def _columns(
-    names: list[str], head: list[str], units: list[str]
+def _points(
+    names: Sequence[str], head: Sequence[str], units: Sequence[str]
 ) -> dict[str, tuple[tuple[int, int, int], str]]:
     """Return for each point its three columns and their unit."""
-    found: dict[str, tuple[tuple[int, int, int], str]] = {}
+    points: dict[str, tuple[tuple[int, int, int], str]] = {}
     name = ""
     for at in range(2, len(head) - 2):
         name = names[at] if at < len(names) and names[at] else name
@@ -160,5 +128,5 @@ def _columns(
         unit = measured.pop()
         if unit_named(unit):
             label = name + ("O" if axes == "TXTYTZ" else "")
-            found.setdefault(label, ((at, at + 1, at + 2), unit))
-    return found
+            points.setdefault(label, ((at, at + 1, at + 2), unit))
+    return points

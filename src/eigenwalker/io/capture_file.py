@@ -1,0 +1,160 @@
+"""A file to be read as a capture: its bytes, and what the caller knows of it."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
+from eigenwalker.io.up_axis_and_unit import Unit
+
+MAX_BYTES = 2**31
+_KEEP_PARTIAL = (
+    f'{EXPORT_AGAIN}, or take the frames that are there: read_mocap(..., partial="keep")'
+)
+
+
+class RateAssumed(UserWarning):
+    """A file names no frame rate, so the usual one of its format was taken.
+
+    Silence it with ``warnings.simplefilter("ignore", RateAssumed)``, or name the rate:
+    ``read_mocap(path, rate_hz=120)``.
+    """
+
+
+@dataclass(frozen=True)
+class CaptureFile:
+    """A file, and the arguments of `read_mocap` that its reader takes into account.
+
+    Parameters
+    ----------
+    path : Path
+        Where the file is.
+    content : bytes
+        The whole file.
+    unit : Unit, optional
+        Unit of length, in place of the one in the file.
+    rate_hz : float, optional
+        Frames a second, in place of those in the file.
+    default_unit, default_rate_hz : optional
+        The same, for a file that names none.
+    keep_partial : bool
+        Whether to take the whole frames of a file that declares more frames than it has.
+
+    """
+
+    path: Path
+    content: bytes = field(repr=False)
+    unit: Unit | None = None
+    rate_hz: float | None = None
+    default_unit: Unit | None = None
+    default_rate_hz: float | None = None
+    keep_partial: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name of the file without its folder, for messages."""
+        return self.path.name
+
+    def error(self, expected: str, got: str, advice: str = EXPORT_AGAIN) -> UnreadableFile:
+        """Return the error to raise when the file does not hold what is expected."""
+        return UnreadableFile(self.name, expected, got, advice)
+
+    def check_frames(self, n_declared: int, n_frames: int) -> dict[str, int]:
+        """Refuse a file that does not have the frames that it declares.
+
+        Returns
+        -------
+        dict
+            ``n_frames_cut``, how many frames are missing at the end, for a partial file that is
+            to be kept; else empty.
+
+        """
+        if n_frames == n_declared:
+            return {}
+        expected = f"{n_declared} frames, as it declares"
+        if n_frames > n_declared:
+            raise self.error(expected, f"{n_frames}: the count is wrong")
+        if self.keep_partial and n_frames:
+            return {"n_frames_cut": n_declared - n_frames}
+        raise self.error(expected, f"{n_frames}: the file is cut short", _KEEP_PARTIAL)
+
+    def frame_rate(
+        self, declared_hz: float | None, *, usual_hz: float, reason: str
+    ) -> tuple[float, dict[str, object]]:
+        """Return the frames a second of a format whose files may name none.
+
+        Parameters
+        ----------
+        declared_hz : float or None
+            Frames a second that the file names.
+        usual_hz : float
+            Assumed, with a warning, if neither file nor caller names any.
+        reason : str
+            Why that rate is usual.
+
+        Returns
+        -------
+        rate_hz : float
+        attrs : dict
+            ``rate_assumed`` and ``rate_reason`` of an assumed rate, else empty.
+
+        """
+        rate_hz = self.rate_hz or declared_hz or self.default_rate_hz
+        if rate_hz is not None:
+            return rate_hz, {}
+        warnings.warn(
+            f"{self.name} names no frame rate; {usual_hz:g} frames a second are assumed, {reason}. "
+            f"Name it to be sure: read_mocap(..., rate_hz={usual_hz:g}).",
+            RateAssumed,
+            stacklevel=4,  # the caller of read_mocap
+        )
+        return usual_hz, {"rate_assumed": True, "rate_reason": reason}
+
+
+def read_bytes(path: Path, *, max_bytes: int = MAX_BYTES, expected: str = "a capture") -> bytes:
+    """Return the bytes of a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    max_bytes : int
+        A larger file is refused unread.
+    expected : str
+        What the file should hold, for the message about an empty one.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is no plain file, too large, empty, or may not be read.
+
+    """
+    name = path.name or str(path)
+    try:
+        if path.is_dir():
+            raise UnreadableFile(name, "a file", "a folder", "name one of the files in it")
+        if not path.exists():
+            got = f"nothing of that name in {str(path.parent)!r}"
+            raise UnreadableFile(name, "a file", got, "check the path")
+        if not path.is_file():
+            raise UnreadableFile(name, "a plain file", "a device or pipe", "save it as a file")
+        if path.stat().st_size > max_bytes:
+            limit = f"{max_bytes / 1e9:.2g} GB at most"
+            got = f"{path.stat().st_size / 1e9:.3g} GB"
+            raise UnreadableFile(name, limit, got, "cut it into shorter captures")
+        content = path.read_bytes()
+    except OSError as error:
+        got = error.strerror or "an error"
+        advice = "check path and permissions"
+        raise UnreadableFile(name, "a file that can be read", got, advice) from error
+    if not content:
+        raise UnreadableFile(name, expected, "an empty file")
+    return content
+
+
+def file_beside(path: Path, suffix: str) -> Path | None:
+    """Return the file of the same name with another suffix (``.toml``), if there is one."""
+    other = path.with_suffix(suffix)
+    return other if other != path and other.is_file() else None

@@ -1,0 +1,301 @@
+"""Text files: from bytes to lines, from lines to cells, from cells to numbers and points."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
+
+MAX_SIZE = 1e9
+"""No length, angle or time in a sound file is larger than this, whatever its unit."""
+MISSING = frozenset(
+    ("", "nan", "-nan", "na", "n/a", "null", "none", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind")
+)
+"""What programs write in a cell where nothing was measured, in lower case."""
+
+_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1a")
+_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+
+_UNIT = re.compile(r"[ _]*[\[(](mm|cm|m)[\])]$|_(mm|cm|m)$")
+_AXIS_AFTER = re.compile(
+    r"(?P<name>.+?)(?:[ _.:\-\[(]{1,9}[tp]?(?P<after>[xyzXYZ])[\])]?|(?P<glued>[XYZ]))"
+)
+_AXIS_BEFORE = re.compile(r"(?P<axis>[xyzXYZ])[ _.](?P<name>.+)")
+
+
+def is_text(content: bytes) -> bool:
+    """Return whether a file holds text, by its first bytes.
+
+    Examples
+    --------
+    >>> is_text(b"time,nose_x"), is_text(bytes(16))
+    (True, False)
+
+    """
+    if content.startswith(_UTF16_MARKS):
+        return True
+    return not any(byte < 32 and byte not in _TEXT_CONTROLS for byte in content[:1024])
+
+
+def lines_of(content: bytes, source: str) -> list[str]:
+    """Return the lines of a text, without empty ones at its end.
+
+    Parameters
+    ----------
+    content : bytes
+        The whole file: UTF-8 with or without a mark, UTF-16 with one, or else Windows-1252.
+    source : str
+        Name of the file, for messages.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is no text.
+
+    """
+    try:
+        text = content.decode("utf-16" if content.startswith(_UTF16_MARKS) else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("cp1252", errors="replace")
+    if "\0" in text:
+        raise UnreadableFile(source, "text", "bytes that are no letters")
+    return re.split(r"\r\n|\n|\r", text.rstrip("\n\r\x1a "))
+
+
+def separator_of(line: str) -> str | None:
+    """Return what separates the cells of a line; None for blanks.
+
+    Examples
+    --------
+    >>> separator_of("Frame;X 1;Y 1"), separator_of("1.0  2.0") is None
+    (';', True)
+
+    """
+    return next((mark for mark in "\t;," if mark in line), None)
+
+
+def cells(line: str, separator: str | None) -> list[str]:
+    """Return the cells of a line without blanks and quotation marks around them.
+
+    Examples
+    --------
+    >>> cells('1, "Hip, left" ,2', ",")
+    ['1', 'Hip, left', '2']
+
+    """
+    if separator and '"' in line:
+        try:
+            row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+            return [cell.strip() for cell in row]
+        except csv.Error:  # cells that are too long, or a mark in a wrong place
+            pass
+    return [cell.strip().strip('"') for cell in line.split(separator)]
+
+
+def number(word: str, where: str, source: str) -> float:
+    """Return the number that a word is; refuse words that are none, and absurd numbers.
+
+    Examples
+    --------
+    >>> number("-1.5e2", "frame 3", "a.amc")
+    -150.0
+    >>> number("1,5", "frame 3", "a.amc")
+    Traceback (most recent call last):
+    ...
+    eigenwalker.io.errors.UnreadableFile: a.amc: expected a finite number in frame 3, but
+    got '1,5'; write numbers with a decimal point.
+
+    """
+    value = float(word) if _NUMBER.fullmatch(word) else np.nan
+    if not abs(value) < MAX_SIZE:
+        advice = "write numbers with a decimal point" if "," in word else EXPORT_AGAIN
+        raise UnreadableFile(source, f"a finite number in {where}", repr(word[:40]), advice)
+    return value
+
+
+def numbers(words: Sequence[str], where: str, source: str) -> np.ndarray:
+    """Return the numbers that some words are: array of shape (word,)."""
+    return np.array([number(word, where, source) for word in words])
+
+
+def plain_numbers(words: Sequence[str]) -> np.ndarray | None:
+    """Return words as numbers, NaN included; None if one is no number, infinite or absurd."""
+    try:
+        row = np.array([float(word) for word in words])
+    except ValueError:
+        return None
+    sound = all(word.isascii() and "_" not in word for word in words)  # 1_0 is not 10 here
+    return row if sound and np.all(np.isnan(row) | (np.abs(row) < MAX_SIZE)) else None
+
+
+def table_of(
+    lines: Sequence[str],
+    n_columns: int,
+    *,
+    separator: str | None,
+    source: str,
+    first: int = 1,
+    short_by: int = 0,
+    columns: Sequence[int] | None = None,
+) -> np.ndarray:
+    """Return lines of numbers as an array, with NaN for empty cells.
+
+    Where cells are not separated by commas, numbers may have decimal commas.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        One row a line.
+    n_columns : int
+        Cells a line.
+    separator : str or None
+        What stands between cells; None for blanks.
+    source : str
+        Name of the file, for messages.
+    first : int
+        Number of the first line in the file, for messages.
+    short_by : int
+        Any line but the last may lack a multiple of this many cells at its end, which are then
+        empty: some editors strip blanks from the ends of lines.
+    columns : sequence of int, optional
+        The columns to return; others may hold anything. All if left out.
+
+    Returns
+    -------
+    array of shape (line, column)
+
+    Raises
+    ------
+    UnreadableFile
+        If there is no line, or one has fewer or more cells, or something else than numbers.
+
+    """
+    if not lines:
+        raise UnreadableFile(source, "a line of numbers or more", "none")
+    comma = separator != "," and any(re.search(r"\d,\d", line) for line in lines[:20])
+    rows: list[np.ndarray] = []
+    room = sum(map(len, lines)) + n_columns
+    for at, line in enumerate(lines):
+        plain = line.replace(",", ".") if comma else line
+        words = cells(plain, separator) if '"' in plain else plain.split(separator)
+        if len(words) > n_columns:
+            words = [*words[:n_columns], *(word for word in words[n_columns:] if word.strip())]
+        lack = n_columns - len(words)
+        if lack > 0 and short_by and lack % short_by == 0 and at < len(lines) - 1 and lack < room:
+            words += [""] * lack
+            room -= lack
+        if len(words) != n_columns:
+            reason = ": the file is cut short" if lack > 0 and at == len(lines) - 1 else ""
+            raise UnreadableFile(
+                source, f"{n_columns} cells in line {first + at}", f"{len(words)}{reason}"
+            )
+        if columns is not None:
+            words = [words[column] for column in columns]
+        row = plain_numbers(words)
+        rows.append(np.array([_cell(w, first + at, source) for w in words]) if row is None else row)
+    return np.array(rows).reshape(len(rows), n_columns if columns is None else len(columns))
+
+
+def _cell(word: str, line: int, source: str) -> float:
+    word = word.strip()
+    if word.lower() in MISSING:
+        return np.nan
+    value = float(word) if _NUMBER.fullmatch(word) else np.inf
+    if not abs(value) < MAX_SIZE:
+        raise UnreadableFile(source, f"a finite number in line {line}", repr(word[:40]))
+    return value
+
+
+def cut_number(content: bytes, lines: Sequence[str]) -> str:
+    """Return the last number of a file that ends within it, as far as that can be seen.
+
+    It can be seen where the file has no end of line at its end, and all earlier lines have the
+    same number of decimals in their last cell. Empty where the file is whole.
+    """
+    if len(lines) < 2 or content[-1:].isspace() or content[-2:] in (b"\n\0", b"\r\0"):
+        return ""
+    between = r"[\t;]" if re.search(r"[\t;]", lines[0]) else r"[\s,]"
+    last = [re.split(between, line)[-1].strip() for line in lines[-20:]]
+    decimals = [len(word.replace(",", ".").partition(".")[2]) for word in last]
+    is_cut = len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]
+    return repr(last[-1]) if is_cut else ""
+
+
+def refuse_cut_number(content: bytes, lines: Sequence[str], source: str) -> None:
+    """Refuse a file that ends within its last number (`cut_number`).
+
+    Parameters
+    ----------
+    content : bytes
+        The whole file.
+    lines : sequence of str
+        Its lines of numbers.
+    source : str
+        Its name, for messages.
+
+    """
+    if number := cut_number(content, lines):
+        expected = "as many decimals in the last number as in those above it"
+        raise UnreadableFile(source, expected, f"{number} at its end: the file is cut short")
+
+
+class Points(NamedTuple):
+    """Points that a header names, the columns of their x, y and z, and all other columns."""
+
+    names: list[str]
+    columns: list[tuple[int, int, int]]
+    others: list[int]
+
+
+def points_of(header: Sequence[str]) -> Points:
+    """Return the points whose three coordinates a header names, in the order of their first.
+
+    Parameters
+    ----------
+    header : sequence of str
+        Cells such as ``nose_x``, ``Head (X)``, ``noseX``, ``x_nose``, ``LASI_tx``. A cell that is
+        only an axis belongs to the point named before it.
+
+    Returns
+    -------
+    Points
+
+    Examples
+    --------
+    >>> points_of(["time", "Foot Left X", "Y", "Z", "nose_x", "nose_y", "nose_z", "max"])
+    Points(names=['Foot Left', 'nose'], columns=[(1, 2, 3), (4, 5, 6)], others=[0, 7])
+
+    """
+    axes_of: dict[tuple[str, int], dict[str, int]] = {}
+    times: Counter[tuple[str, str]] = Counter()
+    name = ""
+    for index, cell in enumerate(header):
+        if coordinate := _coordinate(cell, name):
+            name, axis = coordinate
+            times[coordinate] += 1  # a second nose_x is about another point of that name
+            axes_of.setdefault((name, times[coordinate]), {})[axis] = index
+    complete = [(name, axes) for (name, _), axes in axes_of.items() if len(axes) == 3]
+    columns = [(axes["x"], axes["y"], axes["z"]) for _, axes in complete]
+    used = {column for triple in columns for column in triple}
+    others = [index for index in range(len(header)) if index not in used]
+    return Points([name for name, _ in complete], columns, others)
+
+
+def _coordinate(cell: str, last: str) -> tuple[str, str] | None:
+    """Return the point and the axis that a cell of a header names; None for any other cell."""
+    cell = cell.strip()[:200]
+    if cell.lower() in ("x", "y", "z"):
+        return (last, cell.lower()) if last else None
+    cell = _UNIT.sub("", cell)
+    if hit := _AXIS_AFTER.fullmatch(cell):
+        return hit["name"], (hit["after"] or hit["glued"]).lower()
+    if hit := _AXIS_BEFORE.fullmatch(cell):
+        return hit["name"], hit["axis"].lower()
+    return None
