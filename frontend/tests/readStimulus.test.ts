@@ -82,7 +82,7 @@ describe("a chain that no browser could play in time", () => {
 
   it("has Python's bound", () => {
     const python = readFileSync(new URL("../../src/eigenwalker/stimulus/schema.py", import.meta.url), "utf8");
-    expect(Number(/^MOST_WORK = ([\d_]+)$/m.exec(python)![1]!.replaceAll("_", ""))).toBe(MOST_WORK);
+    expect(Number(/^MAX_WORK = ([\d_]+)$/m.exec(python)![1]!.replaceAll("_", ""))).toBe(MOST_WORK);
   });
 });
 

@@ -18,23 +18,20 @@ import numpy as np
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.core.walker import Walker
 from eigenwalker.stimulus import drawing
-from eigenwalker.stimulus.figure import Figure, walker_from_dict
+from eigenwalker.stimulus.figure import Figure, WalkerPart
 from eigenwalker.stimulus.make import make_stimulus
 from eigenwalker.stimulus.mannequin import body_heights
-from eigenwalker.stimulus.player import scene
 from eigenwalker.stimulus.random_streams import normals, permutation, random_words, uniforms
-from eigenwalker.stimulus.schema import schema
 from eigenwalker.stimulus.stimulus import Stimulus
 
 FOLDER = Path(__file__).parent
-SCHEMA = FOLDER.parents[1] / "src" / "eigenwalker" / "stimulus" / "schema.json"
 KEPT = json.loads((FOLDER / "figures.json").read_text(encoding="utf-8"))
 TIMES_S = (0.0, 0.1, 0.35, 1.0, 1.9375)
 
 
 def person(number: int) -> Walker:
     """A simulated walker, kept in a file so that simulations may change."""
-    return walker_from_dict(KEPT[str(number)] | {"markers": tuple(KEPT[str(number)]["markers"])})
+    return WalkerPart(**KEPT[str(number)]).to_walker()
 
 
 def captured(*, repeat: bool) -> Figure:
@@ -171,13 +168,13 @@ def mannequins() -> dict[str, Any]:
     seen = stimuli()["perspective"]
     seen = replace(seen, display=replace(seen.display, style="mannequin"))
     stimulus = seen.then("resize", factor=0.8).then("occlude", markers=["left_knee"])
-    bodies = drawing.mannequins(stimulus, scene(stimulus.content))
+    bodies = drawing.mannequins(stimulus)
     hulls = drawing.hulls_of(stimulus, bodies, stimulus.play([0.4]), 0)
     balls = np.concatenate([hulls.middles, hulls.radii[..., None]], axis=2)
     return {
         "stimulus": stimulus.to_dict(),
         "time_s": 0.4,
-        "heights_mm": body_heights(stimulus.content),
+        "heights_mm": body_heights(stimulus),
         "balls": balls.round(6).tolist(),
         "tones": hulls.tones.tolist(),
     }
@@ -200,4 +197,3 @@ if __name__ == "__main__":
         (FOLDER / f"stimulus_{name}.json").write_text(text(expected(stimulus)), encoding="utf-8")
     (FOLDER / "mannequin.json").write_text(text(mannequins()), encoding="utf-8")
     (FOLDER / "random.json").write_text(text(chance()), encoding="utf-8")
-    SCHEMA.write_text(json.dumps(schema(), indent=1) + "\n", encoding="utf-8")

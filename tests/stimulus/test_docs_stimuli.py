@@ -10,7 +10,7 @@ import pytest
 
 from eigenwalker.datasets.built_in import load_population
 from eigenwalker.stimulus.make import make_stimulus
-from eigenwalker.stimulus.transforms import TRANSFORMS
+from eigenwalker.stimulus.schema import TRANSFORMS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "stimuli.md").read_text(encoding="utf-8")
 LINES = re.findall(r"`(\.then\([^`]*\))`", PAGE)

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eigenwalker.stimulus.schema import TRANSFORMS
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.transforms import TRANSFORMS
 
 DOCS = Path(__file__).parents[2] / "docs"
 spec = importlib.util.spec_from_file_location("draw_gallery", DOCS / "draw_gallery.py")
@@ -65,7 +65,7 @@ def test_the_options_make_the_same_stimulus_as_the_line(row, names, tmp_path, ru
     assert code == 0, errors
     typed, line = Stimulus.load(path), gallery.made(row, names)
     for part in ("transforms", "view", "timing"):
-        assert typed.content[part] == line.content[part]
+        assert getattr(typed, part) == getattr(line, part)
     assert _rounded(typed.display) == _rounded(line.display)
     moments = [0.0, 0.6, 1.1]
     places, others = typed.play(moments).positions, line.play(moments).positions

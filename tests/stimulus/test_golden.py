@@ -11,11 +11,9 @@ import pytest
 
 from eigenwalker.stimulus.drawing import hulls_of, mannequins
 from eigenwalker.stimulus.mannequin import body_heights
-from eigenwalker.stimulus.player import scene
 from eigenwalker.stimulus.random_streams import normals, permutation, random_words, uniforms
-from eigenwalker.stimulus.schema import schema
+from eigenwalker.stimulus.schema import TRANSFORMS, json_schema
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.transforms import TRANSFORMS
 
 FOLDER = Path(__file__).parents[1] / "golden"
 FILES = sorted(FOLDER.glob("stimulus_*.json"))
@@ -46,12 +44,12 @@ def test_every_transform_has_a_golden_file():
 def test_mannequins_are_those_of_the_golden_file():
     golden = read(FOLDER / "mannequin.json")
     stimulus = Stimulus.from_dict(golden["stimulus"])
-    bodies = mannequins(stimulus, scene(stimulus.content))
+    bodies = mannequins(stimulus)
     hulls = hulls_of(stimulus, bodies, stimulus.play([golden["time_s"]]), 0)
     balls = np.concatenate([hulls.middles, hulls.radii[..., None]], axis=2)
     np.testing.assert_allclose(balls, golden["balls"], rtol=0, atol=1e-5)
     assert hulls.tones.tolist() == golden["tones"]
-    np.testing.assert_allclose(body_heights(stimulus.content), golden["heights_mm"])
+    np.testing.assert_allclose(body_heights(stimulus), golden["heights_mm"])
 
 
 def test_random_numbers_are_those_of_the_golden_file():
@@ -65,4 +63,4 @@ def test_random_numbers_are_those_of_the_golden_file():
 
 def test_the_published_schema_is_that_of_the_code():
     path = Path(str(importlib.util.find_spec("eigenwalker.stimulus").origin)).parent
-    assert read(path / "schema.json") == json.loads(json.dumps(schema()))
+    assert read(path / "schema.json") == json.loads(json.dumps(json_schema()))

@@ -18,13 +18,13 @@ from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.make import make_stimulus
 from eigenwalker.stimulus.mannequin import Hulls, body_heights, hulls_at, mannequin_of
 from eigenwalker.stimulus.mannequin_palette import FIRST_FULL, put_wood, wood_shades
-from eigenwalker.stimulus.player import scene
+from eigenwalker.stimulus.schema import View
 from eigenwalker.stimulus.solids import LIGHT, Lit, Look, brightness, draw_hulls
 from eigenwalker.stimulus.stimulus import Stimulus
 from eigenwalker.stimulus.write_stimulus import write_stimulus
 
 POSTURE = load_population().walkers[0].p0
-LEVEL = {"view_deg": 0.0, "elevation_deg": 0.0, "centre_mm": (0, 0, 0), "eye_distance_mm": None}
+LEVEL = View(centre_mm=(0, 0, 0))
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def wooden(walker, **options) -> Stimulus:
 
 
 def hulls(stimulus: Stimulus, time_s: float = 0.3) -> Hulls:
-    bodies = mannequins(stimulus, scene(stimulus.content))
+    bodies = mannequins(stimulus)
     return hulls_of(stimulus, bodies, stimulus.play([time_s]), 0)
 
 
@@ -160,7 +160,7 @@ def test_each_joint_but_those_of_the_trunk_has_a_ball_in_its_middle(average):
 @pytest.mark.parametrize("name", ["left_ankle", "right_wrist", "left_shoulder"])
 def test_joints_are_drawn_where_the_dots_are(average, name, eye_distance_mm):
     stimulus = wooden(average, size_px=(600, 800), eye_distance_mm=eye_distance_mm)
-    bodies = mannequins(stimulus, scene(stimulus.content))
+    bodies = mannequins(stimulus)
     alone = bodies[0].weights[..., JOINTS.index(name)].min(axis=1) == 1
     body = bodies[0]._replace(
         **{part: getattr(bodies[0], part)[alone] for part in bodies[0]._fields}
@@ -175,13 +175,13 @@ def test_joints_are_drawn_where_the_dots_are(average, name, eye_distance_mm):
 
 def test_thickness_goes_with_height_and_with_resize_alone(average):
     plain = wooden(average)
-    (height,) = body_heights(plain.content)
+    (height,) = body_heights(plain)
     assert 1500 < height < 1800
     changed = plain.then("invert").then("scramble", seed=1).then("gain", parts="legs", factor=3)
-    assert body_heights(changed.content) == [height]
-    assert body_heights(plain.then("resize", factor=0.5).content) == [height / 2]
+    assert body_heights(changed) == [height]
+    assert body_heights(plain.then("resize", factor=0.5)) == [height / 2]
     two = wooden([average, Figure(average, position_mm=(0, 900, 0))])
-    assert body_heights(two.then("resize", factor=0.5, figures=1).content) == [height, height / 2]
+    assert body_heights(two.then("resize", factor=0.5, figures=1)) == [height, height / 2]
 
 
 def test_what_hides_a_dot_takes_its_wood_away(average):

@@ -28,7 +28,7 @@ interface Schema {
   readonly oneOf?: readonly Schema[];
 }
 
-/** Dots that may have to be computed for one moment, as in Python's `content.py`. */
+/** Dots that may have to be computed for one moment, `MAX_WORK` in Python's `schema.py`. */
 export const MOST_WORK = 1_000_000;
 
 /** What is no stimulus, and why. */

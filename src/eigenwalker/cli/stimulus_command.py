@@ -221,9 +221,9 @@ SPECIAL_PARAMETERS = ("parts", "signal_to_noise", "dots_per_m2")
 
 def _parameters(option: str, text: str) -> dict[str, Any]:
     """Return the parameters of ``seed=3,box=400/1500``; a name may lack its unit."""
-    from eigenwalker.stimulus.transforms import TRANSFORMS
+    from eigenwalker.stimulus.schema import TRANSFORMS
 
-    known = [*TRANSFORMS[option].fields, *SPECIAL_PARAMETERS]
+    known = [*TRANSFORMS[option].parameter_names(), *SPECIAL_PARAMETERS]
     parameters: dict[str, Any] = {}
     for pair in text.split(","):
         name, equals, value = pair.strip().partition("=")

@@ -252,10 +252,13 @@ class Walker:
 
         """
         time = np.atleast_1d(np.asarray(time, dtype=float))
-        cycle = 2 * np.pi * self.frequency_hz * (time[:, None] - self.time_origin_s)
-        sines = np.sin(self.harmonics * cycle + self.phases)
-        positions = self.p0 + np.tensordot(sines, self.p, axes=1)
-        return trajectories_at(time, positions, self.markers)
+        cycle = 2 * np.pi * self.frequency_hz * (time - self.time_origin_s)
+        return trajectories_at(time, self.positions(cycle), self.markers)
+
+    def positions(self, cycle: np.ndarray) -> np.ndarray:
+        """Return the postures at angles of the stride, radians: array (angle, marker, axis), mm."""
+        sines = np.sin(self.harmonics * cycle[:, None] + self.phases)
+        return self.p0 + np.tensordot(sines, self.p, axes=1)
 
 
 def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:

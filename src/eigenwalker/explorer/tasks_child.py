@@ -165,7 +165,6 @@ def _model(people: Any, folder: Path, title: str) -> Asked:
 
 def film(folder: Path, asked: Asked) -> Asked:
     """A film of a stimulus."""
-    from eigenwalker.stimulus.schema import dots_computed
     from eigenwalker.stimulus.stimulus import Stimulus
     from eigenwalker.stimulus.write_stimulus import write_stimulus
 
@@ -173,7 +172,7 @@ def film(folder: Path, asked: Asked) -> Asked:
     display = shown.display
     pixels = f"{display.width_px} x {display.height_px} pixels"
     _check_length(shown, display.width_px * display.height_px, pixels, asked["most_pixels"])
-    dots = dots_computed(shown.content)
+    dots = shown.file.dots_computed
     _check_length(shown, dots, f"{dots} dots to compute", asked["most_dots"])
     path = write_stimulus(shown, folder / f"film.{asked['format']}")
     return {"file": path.name}

@@ -2,28 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
+from pydantic import Field
 
 from eigenwalker.core.skeleton import Skeleton
-from eigenwalker.stimulus.moving_dots import Moments, Moving
+from eigenwalker.stimulus.moving_dots import Moments, MovingDots
 from eigenwalker.stimulus.random_streams import Purpose, permutation, uniforms
-from eigenwalker.stimulus.transform_context import Stage
+from eigenwalker.stimulus.transform_types import (
+    BoxSize,
+    Context,
+    Degrees,
+    DotCount,
+    Lifetime,
+    Seed,
+    Share,
+    Switch,
+    Transform,
+    Vector,
+)
 
 SHOWN_AXES = {"both": (1.0, 1.0), "horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
 
 
-def scramble(
-    moving: Moving,
-    stage: Stage,
-    *,
-    seed: int,
-    keep: str,
-    box_mm: Sequence[float],
-    directions: str,
-) -> Moving:
+class Scramble(Transform):
     """Put the dots elsewhere in the picture; each moves as it did.
 
     Seen by the observer of the stimulus' view, the mean place of each dot is moved, its depth is
@@ -34,34 +39,28 @@ def scramble(
     same places are taken by other motions. With ``directions`` of ``"horizontal"`` or
     ``"vertical"`` places change in that direction alone. Keeps each dot's own motion exactly.
     """
-    axes = stage.observer[:2]
-    seen = (moving.mean - moving.middle) @ axes.T
-    if keep == "structure":
-        order = permutation(Purpose.SCRAMBLE, seed, stage.figure, size=len(moving.dots))
-        wanted = seen[order]
-    else:
-        dots = np.arange(len(moving.dots))
-        drawn = uniforms(Purpose.SCRAMBLE, seed, dots, stage.figure, count=2).reshape(-1, 2)
-        wanted = (drawn - 0.5) * np.array(box_mm)
-    moved = ((wanted - seen) * SHOWN_AXES[directions]) @ axes
 
-    def at(time: np.ndarray) -> Moments:
-        positions, visible = moving.at(time)
-        return Moments(positions + moved, visible)
+    name: Literal["scramble"]
+    seed: Seed = Field(description="seed of what is drawn at random")
+    keep: Literal["nothing", "structure"] = Field("nothing", description="what of the places")
+    box_mm: BoxSize = Field(description="width and height in the picture, mm")
+    directions: Literal["both", "horizontal", "vertical"] = Field("both", description="that change")
 
-    return replace(moving, at=at)
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        axes = context.observer[:2]
+        seen = (moving.mean - moving.middle) @ axes.T
+        if self.keep == "structure":
+            order = permutation(Purpose.SCRAMBLE, self.seed, context.figure, size=len(moving.dots))
+            wanted = seen[order]
+        else:
+            dots = np.arange(len(moving.dots))
+            drawn = uniforms(Purpose.SCRAMBLE, self.seed, dots, context.figure, count=2)
+            wanted = (drawn.reshape(-1, 2) - 0.5) * np.array(self.box_mm)
+        moved = ((wanted - seen) * SHOWN_AXES[self.directions]) @ axes
+        return moving.moved(lambda positions, time: positions + moved)
 
 
-def limb_dots(
-    moving: Moving,
-    stage: Stage,
-    *,
-    number: int,
-    lifetime_s: float | None,
-    asynchrony: float,
-    places: str,
-    seed: int,
-) -> Moving:
+class LimbDots(Transform):
     """Show dots that live for a moment at random places of the body in place of the joints.
 
     Beintema and Lappe (2002): dots on the limbs, each of which, after its life, begins another one
@@ -72,32 +71,41 @@ def limb_dots(
     u_2 how far along it; on ``"joints"``, u_1 chooses a joint. With a lifetime of
     null they live on. Keeps the posture that a frame shows, breaks the dots' paths.
     """
-    ends, reach = _segments(moving)
-    dot_numbers = np.arange(number)
-    ahead = asynchrony * dot_numbers / number
 
-    def at(time: np.ndarray) -> Moments:
-        posture, seen = moving.at(time)
-        life = np.zeros((len(time), number))
-        if lifetime_s is not None:
-            life = np.floor(time[:, None] / lifetime_s + ahead)
-        index = np.broadcast_to(dot_numbers + 65536 * stage.figure, life.shape)
-        drawn = uniforms(Purpose.LIMB_DOTS, seed, index, life, count=2)
-        drawn = drawn.reshape(len(time), number, 2)
-        if places == "joints":
-            one = other = np.floor(drawn[..., 0] * len(moving.dots)).astype(int)
-        else:
-            chosen = np.searchsorted(reach, drawn[..., 0] * reach[-1], side="right")
-            one, other = ends[np.minimum(chosen, len(ends) - 1)].transpose(2, 0, 1)
-        moment = np.arange(len(time))[:, None]
-        share = drawn[..., 1, None]
-        positions = posture[moment, one] * (1 - share) + posture[moment, other] * share
-        return Moments(positions, seen[moment, one] & seen[moment, other])
+    name: Literal["limb_dots"]
+    number: DotCount = Field(description="how many dots")
+    lifetime_s: Lifetime = Field(description="how long each lives; null for ever")
+    asynchrony: Share = Field(1.0, description="0 all anew at once, 1 one after the other")
+    places: Literal["limbs", "joints"] = Field("limbs", description="where they are")
+    seed: Seed = Field(description="seed of what is drawn at random")
 
-    return replace(moving, skeleton=Skeleton(_dot_names(number)), at=at)
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        ends, reach = _segments(moving)
+        dot_numbers = np.arange(self.number)
+        ahead = self.asynchrony * dot_numbers / self.number
+
+        def at(time: np.ndarray) -> Moments:
+            posture, seen = moving.at(time)
+            life = np.zeros((len(time), self.number))
+            if self.lifetime_s is not None:
+                life = np.floor(time[:, None] / self.lifetime_s + ahead)
+            index = np.broadcast_to(dot_numbers + 65536 * context.figure, life.shape)
+            drawn = uniforms(Purpose.LIMB_DOTS, self.seed, index, life, count=2)
+            drawn = drawn.reshape(len(time), self.number, 2)
+            if self.places == "joints":
+                one = other = np.floor(drawn[..., 0] * len(moving.dots)).astype(int)
+            else:
+                chosen = np.searchsorted(reach, drawn[..., 0] * reach[-1], side="right")
+                one, other = ends[np.minimum(chosen, len(ends) - 1)].transpose(2, 0, 1)
+            moment = np.arange(len(time))[:, None]
+            share = drawn[..., 1, None]
+            positions = posture[moment, one] * (1 - share) + posture[moment, other] * share
+            return Moments(positions, seen[moment, one] & seen[moment, other])
+
+        return replace(moving, skeleton=Skeleton(numbered("dot", self.number)), at=at)
 
 
-def _segments(moving: Moving) -> tuple[np.ndarray, np.ndarray]:
+def _segments(moving: MovingDots) -> tuple[np.ndarray, np.ndarray]:
     """Ends of the segments, and the summed lengths up to the end of each in the mean posture."""
     pairs = [(moving.dots.index(a), moving.dots.index(b)) for a, b in moving.skeleton.segments]
     ends = np.array(pairs, dtype=int).reshape(-1, 2)
@@ -105,33 +113,26 @@ def _segments(moving: Moving) -> tuple[np.ndarray, np.ndarray]:
     return ends, np.cumsum(np.sqrt(np.sum(np.nan_to_num(ways) ** 2, axis=1)))
 
 
-def _dot_names(number: int) -> tuple[str, ...]:
-    return tuple(f"dot_{dot + 1}" for dot in range(number))
+def numbered(kind: str, number: int) -> tuple[str, ...]:
+    """Return names of dots: dot_1, dot_2, ..."""
+    return tuple(f"{kind}_{dot + 1}" for dot in range(number))
 
 
-def blur(moving: Moving, stage: Stage, *, sd_mm: float) -> Moving:
+class Blur(Transform):
     """Draw each dot as a Gaussian blob of this standard deviation.
 
     Where blobs overlap their light adds up: with 80 mm and more the body is one blob that changes
     its shape (Barclay, Cutting and Kozlowski, 1978, experiment 3). Keeps all places.
     """
-    return replace(moving, blur_mm=sd_mm)
+
+    name: Literal["blur"]
+    sd_mm: float = Field(strict=True, ge=0, le=1e4, description="standard deviation of the blobs")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        return replace(moving, blur_mm=self.sd_mm)
 
 
-def mask(
-    moving: Moving,
-    stage: Stage,
-    *,
-    kind: str,
-    number: int,
-    box_mm: Sequence[float],
-    centre_mm: Sequence[float],
-    lifetime_s: float | None,
-    speed_mm_s: float,
-    direction_deg: float | None,
-    phases: bool,
-    seed: int,
-) -> Moving:
+class Mask(Transform):
     """Return noise dots in a box that faces the observer, which become a figure of their own.
 
     Dot d, in life ``floor(t / lifetime + d / number)`` (0 where lifetime is null), draws u_1 to u_3
@@ -147,59 +148,71 @@ def mask(
       1994), and if ``phases``, as at ``t + u_3 period``, u_3 of its life 0. It is seen
       when that is.
     """
-    width, height = box_mm
-    right, up = stage.observer[:2]
-    dots = np.arange(number)
-    motion = _motions(moving, seed, number, phases) if kind == "scrambled" else None
-    given = None if direction_deg is None else np.deg2rad(direction_deg)
 
-    def at(time: np.ndarray) -> Moments:
-        life, age = np.zeros((len(time), number)), np.repeat(time[:, None], number, axis=1)
-        if lifetime_s is not None:
-            lived = time[:, None] / lifetime_s + dots / number
-            life = np.floor(lived)
-            age = (lived - life) * lifetime_s
-        drawn = uniforms(
-            Purpose.MASK, seed, np.broadcast_to(dots, life.shape), life, count=3
-        ).reshape(len(time), number, 3)
-        x, y = drawn[..., 0] * width, drawn[..., 1] * height
-        if kind == "linear":
-            heading = 2 * np.pi * drawn[..., 2] if given is None else given
-            x = _wrapped(x + speed_mm_s * np.cos(heading) * age, width)
-            y = _wrapped(y + speed_mm_s * np.sin(heading) * age, height)
-        x, y = (x - width / 2)[..., None], (y - height / 2)[..., None]
-        positions = np.array(centre_mm) + x * right + y * up
-        visible = np.ones(life.shape, dtype=bool)
-        if motion is not None:
-            moved = motion(time)
-            positions, visible = positions + moved.positions, moved.visible
-        return Moments(positions, visible)
+    adds_dots = True
+    name: Literal["mask"]
+    kind: Literal["random", "linear", "scrambled"] = Field(description="how the dots move")
+    number: DotCount = Field(description="how many dots")
+    box_mm: BoxSize = Field(description="width and height in the picture, mm")
+    centre_mm: Vector = Field((0.0, 0.0, 0.0), description="of the box, in the scene")
+    lifetime_s: Lifetime = Field(None, description="how long each stays; null for ever")
+    speed_mm_s: float = Field(0.0, strict=True, ge=0, le=1e5, description="of linear motion")
+    direction_deg: Degrees | None = Field(None, description="of linear motion; null for any")
+    phases: Switch = Field(False, description="whether scrambled dots have clocks of their own")
+    seed: Seed = Field(description="seed of what is drawn at random")
 
-    names = tuple(f"noise_{dot + 1}" for dot in dots)
-    return Moving(Skeleton(names), at, moving.period_s, moving.blur_mm)
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        width, height = self.box_mm
+        right, up = context.observer[:2]
+        dots = np.arange(self.number)
+        motion = self._motion(moving) if self.kind == "scrambled" else None
+        given = None if self.direction_deg is None else np.deg2rad(self.direction_deg)
+
+        def at(time: np.ndarray) -> Moments:
+            life = np.zeros((len(time), self.number))
+            age = np.repeat(time[:, None], self.number, axis=1)
+            if self.lifetime_s is not None:
+                lived = time[:, None] / self.lifetime_s + dots / self.number
+                life = np.floor(lived)
+                age = (lived - life) * self.lifetime_s
+            drawn = uniforms(
+                Purpose.MASK, self.seed, np.broadcast_to(dots, life.shape), life, count=3
+            ).reshape(len(time), self.number, 3)
+            x, y = drawn[..., 0] * width, drawn[..., 1] * height
+            if self.kind == "linear":
+                heading = 2 * np.pi * drawn[..., 2] if given is None else given
+                x = _wrapped(x + self.speed_mm_s * np.cos(heading) * age, width)
+                y = _wrapped(y + self.speed_mm_s * np.sin(heading) * age, height)
+            x, y = (x - width / 2)[..., None], (y - height / 2)[..., None]
+            positions = np.array(self.centre_mm) + x * right + y * up
+            visible = np.ones(life.shape, dtype=bool)
+            if motion is not None:
+                moved = motion(time)
+                positions, visible = positions + moved.positions, moved.visible
+            return Moments(positions, visible)
+
+        skeleton = Skeleton(numbered("noise", self.number))
+        return MovingDots(skeleton, at, moving.period_s, moving.blur_mm)
+
+    def _motion(self, moving: MovingDots) -> Callable[[np.ndarray], Moments]:
+        """How noise dots move about their places: the figure's dots about their means."""
+        dots = np.arange(self.number)
+        source = dots % len(moving.dots)
+        mean = moving.mean[source]
+        drawn = uniforms(Purpose.MASK, self.seed, dots, 0, count=3).reshape(-1, 3)[:, 2]
+        ahead = drawn * moving.period_s
+
+        def at(time: np.ndarray) -> Moments:
+            if not self.phases:
+                positions, visible = moving.at(time)
+                return Moments(positions[:, source] - mean, visible[:, source])
+            shown = [moving.at(time + shift) for shift in ahead]
+            positions = np.stack([m.positions[:, s] for m, s in zip(shown, source, strict=True)], 1)
+            visible = np.stack([m.visible[:, s] for m, s in zip(shown, source, strict=True)], 1)
+            return Moments(positions - mean, visible)
+
+        return at
 
 
 def _wrapped(place: np.ndarray, size: float) -> np.ndarray:
     return place - np.floor(place / size) * size
-
-
-def _motions(
-    moving: Moving, seed: int, number: int, phases: bool
-) -> Callable[[np.ndarray], Moments]:
-    """How noise dots move about their places: the figure's dots about their means."""
-    dots = np.arange(number)
-    source = dots % len(moving.dots)
-    mean = moving.mean[source]
-    drawn = uniforms(Purpose.MASK, seed, dots, 0, count=3).reshape(-1, 3)[:, 2]
-    ahead = drawn * moving.period_s
-
-    def at(time: np.ndarray) -> Moments:
-        if not phases:
-            positions, visible = moving.at(time)
-            return Moments(positions[:, source] - mean, visible[:, source])
-        shown = [moving.at(time + shift) for shift in ahead]
-        positions = np.stack([m.positions[:, s] for m, s in zip(shown, source, strict=True)], 1)
-        visible = np.stack([m.visible[:, s] for m, s in zip(shown, source, strict=True)], 1)
-        return Moments(positions - mean, visible)
-
-    return at

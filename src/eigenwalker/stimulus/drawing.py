@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,8 +13,7 @@ from eigenwalker.plotting.encoding import shades_between
 from eigenwalker.plotting.raster import draw_discs, draw_lines
 from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
 from eigenwalker.stimulus.mannequin_palette import put_wood, wood_shades
-from eigenwalker.stimulus.moving_dots import Moving
-from eigenwalker.stimulus.player import Played, scene
+from eigenwalker.stimulus.player import Played
 from eigenwalker.stimulus.solids import Look, draw_hulls
 
 if TYPE_CHECKING:
@@ -63,12 +62,12 @@ def drawn_frames(
     played = stimulus.play(time)
     places = places_px(stimulus, played) - 0.5  # pixels are counted from their centres
     places[~played.visible] = np.nan
-    figures = scene(stimulus.content)
+    figures = stimulus.scene
     shape = shape or (stimulus.display.height_px, stimulus.display.width_px)
     canvas = np.zeros(shape, np.uint8)
     ends = np.cumsum([0, *(len(figure.dots) for figure in figures)])
     groups = [slice(a, b) for a, b in itertools.pairwise(ends)]
-    bodies = mannequins(stimulus, figures)
+    bodies = mannequins(stimulus)
     for moment, places_now in enumerate(places):
         canvas.fill(0)
         for number, (figure, dots) in enumerate(zip(figures, groups, strict=True)):
@@ -88,18 +87,18 @@ def drawn_frames(
 
 def drawn_shades(stimulus: Stimulus) -> np.ndarray:
     """Return the colours of what `drawn_frames` yields: array of shape (256, 3), 0 to 255."""
-    shades = wood_shades if mannequins(stimulus, scene(stimulus.content)) else shades_between
+    shades = wood_shades if mannequins(stimulus) else shades_between
     return shades(stimulus.display.background, stimulus.display.colour)
 
 
-def mannequins(stimulus: Stimulus, figures: Sequence[Moving]) -> dict[int, Mannequin]:
+def mannequins(stimulus: Stimulus) -> dict[int, Mannequin]:
     """Return the mannequins among figures by number: masks, limb dots and blobs have no limbs."""
     if stimulus.display.style != "mannequin":
         return {}
-    heights = body_heights(stimulus.content)
+    heights = body_heights(stimulus)
     return {
         number: mannequin_of(figure.skeleton, heights[number])
-        for number, figure in enumerate(figures)
+        for number, figure in enumerate(stimulus.scene)
         if figure.skeleton.segments and figure.blur_mm == 0
     }
 
@@ -112,7 +111,7 @@ def hulls_of(
     for number, body in bodies.items():
         mine = played.figures == number
         places, visible = played.positions[moment, mine], played.visible[moment, mine]
-        carved.append(hulls_at(body, places, visible, stimulus.content["view"]))
+        carved.append(hulls_at(body, places, visible, stimulus.view))
     return Hulls(*(np.concatenate(parts) for parts in zip(*carved, strict=True)))
 
 

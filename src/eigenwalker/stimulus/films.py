@@ -18,7 +18,6 @@ from eigenwalker.stimulus.drawing import (
     places_px,
 )
 from eigenwalker.stimulus.outlines import svg_hulls
-from eigenwalker.stimulus.player import scene
 from eigenwalker.stimulus.stimulus import Stimulus
 
 
@@ -93,8 +92,8 @@ def drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
         f'height="{display.height_px}" viewBox="0 0 {display.width_px} {display.height_px}">',
         f'<rect width="100%" height="100%" fill="{display.background}"/>',
     ]
-    figures = scene(stimulus.content)
-    bodies = mannequins(stimulus, figures)
+    figures = stimulus.scene
+    bodies = mannequins(stimulus)
     if bodies:
         look = look_of(stimulus, (display.height_px, display.width_px))
         look = look._replace(middle_px=(display.width_px / 2, display.height_px / 2))

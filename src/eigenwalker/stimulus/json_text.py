@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-MOST_BYTES = 64_000_000
+MAX_BYTES = 64_000_000
 
 
 def written(content: dict[str, Any]) -> str:
@@ -44,8 +44,8 @@ def parsed(text: str) -> Any:
         If it is no JSON, is nested without end, has a name twice or a number that is not finite.
 
     """
-    if len(text) > MOST_BYTES:
-        raise ValueError(f"A stimulus has {MOST_BYTES} letters at most; this has {len(text)}.")
+    if len(text) > MAX_BYTES:
+        raise ValueError(f"A stimulus has {MAX_BYTES} letters at most; this has {len(text)}.")
     try:
         return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_twice)
     except RecursionError:

@@ -13,8 +13,8 @@ from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.layout import DOT_MM
 from eigenwalker.plotting.projection import observer_axes
 from eigenwalker.stimulus.figure import Figure
-from eigenwalker.stimulus.player import scene
-from eigenwalker.stimulus.stimulus import Display, Stimulus, Style, Timing, View
+from eigenwalker.stimulus.schema import Display, Style, Timing, View
+from eigenwalker.stimulus.stimulus import Stimulus
 
 FILLED = 0.84
 """Share of the picture that figures fill where no size is asked for."""
@@ -93,7 +93,7 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
     """A stimulus with its figures in the middle of the picture and as large as it allows."""
     low, high = bare.extent()
     axes = observer_axes(bare.view.view_deg, bare.view.elevation_deg)
-    middles = np.mean([moving.middle for moving in scene(bare.content)], axis=0)
+    middles = np.mean([moving.middle for moving in bare.scene], axis=0)
     middle = np.array([*(low + high) / 2, axes[2] @ middles]) @ axes
     view = replace(
         bare.view, centre_mm=tuple(middle.round(3).tolist()), eye_distance_mm=eye_distance_mm

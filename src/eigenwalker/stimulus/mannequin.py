@@ -16,7 +16,9 @@ import numpy as np
 
 from eigenwalker.core.skeleton import Skeleton
 from eigenwalker.plotting.projection import observer_axes
-from eigenwalker.stimulus.player import NEAREST_MM, figure_of
+from eigenwalker.stimulus.player import NEAREST_MM
+from eigenwalker.stimulus.schema import View
+from eigenwalker.stimulus.stimulus import Stimulus
 
 UNSIDED = ("head", "sternum", "pelvis")
 
@@ -64,17 +66,17 @@ def _shape() -> dict[str, Any]:
     return json.loads(text)
 
 
-def body_heights(content: Mapping[str, Any]) -> list[float]:
+def body_heights(stimulus: Stimulus) -> list[float]:
     """Return the body height of each figure of a stimulus in mm, by which its mannequin is thick.
 
     1.15 times the greatest extent of the mean posture on an axis, from the head's middle to the
     ankles of who stands, of the figure as it stands in the file; times the factors of ``resize``.
     """
     heights = []
-    for number, figure in enumerate(content["figures"]):
-        mean = figure_of(figure).mean
+    for number, figure in enumerate(stimulus.figures):
+        mean = figure.moving_dots().mean
         height = _shape()["body_height"] * float((np.nanmax(mean, 0) - np.nanmin(mean, 0)).max())
-        for step in content["transforms"]:
+        for step in stimulus.transforms:
             if step["name"] == "resize" and number in (step["figures"] or [number]):
                 height *= step["factor"]
         heights.append(height)
@@ -129,9 +131,7 @@ def _of_side(piece: Mapping[str, Any], side: str) -> dict[str, Any]:
     return {**piece, **ends, **unless}
 
 
-def hulls_at(
-    mannequin: Mannequin, positions: np.ndarray, visible: np.ndarray, view: Mapping[str, Any]
-) -> Hulls:
+def hulls_at(mannequin: Mannequin, positions: np.ndarray, visible: np.ndarray, view: View) -> Hulls:
     """Return the pieces of a figure at one moment that are to be seen.
 
     A piece of which a dot is not visible is left out, and one that reaches the observer's eye.
@@ -143,15 +143,14 @@ def hulls_at(
     positions : array of shape (dot, 3)
         Millimetres in the scene.
     visible : array of bool of shape (dot,)
-    view : mapping
-        The part ``view`` of a stimulus.
+    view : View
 
     """
-    axes = observer_axes(view["view_deg"], view["elevation_deg"])
-    known = np.where(visible[:, None], positions - np.array(view["centre_mm"]), 0.0)
+    axes = observer_axes(view.view_deg, view.elevation_deg)
+    known = np.where(visible[:, None], positions - np.array(view.centre_mm), 0.0)
     middles = mannequin.weights @ (known @ axes.T)
     seen = ~((mannequin.weights != 0) & ~visible).any(axis=(1, 2))
-    if view["eye_distance_mm"] is not None:
-        nearest = view["eye_distance_mm"] - NEAREST_MM
+    if view.eye_distance_mm is not None:
+        nearest = view.eye_distance_mm - NEAREST_MM
         seen &= (middles[..., 2] + mannequin.radii_mm <= nearest).all(axis=1)
     return Hulls(middles[seen], mannequin.radii_mm[seen], mannequin.tones[seen])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.walker import Walker
 
 N_SAMPLES = 64
 """Moments of the period over which means are taken: exact up to the 31st harmonic."""
@@ -32,7 +33,7 @@ class Moments(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
+class MovingDots:
     """A figure as a function of time.
 
     Parameters
@@ -58,6 +59,20 @@ class Moving:
         """Names of the dots."""
         return self.skeleton.markers
 
+    def moved(self, change: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> MovingDots:
+        """Return dots whose positions are a function of these positions and the time."""
+
+        def at(time: np.ndarray) -> Moments:
+            positions, visible = self.at(time)
+            return Moments(change(positions, time), visible)
+
+        return replace(self, at=at)
+
+    @property
+    def sample_times(self) -> np.ndarray:
+        """Sixty-four moments, evenly spaced over the period from 0 s."""
+        return np.arange(N_SAMPLES) * self.period_s / N_SAMPLES
+
     @cached_property
     def mean(self) -> np.ndarray:
         """Mean place of each dot: array of shape (dot, 3).
@@ -65,8 +80,7 @@ class Moving:
         Over 64 moments, evenly spaced from 0 s over the period; those at which it is not known are
         left out.
         """
-        moments = np.arange(N_SAMPLES) * self.period_s / N_SAMPLES
-        positions = self.at(moments).positions
+        positions = self.at(self.sample_times).positions
         known = ~np.isnan(positions)
         total = np.where(known, positions, 0.0).sum(axis=0)
         count = known.sum(axis=0)
@@ -120,29 +134,19 @@ def outward(parents: Sequence[int]) -> list[int]:
     return sorted(range(len(parents)), key=depth)
 
 
-def walking(
-    skeleton: Skeleton,
-    p0: np.ndarray,
-    p: np.ndarray,
-    harmonics: np.ndarray,
-    phases: np.ndarray,
-    frequency_hz: float,
-) -> Moving:
-    """Return a walker as a moving figure, ``p0 + sum_i p_i sin(h_i 2 pi f t + phi_i)``.
-
-    Eq. 3 of Troje (2002), its first phase being 0 at 0 s where the phases say so.
-    """
-    visible = np.ones(len(p0), dtype=bool)
+def walking(walker: Walker, skeleton: Skeleton) -> MovingDots:
+    """Return a walker as moving dots; its first phase is 0 at 0 s where the phases say so."""
+    if walker.markers != skeleton.markers:
+        skeleton = Skeleton(walker.markers)
 
     def at(time: np.ndarray) -> Moments:
-        cycle = 2 * np.pi * frequency_hz * time[:, None]
-        positions = p0 + np.tensordot(np.sin(harmonics * cycle + phases), p, axes=1)
-        return Moments(positions, np.broadcast_to(visible, positions.shape[:2]))
+        positions = walker.positions(2 * np.pi * walker.frequency_hz * time)
+        return Moments(positions, np.ones(positions.shape[:2], dtype=bool))
 
-    return Moving(skeleton, at, 1 / frequency_hz)
+    return MovingDots(skeleton, at, walker.period_s)
 
 
-def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: bool) -> Moving:
+def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: bool) -> MovingDots:
     """Return sampled trajectories as a moving figure, a straight line between frames.
 
     Before the first and after the last frame it holds still, or begins anew one frame after the
@@ -177,4 +181,4 @@ def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: 
         positions = known[before] * (1 - share) + known[after] * share
         return Moments(positions, np.asarray(~np.isnan(positions).any(axis=2)))
 
-    return Moving(skeleton, at, (n_frames if repeat else max(n_frames - 1, 1)) / rate_hz)
+    return MovingDots(skeleton, at, (n_frames if repeat else max(n_frames - 1, 1)) / rate_hz)

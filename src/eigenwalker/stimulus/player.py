@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.core.skeleton import Skeleton
 from eigenwalker.plotting.projection import observer_axes
-from eigenwalker.stimulus.moving_dots import Moments, Moving, sampled, walking
-from eigenwalker.stimulus.transform_context import Stage
-from eigenwalker.stimulus.transforms import TRANSFORMS
+from eigenwalker.stimulus.figure import Figure
+from eigenwalker.stimulus.moving_dots import MovingDots
+from eigenwalker.stimulus.schema import View
+from eigenwalker.stimulus.transform_types import Context, Transform
 
 NEAREST_MM = 1.0
 """Nearer to the eye than this a dot of a perspective picture is not seen."""
@@ -45,58 +44,46 @@ class Played(NamedTuple):
     picture: np.ndarray
 
 
-def scene(content: Mapping[str, Any]) -> list[Moving]:
+def scene(
+    figures: Sequence[Figure], transforms: Sequence[Transform], view: View
+) -> tuple[MovingDots, ...]:
     """Return the figures of a stimulus, transformed and set in the scene, then its masks.
 
     The chain acts on each figure in the figure's own frame; then the figure is turned by its
     heading and moved to its position. A mask is made from its figure as it is at that place of the
     chain, in the scene, and no later transform changes it.
-
-    Parameters
-    ----------
-    content : mapping
-        As `content.checked` returns it.
-
     """
-    figures = [figure_of(figure) for figure in content["figures"]]
-    masks: list[Moving] = []
-    for step in content["transforms"]:
-        transform = TRANSFORMS[step["name"]]
-        parameters = {k: v for k, v in step.items() if k not in ("name", "figures")}
-        chosen = range(len(figures)) if step["figures"] is None else step["figures"]
-        for number in chosen:
-            place = content["figures"][number]
-            if step["name"] == "morph":
-                parameters["walker"] = _walker(step["walker"], figures[number].skeleton)
-            if transform.adds:
-                source = _placed(figures[number], place)
-                stage = Stage(_observer(content, 0.0), number)
-                masks.append(transform.function(source, stage, **parameters))
+    moving = [figure.moving_dots() for figure in figures]
+    masks = []
+    for step in transforms:
+        for number in range(len(moving)) if step.figures is None else step.figures:
+            figure = figures[number]
+            if step.adds_dots:
+                context = Context(_observer(view, 0.0), number)
+                masks.append(step.apply(_placed(moving[number], figure), context))
             else:
-                stage = Stage(_observer(content, place["heading_deg"]), number)
-                figures[number] = transform.function(figures[number], stage, **parameters)
-    placed = [_placed(f, p) for f, p in zip(figures, content["figures"], strict=True)]
-    return placed + masks
+                context = Context(_observer(view, figure.heading_deg), number)
+                moving[number] = step.apply(moving[number], context)
+    return (*map(_placed, moving, figures), *masks)
 
 
-def play(content: Mapping[str, Any], time: np.ndarray) -> Played:
-    """Return all dots of a stimulus at the given seconds."""
-    shown = scene(content)
+def play(shown: Sequence[MovingDots], view: View, time: np.ndarray) -> Played:
+    """Return all dots of a scene at the given seconds."""
     moments = [moving.at(time) for moving in shown]
     positions = np.concatenate([moment.positions for moment in moments], axis=1)
     visible = np.concatenate([moment.visible for moment in moments], axis=1)
-    picture, seen = in_picture(positions, content["view"])
+    picture, in_front = in_picture(positions, view)
     return Played(
         time,
         tuple(dot for moving in shown for dot in moving.dots),
         np.repeat(np.arange(len(shown)), [len(moving.dots) for moving in shown]),
         positions,
-        visible & seen,
+        visible & in_front,
         picture,
     )
 
 
-def in_picture(positions: np.ndarray, view: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+def in_picture(positions: np.ndarray, view: View) -> tuple[np.ndarray, np.ndarray]:
     """Return where dots are in the picture, and whether they are in front of the eye.
 
     As `project`, measured from the centre of the view. In perspective, things as far from the eye
@@ -106,71 +93,36 @@ def in_picture(positions: np.ndarray, view: Mapping[str, Any]) -> tuple[np.ndarr
     ----------
     positions : array of shape (..., 3)
         Millimetres in the scene.
-    view : mapping
-        The part ``view`` of a stimulus.
+    view : View
 
     Returns
     -------
     picture : array of shape (..., 2)
         Millimetres to the right of and above the centre.
-    seen : array of bool of shape (...)
+    in_front : array of bool of shape (...)
 
     """
-    axes = observer_axes(view["view_deg"], view["elevation_deg"])
-    seen = (positions - np.array(view["centre_mm"])) @ axes.T
+    seen = (positions - np.array(view.centre_mm)) @ _observer(view, 0.0).T
     known = np.asarray(~np.isnan(seen).any(axis=-1))
-    if view["eye_distance_mm"] is None:
+    if view.eye_distance_mm is None:
         return seen[..., :2], known
-    away = view["eye_distance_mm"] - seen[..., 2]
-    before = known & (away >= NEAREST_MM)
-    scale = np.where(before, view["eye_distance_mm"] / np.where(before, away, 1.0), np.nan)
-    return seen[..., :2] * scale[..., None], before
+    away = view.eye_distance_mm - seen[..., 2]
+    in_front = known & (away >= NEAREST_MM)
+    scale = np.where(in_front, view.eye_distance_mm / np.where(in_front, away, 1.0), np.nan)
+    return seen[..., :2] * scale[..., None], in_front
 
 
-def _observer(content: Mapping[str, Any], heading_deg: float) -> np.ndarray:
+def _observer(view: View, heading_deg: float) -> np.ndarray:
     """The observer's axes in the frame of a figure that is turned to its left by a heading."""
-    view = content["view"]
-    return observer_axes(view["view_deg"] + heading_deg, view["elevation_deg"])
+    return observer_axes(view.view_deg + heading_deg, view.elevation_deg)
 
 
-def figure_of(figure: Mapping[str, Any]) -> Moving:
-    """Return a figure of a stimulus as it stands in the file, in its own frame."""
-    given = figure["walker"] or figure["trajectories"]
-    skeleton = Skeleton(
-        tuple(given["markers"]),
-        tuple(tuple(link) for link in figure["segments"]),
-        tuple(tuple(pair) for pair in figure["pairs"]),
-    )
-    if figure["walker"] is not None:
-        return _walker(given, skeleton)
-    return sampled(skeleton, given["samples"], given["rate_hz"], repeat=given["repeat"])
-
-
-def _walker(walker: Mapping[str, Any], skeleton: Skeleton) -> Moving:
-    n_markers = len(walker["markers"])
-    if tuple(walker["markers"]) != skeleton.markers:
-        skeleton = Skeleton(tuple(walker["markers"]))
-    return walking(
-        skeleton,
-        np.array(walker["p0"], dtype=float),
-        np.array(walker["p"], dtype=float).reshape(-1, n_markers, 3),
-        np.array(walker["harmonics"], dtype=float),
-        np.array(walker["phases"], dtype=float),
-        walker["frequency_hz"],
-    )
-
-
-def _placed(moving: Moving, figure: Mapping[str, Any]) -> Moving:
+def _placed(moving: MovingDots, figure: Figure) -> MovingDots:
     """A figure turned by its heading and moved to its place in the scene."""
-    offset = np.array(figure["position_mm"], dtype=float)
-    heading = np.deg2rad(figure["heading_deg"])
+    offset = np.array(figure.position_mm, dtype=float)
+    heading = np.deg2rad(figure.heading_deg)
     if not offset.any() and heading == 0:
         return moving
     cosine, sine = np.cos(heading), np.sin(heading)
     turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-
-    def at(time: np.ndarray) -> Moments:
-        positions, visible = moving.at(time)
-        return Moments(positions @ turn.T + offset, visible)
-
-    return replace(moving, at=at)
+    return moving.moved(lambda positions, time: positions @ turn.T + offset)

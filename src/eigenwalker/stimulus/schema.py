@@ -1,331 +1,333 @@
-"""What a stimulus file may hold: its parts, its schema, and what is amiss with one."""
+"""What a stimulus file may hold, as models that check a file and give the published JSON Schema.
+
+``python -m eigenwalker.stimulus.schema`` prints ``schema.json``.
+"""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
+import json
+import reprlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import groupby
+from typing import Annotated, Any, Literal, get_args
 
-import numpy as np
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic.json_schema import GenerateJsonSchema
 
-from eigenwalker.stimulus.fields import (
-    Boolean,
-    Choice,
-    Field,
-    Kind,
-    List,
-    Nullable,
-    Number,
-    Object,
-    Refused,
-    Text,
-    Words,
+from eigenwalker.stimulus.body_transforms import Conflict, Ellipses, Gain, Occlude, Perturb
+from eigenwalker.stimulus.dot_transforms import Blur, LimbDots, Mask, Scramble, numbered
+from eigenwalker.stimulus.figure import FigurePart
+from eigenwalker.stimulus.spatial_transforms import Invert, Mirror, Resize, Rotate, Translate
+from eigenwalker.stimulus.time_transforms import (
+    Delay,
+    Freeze,
+    Morph,
+    PhaseScramble,
+    Reverse,
+    Speed,
+    Start,
 )
-from eigenwalker.stimulus.transforms import (
-    DEG,
-    FIGURES,
-    MARKER_NAME,
-    MOST_FIGURES,
-    MOST_MARKERS,
-    PLACE,
-    TRANSFORMS,
-    WALKER,
+from eigenwalker.stimulus.transform_types import (
+    MAX_FIGURES,
+    Degrees,
+    KnownNames,
+    Length,
+    Part,
+    Transform,
+    Vector,
+    about,
+    problem,
+    whole,
 )
 
 FORMAT = "eigenwalker stimulus"
 VERSION = 1
-MOST_SAMPLES = 3_000_000
-"""Numbers in all sampled trajectories of a file."""
-MOST_TRANSFORMS = 64
-MOST_WORK = 1_000_000
+MAX_TRANSFORMS = 64
+MAX_WORK = 1_000_000
 """Dots that may have to be computed for one moment."""
-SAMPLE_LIMIT_MM = 1e7
+MAX_PROBLEMS = 20
+SHOULDERS_AND_HIPS = ("left_shoulder", "left_hip", "right_shoulder", "right_hip")
+
+_Transforms = (
+    Invert | Mirror | Rotate | Resize | Translate
+    | Speed | Reverse | Start | Freeze | PhaseScramble | Delay | Morph
+    | Occlude | Gain | Conflict | Ellipses | Perturb
+    | Scramble | LimbDots | Blur | Mask
+)  # fmt: skip
+AnyTransform = Annotated[_Transforms, Field(discriminator="name")]
+TRANSFORMS: dict[str, type[Transform]] = {
+    get_args(kind.model_fields["name"].annotation)[0]: kind for kind in get_args(_Transforms)
+}
+"""Transforms by their names in files; `docs/stimulus-format.md` gives their formulas too."""
+Pixels = Annotated[int, Field(strict=True, ge=16, le=8192), BeforeValidator(whole)]
+Colour = Annotated[str, Field(strict=True, min_length=7, max_length=7, pattern="^#[0-9a-fA-F]{6}$")]
+Style = Literal["dots", "sticks", "mannequin"]
+ProvenanceName = Annotated[str, Field(strict=True, min_length=1, max_length=100)]
+ProvenanceText = Annotated[str, Field(strict=True, max_length=2000)]
 
 
 @dataclass(frozen=True)
-class Samples(Kind):
-    """Numbers of shape (time, dot, 3), null where missing; kept as an array."""
+class View(KnownNames):
+    """From where a stimulus is seen; see `project`. The centre is in the middle of the picture."""
 
-    def checked(self, value: Any, where: str, amiss: list[str]) -> Any:
-        """Return an array with NaN where a sample is missing."""
-        fault = f"{where}: expected two frames or more of dots of x, y, z (numbers or null)"
-        samples = value.astype(float) if isinstance(value, np.ndarray) else self._array(value)
-        if samples is None or samples.ndim != 3 or samples.shape[2] != 3 or len(samples) < 2:
-            amiss.append(fault)
-            return None
-        if samples.size > MOST_SAMPLES:
-            amiss.append(f"{where}: expected {MOST_SAMPLES} numbers at most, got {samples.size}")
-            return None
-        if np.isinf(samples).any() or np.nanmax(np.abs(samples), initial=0) > SAMPLE_LIMIT_MM:
-            amiss.append(f"{where}: expected numbers within {SAMPLE_LIMIT_MM:g} mm")
-            return None
-        if not (~np.isnan(samples)).all(axis=2).any():
-            amiss.append(f"{where}: expected dots to be seen at some time, and none ever is")
-            return None
-        return samples
-
-    def _array(self, value: Any) -> np.ndarray | None:
-        if not isinstance(value, list | tuple) or len(value) > MOST_SAMPLES:
-            return None
-        try:
-            flat = itertools.chain.from_iterable(itertools.chain.from_iterable(value))
-            if not set(map(type, flat)) <= {int, float, type(None)}:
-                return None
-            return np.array(value, dtype=float)
-        except (TypeError, ValueError, OverflowError):
-            return None
-
-    def schema(self) -> dict[str, Any]:
-        """Return the JSON Schema."""
-        place = List(Nullable(Number(-SAMPLE_LIMIT_MM, SAMPLE_LIMIT_MM)), 3, 3).schema()
-        dots = {"type": "array", "items": place, "minItems": 1, "maxItems": MOST_MARKERS}
-        return {"type": "array", "items": dots, "minItems": 2}
-
-
-LINK = List(MARKER_NAME, 2, 2)
-TRAJECTORIES = Object(
-    {
-        "markers": Field(List(MARKER_NAME, 1, MOST_MARKERS, distinct=True), "names of the dots"),
-        "rate_hz": Field(Number(0, 10_000, above=0), "frames a second"),
-        "repeat": Field(Boolean(), "whether it begins anew after the last frame", False),
-        "samples": Field(Samples(), "frames of dots of x, y, z in mm; null is missing"),
-        "speed_mm_s": Field(Nullable(Number(-1e5, 1e5)), "forward speed that was taken out", None),
-    }
-)
-FIGURE = Object(
-    {
-        "walker": Field(Nullable(WALKER), "coefficients, for what is periodic", None),
-        "trajectories": Field(Nullable(TRAJECTORIES), "samples, for what is not", None),
-        "segments": Field(List(LINK, 0, 5000), "who is joined to whom", ()),
-        "pairs": Field(List(LINK, 0, 500), "left dots with their right counterparts", ()),
-        "position_mm": Field(PLACE, "where the figure's origin is in the scene", (0.0, 0.0, 0.0)),
-        "heading_deg": Field(DEG, "by how much it is turned to its left", 0.0),
-    }
-)
-VIEW = Object(
-    {
-        "view_deg": Field(DEG, "0 is the front, 90 in profile to the right", 0.0),
-        "elevation_deg": Field(DEG, "of the observer above the horizontal", 0.0),
-        "eye_distance_mm": Field(
-            Nullable(Number(0, 1e7, above=0)), "from the centre; null for orthographic", None
-        ),
-        "centre_mm": Field(PLACE, "place of the scene in the middle of the picture"),
-    }
-)
-TIMING = Object(
-    {
-        "duration_s": Field(Number(0, 3600, above=0), "how long it is shown"),
-        "rate_hz": Field(Number(1, 1000), "frames a second of films and tables", 60.0),
-    }
-)
-COLOUR = Text(7, 7, "#[0-9a-fA-F]{6}")
-DISPLAY = Object(
-    {
-        "width_px": Field(Number(16, 8192, whole=True), "of the picture", 512),
-        "height_px": Field(Number(16, 8192, whole=True), "of the picture", 512),
-        "px_per_mm": Field(Number(0, 100, above=0), "pixels a millimetre of the walker"),
-        "dot_px": Field(Number(0, 1000, above=0), "diameter of a dot", 8.0),
-        "style": Field(Choice(("dots", "sticks", "mannequin")), "what is drawn", "dots"),
-        "colour": Field(COLOUR, "of the figures", "#ffffff"),
-        "background": Field(COLOUR, "of the rest", "#000000"),
-        "viewing_distance_mm": Field(
-            Nullable(Number(0, 1e6, above=0)), "from the observer's eye to the screen", None
-        ),
-        "px_per_cm": Field(Nullable(Number(0, 1e4, above=0)), "of the screen", None),
-    }
-)
+    centre_mm: Annotated[Vector, about("place of the scene in the middle of the picture")]
+    view_deg: Annotated[Degrees, about("0 is the front, 90 in profile to the right")] = 0.0
+    elevation_deg: Annotated[Degrees, about("of the observer above the horizontal")] = 0.0
+    eye_distance_mm: Annotated[
+        Annotated[float, Field(strict=True, gt=0, le=1e7)] | None,
+        about("from the centre; null for orthographic"),
+    ] = None
 
 
 @dataclass(frozen=True)
-class Step(Kind):
-    """A transform with its parameters."""
+class Timing(KnownNames):
+    """How long a stimulus is shown, and the frames a second of films and tables of it."""
 
-    def checked(self, value: Any, where: str, amiss: list[str]) -> Any:
-        """Return a dict of the name and all parameters."""
-        name = value.get("name") if isinstance(value, Mapping) else None
-        if not isinstance(name, str) or name not in TRANSFORMS:
-            amiss.append(
-                f"{where}: expected the name of a transform among {list(TRANSFORMS)}, got "
-                f"{str(name)[:40]!r}"
-            )
-            return None
-        parameters = {key: given for key, given in value.items() if key != "name"}
-        kept = self._object(name).checked(parameters, f"{where} ({name})", amiss)
-        return None if kept is None else {"name": name, **kept}
-
-    @staticmethod
-    def _object(name: str) -> Object:
-        return Object({**TRANSFORMS[name].fields, "figures": FIGURES})
-
-    def schema(self) -> dict[str, Any]:
-        """Return the JSON Schema."""
-        kinds = []
-        for name, transform in TRANSFORMS.items():
-            schema = self._object(name).schema()
-            about = (transform.function.__doc__ or "").split("\n\n")[0]
-            kinds.append(
-                {
-                    "title": name,
-                    "description": about,
-                    **schema,
-                    "properties": {"name": {"const": name}, **schema["properties"]},
-                    "required": ["name", *schema["required"]],
-                }
-            )
-        return {"oneOf": kinds}
+    duration_s: Annotated[float, Field(strict=True, gt=0, le=3600), about("how long it is shown")]
+    rate_hz: Annotated[
+        float, Field(strict=True, ge=1, le=1000), about("frames a second of films and tables")
+    ] = 60.0
 
 
-STIMULUS = Object(
-    {
-        "format": Field(Choice((FORMAT,)), "what this file is"),
-        "version": Field(Number(VERSION, VERSION, whole=True), "of the format"),
-        "figures": Field(List(FIGURE, 1, MOST_FIGURES), "who is seen"),
-        "transforms": Field(List(Step(), 0, MOST_TRANSFORMS), "what is done, in this order", ()),
-        "view": Field(VIEW, "from where it is seen"),
-        "timing": Field(TIMING, "how long"),
-        "display": Field(DISPLAY, "how it is drawn"),
-        "provenance": Field(Words(), "source, licence, program, citation ...", {}),
-    }
-)
+@dataclass(frozen=True)
+class Display(KnownNames):
+    """How a stimulus is drawn, and before what screen its observer sits."""
+
+    px_per_mm: Annotated[
+        float, Field(strict=True, gt=0, le=100), about("pixels a millimetre of the walker")
+    ]
+    width_px: Annotated[Pixels, about("of the picture")] = 512
+    height_px: Annotated[Pixels, about("of the picture")] = 512
+    dot_px: Annotated[float, Field(strict=True, gt=0, le=1000), about("diameter of a dot")] = 8.0
+    style: Annotated[Style, about("what is drawn")] = "dots"
+    colour: Annotated[Colour, about("of the figures")] = "#ffffff"
+    background: Annotated[Colour, about("of the rest")] = "#000000"
+    viewing_distance_mm: Annotated[
+        Annotated[float, Field(strict=True, gt=0, le=1e6)] | None,
+        about("from the observer's eye to the screen"),
+    ] = None
+    px_per_cm: Annotated[
+        Annotated[float, Field(strict=True, gt=0, le=1e4)] | None, about("of the screen")
+    ] = None
 
 
-def schema() -> dict[str, Any]:
-    """Return the published JSON Schema of stimulus files (draft 2020-12)."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "eigenwalker stimulus",
-        "description": (
-            "Figures that move, the chain of transforms applied to them, and how they are shown. "
-            "Millimetres, seconds, hertz; x forward, y to the walker's left, z up. "
-            "docs/stimulus-format.md says what each transform does."
-        ),
-        **STIMULUS.schema(),
-    }
+def _few(value: Any) -> Any:
+    if isinstance(value, Mapping) and len(value) > 30:
+        raise problem("expected an object of 30 texts at most")
+    return value
 
 
-def checked(content: Any) -> dict[str, Any]:
-    """Return the content of a stimulus in its plain form, with defaults filled in.
+class StimulusFile(Part):
+    """Figures that move, the chain of transforms applied to them, and how they are shown.
+
+    Millimetres, seconds, hertz; x forward, y to the walker's left, z up. docs/stimulus-format.md
+    says what each transform does.
+    """
+
+    model_config = ConfigDict(title=FORMAT)
+
+    format: Literal["eigenwalker stimulus"] = Field(description="what this file is")
+    version: Annotated[int, Field(strict=True, ge=VERSION, le=VERSION), BeforeValidator(whole)] = (
+        Field(description="of the format")
+    )
+    figures: Annotated[tuple[FigurePart, ...], Length(1, MAX_FIGURES)] = Field(
+        description="who is seen"
+    )
+    transforms: Annotated[tuple[AnyTransform, ...], Length(0, MAX_TRANSFORMS)] = Field(
+        (), description="what is done, in this order"
+    )
+    view: View = Field(description="from where it is seen")
+    timing: Timing = Field(description="how long")
+    display: Display = Field(description="how it is drawn")
+    provenance: Annotated[
+        dict[ProvenanceName, ProvenanceText], Field(max_length=30), BeforeValidator(_few)
+    ] = Field({}, description="source, licence, program, citation ...")
+
+    @model_validator(mode="after")
+    def _chain_fits(self) -> StimulusFile:
+        _, problems = _follow_chain(self)
+        if problems:
+            raise problem("; ".join(problems))
+        return self
+
+    @property
+    def dots_computed(self) -> int:
+        """How many dots have to be computed for one moment."""
+        return _follow_chain(self)[0]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content as JSON has it, with all defaults; samples stay an array."""
+        content = self.model_dump()
+        for figure in content["figures"]:
+            del figure["trajectories" if figure["trajectories"] is None else "walker"]
+        return {**content, "transforms": [step.to_dict() for step in self.transforms]}
+
+
+def _follow_chain(file: StimulusFile) -> tuple[int, list[str]]:
+    """Follow the dots through the chain, where transforms must name dots that are there.
+
+    Returns how many dots have to be computed for one moment, and what does not fit.
+    """
+    figures = file.figures
+    dots = [list(figure.motion.markers) for figure in figures]
+    segments = [len(figure.segments) for figure in figures]
+    evaluations, added, problems = [1] * len(figures), 0, []
+    for number, step in enumerate(file.transforms):
+        where = f"transforms[{number}] ({step.name})"
+        chosen = range(len(figures)) if step.figures is None else step.figures
+        if max(chosen) >= len(figures):
+            return 0, [f"{where}: there are only {len(figures)} figures, counted from 0"]
+        if step.adds_dots and len(chosen) > 1:
+            problems.append(f"{where}: name one figure, as in figures: [0]")
+        for figure in chosen:
+            problems += [
+                f"{where}: {one}" for one in _misfits(step, dots[figure], segments[figure])
+            ]
+            match step:
+                case PhaseScramble():
+                    evaluations[figure] *= len(dots[figure])
+                case Delay() | Morph():
+                    evaluations[figure] *= 2
+                case LimbDots():
+                    dots[figure] = list(numbered("dot", step.number))
+                    segments[figure] = 0
+                    evaluations[figure] += 1
+                case Mask():
+                    clocks = step.number if step.phases else 1
+                    added += step.number + clocks * evaluations[figure] * len(dots[figure])
+    work = added + sum(n * len(names) for n, names in zip(evaluations, dots, strict=True))
+    if work > MAX_WORK:
+        problems.append(
+            f"its chain computes {work} dots for one moment, and no more than {MAX_WORK} are "
+            "shown in time; use fewer dots or fewer transforms that give each dot a clock"
+        )
+    return work, problems
+
+
+def _misfits(step: Transform, dots: Sequence[str], n_segments: int) -> list[str]:
+    """What a transform needs of a figure that the figure does not have."""
+    match step:
+        case Occlude() | Gain() | Delay() | Perturb():
+            if unknown := [name for name in step.markers if name not in dots]:
+                return [f"there are no dots {unknown[:5]}; there are {dots[:40]}"]
+        case Conflict() | Ellipses():
+            sides = [
+                f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "hip")
+            ]
+            if lacking := [name for name in sides if name not in dots]:
+                return [f"the figure lacks {lacking}"]
+        case Morph() if set(step.walker.markers) != set(dots):
+            return ["the other walker has other dots than the figure"]
+        case LimbDots(places="limbs") if not n_segments:
+            return ["the figure has no segments to put dots on; use joints"]
+    return []
+
+
+def checked(content: Any) -> StimulusFile:
+    """Return the content of a stimulus file, checked, with all defaults filled in.
 
     Raises
     ------
     ValueError
-        If anything is amiss, saying all of it, up to twenty faults.
+        With up to twenty problems: the place of each, what was expected, and what is there.
 
     """
-    amiss: list[str] = []
-    kept: Any = None
     try:
-        kept = STIMULUS.checked(content, "stimulus", amiss)
-        if not amiss:
-            for number, figure in enumerate(kept["figures"]):
-                _check_figure(figure, f"figures[{number}]", amiss)
-        if not amiss:
-            _check_chain(kept, amiss)
-    except Refused:
-        amiss.append("and more")
-    if amiss:
-        raise ValueError("This is no stimulus: " + "; ".join(amiss) + ".")
-    return kept
+        return StimulusFile.model_validate(content)
+    except ValidationError as error:
+        raise ValueError("This is no stimulus: " + "; ".join(_problems(error)) + ".") from None
 
 
-def _check_figure(figure: dict[str, Any], where: str, amiss: list[str]) -> None:
-    walker, trajectories = figure["walker"], figure["trajectories"]
-    if (walker is None) == (trajectories is None):
-        amiss.append(f"{where}: expected either walker or trajectories")
-        return
-    if walker is not None:
-        _check_walker(walker, f"{where}.walker", amiss)
-        markers = walker["markers"]
+EXPECTED = {
+    "missing": "a value",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "greater_than": "a number above {gt:g}",
+    "greater_than_equal": "a number from {ge:g}",
+    "less_than_equal": "a number up to {le:g}",
+    "bool_type": "true or false",
+    "string_type": "a text",
+    "string_unicode": "text in Unicode",
+    "string_too_short": "{min_length} letters at least",
+    "string_too_long": "{max_length} letters at most",
+    "string_pattern_mismatch": "a text like {pattern}",
+    "literal_error": "{expected}",
+    "union_tag_invalid": f"the name of a transform among {list(TRANSFORMS)}",
+    "union_tag_not_found": f"the name of a transform among {list(TRANSFORMS)}",
+    **dict.fromkeys(
+        ("dict_type", "model_type", "dataclass_type", "model_attributes_type"), "an object"
+    ),
+}
+"""What was expected, by pydantic's types of errors."""
+
+
+def _problems(error: ValidationError) -> list[str]:
+    """Return a sentence for each place that is wrong."""
+    errors = error.errors(include_url=False)[: MAX_PROBLEMS + 1]
+    sentences = []
+    for place, group in groupby(errors, lambda one: _place(one["loc"])):
+        several = list(group)
+        if len(several) == 1 and several[0]["type"] == "stimulus":
+            sentences.append(place + several[0]["msg"])
+            continue
+        expected = [
+            EXPECTED.get(one["type"], one["msg"]).format(**one.get("ctx", {}))
+            for one in several
+            if one["type"] != "stimulus"
+        ]
+        got = several[0]["input"]
+        if several[0]["type"].startswith("union_tag"):
+            got = got.get("name")
+        got = "none" if several[0]["type"] == "missing" else reprlib.repr(got)
+        sentences.append(f"{place}expected {' or '.join(expected)}, got {got}")
+    return sentences[:MAX_PROBLEMS] + ["and more"] * (len(sentences) > MAX_PROBLEMS)
+
+
+def _place(path: Sequence[str | int]) -> str:
+    """Write the place of a value in a file, as in ``stimulus.transforms[0] (speed).factor: ``."""
+    place = "stimulus"
+    for depth, step in enumerate(path):
+        if isinstance(step, int):
+            place += f"[{step}]"
+        elif depth == 2 and path[0] == "transforms":
+            place += f" ({step})"
+        elif "[" not in step:  # as in the names of the members of a union
+            place += f".{step[:40]}"
+    return f"{place}: " if path else ""
+
+
+class _PlainSchema(GenerateJsonSchema):
+    """A schema without titles of fields, which any validator of JSON Schema reads."""
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+    def tagged_union_schema(self, schema: Any) -> dict[str, Any]:
+        union = super().tagged_union_schema(schema)
+        del union["discriminator"]["mapping"]
+        return union
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the published JSON Schema of stimulus files (draft 2020-12)."""
+    schema = StimulusFile.model_json_schema(schema_generator=_PlainSchema)
+    return {"$schema": GenerateJsonSchema.schema_dialect, **schema}
+
+
+def _folded(value: Any, indent: str = "") -> str:
+    """Write JSON with what fits into a line in one line."""
+    line = json.dumps(value)
+    if len(indent) + len(line) <= 100 or not isinstance(value, dict | list):
+        return line
+    deeper = indent + " "
+    if isinstance(value, list):
+        parts = [_folded(item, deeper) for item in value]
     else:
-        markers = trajectories["markers"]
-        if trajectories["samples"].shape[1] != len(markers):
-            amiss.append(f"{where}: samples do not have {len(markers)} dots")
-    linked = {name for link in (*figure["segments"], *figure["pairs"]) for name in link}
-    if unknown := sorted(linked - set(markers)):
-        amiss.append(f"{where}: segments or pairs name {unknown[:5]}, which are no markers of it")
-    paired = [name for pair in figure["pairs"] for name in pair]
-    if len(set(paired)) < len(paired):
-        amiss.append(f"{where}: a marker stands in more than one pair")
-    if any(one == other for one, other in figure["segments"]):
-        amiss.append(f"{where}: a segment joins a marker to itself")
+        parts = [f"{json.dumps(name)}: {_folded(item, deeper)}" for name, item in value.items()]
+    opening, closing = "[]" if isinstance(value, list) else "{}"
+    return f"{opening}\n{deeper}" + f",\n{deeper}".join(parts) + f"\n{indent}{closing}"
 
 
-def _check_walker(walker: dict[str, Any], where: str, amiss: list[str]) -> None:
-    n_markers = len(walker["markers"])
-    lengths = {len(walker["p0"]), *(len(posture) for posture in walker["p"])}
-    if lengths != {n_markers}:
-        amiss.append(f"{where}: {n_markers} markers, but postures of {sorted(lengths)} dots")
-    if not len(walker["p"]) == len(walker["harmonics"]) == len(walker["phases"]):
-        amiss.append(
-            f"{where}: {len(walker['p'])} postures ride on {len(walker['harmonics'])} harmonics "
-            f"with {len(walker['phases'])} phases"
-        )
-
-
-def dots_computed(content: dict[str, Any]) -> int:
-    """Return how many dots have to be computed for one moment of a stimulus that is checked."""
-    return _check_chain(content, [])
-
-
-def _check_chain(content: dict[str, Any], amiss: list[str]) -> int:
-    """Follow the dots through the chain, where transforms must name dots that are there.
-
-    Returns how many have to be computed for one moment.
-    """
-    figures = content["figures"]
-    dots = [list((f["walker"] or f["trajectories"])["markers"]) for f in figures]
-    segments = [len(figure["segments"]) for figure in figures]
-    evaluations, added = [1] * len(figures), 0
-    for number, step in enumerate(content["transforms"]):
-        where = f"transforms[{number}] ({step['name']})"
-        chosen = range(len(figures)) if step["figures"] is None else step["figures"]
-        if max(chosen) >= len(figures):
-            amiss.append(f"{where}: there are only {len(figures)} figures, counted from 0")
-            return 0
-        if TRANSFORMS[step["name"]].adds and len(chosen) > 1:
-            amiss.append(f"{where}: name one figure, as in figures: [0]")
-        for figure in chosen:
-            amiss += _step_faults(step, where, dots[figure], segments[figure])
-            match step["name"]:
-                case "phase_scramble":
-                    evaluations[figure] *= len(dots[figure])
-                case "delay" | "morph":
-                    evaluations[figure] *= 2
-                case "limb_dots":
-                    dots[figure] = [f"dot_{dot + 1}" for dot in range(step["number"])]
-                    segments[figure] = 0
-                    evaluations[figure] += 1
-                case "mask":
-                    clocks = step["number"] if step["phases"] else 1
-                    added += step["number"] + clocks * evaluations[figure] * len(dots[figure])
-    work = added + sum(n * len(names) for n, names in zip(evaluations, dots, strict=True))
-    if work > MOST_WORK:
-        amiss.append(
-            f"its chain computes {work} dots for one moment, and no more than {MOST_WORK} are "
-            "shown in time; use fewer dots or fewer transforms that give each dot a clock"
-        )
-    return work
-
-
-def _step_faults(step: dict[str, Any], where: str, dots: list[str], n_segments: int) -> list[str]:
-    faults = []
-    if unknown := [name for name in step.get("markers", ()) if name not in dots]:
-        faults.append(f"{where}: there are no dots {unknown[:5]}; there are {dots[:40]}")
-    sides = [f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "hip")]
-    match step["name"]:
-        case "conflict" | "ellipses" if lacking := [s for s in sides if s not in dots]:
-            faults.append(f"{where}: the figure lacks {lacking}")
-        case "morph":
-            _check_walker(step["walker"], f"{where}.walker", faults)
-            if set(step["walker"]["markers"]) != set(dots):
-                faults.append(f"{where}: the other walker has other dots than the figure")
-            if not step["end_s"] > step["start_s"]:
-                faults.append(f"{where}: it must end after it starts")
-        case "speed" if step["factor"] == 0:
-            faults.append(f"{where}: a factor of 0 stands still; use freeze")
-        case "rotate" if not isinstance(step["axis"], str) and not any(step["axis"]):
-            faults.append(f"{where}: an axis needs a length above 0")
-        case "limb_dots" if step["places"] == "limbs" and not n_segments:
-            faults.append(f"{where}: the figure has no segments to put dots on; use joints")
-    return faults
+if __name__ == "__main__":
+    print(_folded(json_schema()))

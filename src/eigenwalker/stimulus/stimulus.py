@@ -7,51 +7,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.stimulus import schema as file
 from eigenwalker.stimulus.figure import Figure
-from eigenwalker.stimulus.json_text import MOST_BYTES, parsed, plain, written
+from eigenwalker.stimulus.json_text import MAX_BYTES, parsed, plain, written
+from eigenwalker.stimulus.moving_dots import MovingDots
 from eigenwalker.stimulus.player import Played, in_picture, play, scene
-
-Style = Literal["dots", "sticks", "mannequin"]
-
-
-@dataclass(frozen=True)
-class View:
-    """From where a stimulus is seen; see `project`. The centre is in the middle of the picture."""
-
-    centre_mm: Sequence[float]
-    view_deg: float = 0.0
-    elevation_deg: float = 0.0
-    eye_distance_mm: float | None = None
-
-
-@dataclass(frozen=True)
-class Timing:
-    """How long a stimulus is shown, and the frames a second of films and tables of it."""
-
-    duration_s: float
-    rate_hz: float = 60.0
-
-
-@dataclass(frozen=True)
-class Display:
-    """How a stimulus is drawn, and before what screen its observer sits."""
-
-    px_per_mm: float
-    width_px: int = 512
-    height_px: int = 512
-    dot_px: float = 8.0
-    style: Style = "dots"
-    colour: str = "#ffffff"
-    background: str = "#000000"
-    viewing_distance_mm: float | None = None
-    px_per_cm: float | None = None
+from eigenwalker.stimulus.schema import (
+    FORMAT,
+    VERSION,
+    Display,
+    StimulusFile,
+    Timing,
+    View,
+    checked,
+)
+from eigenwalker.stimulus.transform_defaults import Situation, resolve_transform
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,18 +65,18 @@ class Stimulus:
     def __post_init__(self) -> None:
         put = object.__setattr__
         put(self, "figures", tuple(self.figures))
-        put(self, "transforms", tuple(self.content["transforms"]))
+        put(self, "transforms", tuple(step.to_dict() for step in self.file.transforms))
         put(self, "provenance", dict(self.provenance))
 
     @cached_property
-    def content(self) -> dict[str, Any]:
-        """The checked content of the file, samples as arrays."""
-        return file.checked(
+    def file(self) -> StimulusFile:
+        """The content of the file, checked."""
+        return checked(
             {
-                "format": file.FORMAT,
-                "version": file.VERSION,
+                "format": FORMAT,
+                "version": VERSION,
                 "figures": [figure.to_dict() for figure in self.figures],
-                "transforms": list(self.transforms),
+                "transforms": [dict(step) for step in self.transforms],
                 "view": asdict(self.view),
                 "timing": asdict(self.timing),
                 "display": asdict(self.display),
@@ -108,11 +84,16 @@ class Stimulus:
             }
         )
 
+    @cached_property
+    def scene(self) -> tuple[MovingDots, ...]:
+        """The figures as the transforms leave them, in the scene, then the masks."""
+        return scene(self.figures, self.file.transforms, self.view)
+
     def then(self, name: str, **parameters: Any) -> Stimulus:
         """Return the stimulus with one more transform at the end of its chain.
 
         `docs/stimuli.md` lists them all. Parameters that depend on the figures may be left out
-        where `wishes` says so; they are worked out here and stand in the file as numbers.
+        where `resolve_transform` says so; they are computed here and stand in the file as numbers.
 
         Parameters
         ----------
@@ -134,9 +115,8 @@ class Stimulus:
         'scramble'
 
         """
-        from eigenwalker.stimulus.transform_defaults import granted
-
-        step = granted(self, name, parameters)
+        situation = Situation(self.figures, self.scene, self.view, self.timing.duration_s)
+        step = resolve_transform(name, parameters, situation)
         return replace(self, transforms=(*self.transforms, step))
 
     def sized(self, height_deg: float, *, viewing_distance_mm: float, px_per_cm: float) -> Stimulus:
@@ -173,14 +153,11 @@ class Stimulus:
 
     def extent(self, figure: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Return the least and greatest places in the picture, mm, of a figure or all of them."""
-        figures = scene(self.content)
-        chosen = figures[: len(self.figures)] if figure is None else [figures[figure]]
-        seen = [
-            in_picture(moving.at(np.arange(64) * moving.period_s / 64).positions,
-                       self.content["view"])[0].reshape(-1, 2)
-            for moving in chosen
-        ]  # fmt: skip
-        places = np.concatenate(seen)
+        chosen = self.scene[: len(self.figures)] if figure is None else [self.scene[figure]]
+        positions = [moving.at(moving.sample_times).positions for moving in chosen]
+        places = np.concatenate(
+            [in_picture(each, self.view)[0].reshape(-1, 2) for each in positions]
+        )
         return np.nanmin(places, axis=0), np.nanmax(places, axis=0)
 
     @property
@@ -201,16 +178,11 @@ class Stimulus:
         seconds = self.frame_times if time is None else np.atleast_1d(np.asarray(time, float))
         if not np.isfinite(seconds).all() or np.abs(seconds).max(initial=0) > 1e5:
             raise ValueError("Times to play must be finite seconds, 100000 at most.")
-        return play(self.content, seconds)
+        return play(self.scene, self.view, seconds)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the file, with all defaults filled in."""
-        content = plain(self.content)
-        for figure in content["figures"]:
-            for name in ("walker", "trajectories"):
-                if figure[name] is None:
-                    del figure[name]
-        return content
+        return plain(self.file.to_dict())
 
     def to_json(self) -> str:
         """Return the text of the file: one figure and one transform a line."""
@@ -219,12 +191,8 @@ class Stimulus:
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the stimulus to a JSON file, which appears whole, and return its path."""
         path = Path(path)
-        whole = path.with_name(f".{path.name}.part")
-        try:
-            whole.write_text(self.to_json(), encoding="utf-8")
-            os.replace(whole, path)
-        finally:
-            whole.unlink(missing_ok=True)
+        with atomic_write(path) as unfinished:
+            unfinished.write_text(self.to_json(), encoding="utf-8")
         return path
 
     @classmethod
@@ -234,17 +202,17 @@ class Stimulus:
         Raises
         ------
         ValueError
-            If anything is amiss.
+            If it is none: each problem with its place, what was expected, what is there.
 
         """
-        kept = file.checked(content)
+        file = checked(content)
         return cls(
-            figures=[Figure.from_dict(figure) for figure in kept["figures"]],
-            view=View(**kept["view"]),
-            timing=Timing(**kept["timing"]),
-            display=Display(**kept["display"]),
-            transforms=kept["transforms"],
-            provenance=kept["provenance"],
+            figures=[Figure.from_part(part) for part in file.figures],
+            view=file.view,
+            timing=file.timing,
+            display=file.display,
+            transforms=[step.to_dict() for step in file.transforms],
+            provenance=file.provenance,
         )
 
     @classmethod
@@ -270,14 +238,14 @@ class Stimulus:
 
         """
         path = Path(path)
-        if path.stat().st_size > MOST_BYTES:
+        if path.stat().st_size > MAX_BYTES:
             size = f"{path.stat().st_size} bytes"
-            raise UnreadableFile(path.name, f"a stimulus of up to {MOST_BYTES} bytes", size)
+            raise UnreadableFile(path.name, f"a stimulus of up to {MAX_BYTES} bytes", size)
         try:
             return cls.from_json(path.read_text(encoding="utf-8-sig"))
         except UnicodeDecodeError:
             raise UnreadableFile(path.name, "a stimulus in UTF-8", "other bytes") from None
         except ValueError as error:
             fault = str(error).rstrip(".").removeprefix("This is no stimulus: ")
-            came = f"a file that is none ({fault})"
-            raise UnreadableFile(path.name, "a stimulus", came, "make it anew") from None
+            found = f"a file that is none ({fault})"
+            raise UnreadableFile(path.name, "a stimulus", found, "make it again") from None

@@ -2,68 +2,119 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
+from pydantic import Field, field_validator, model_validator
 
-from eigenwalker.stimulus.moving_dots import Moments, Moving
+from eigenwalker.stimulus.figure import WalkerPart
+from eigenwalker.stimulus.moving_dots import Moments, MovingDots, walking
 from eigenwalker.stimulus.random_streams import Purpose, uniforms
-from eigenwalker.stimulus.transform_context import Stage
+from eigenwalker.stimulus.transform_types import (
+    Context,
+    Degrees,
+    Factor,
+    Markers,
+    Seconds,
+    Seed,
+    Share,
+    Transform,
+    problem,
+)
 
 
-def speed(moving: Moving, stage: Stage, *, factor: float) -> Moving:
+class Speed(Transform):
     """Play faster or slower: what was at ``factor t`` is at ``t``.
 
     Barclay, Cutting and Kozlowski (1978), experiment 2. Below 0 it plays backwards from the start.
     Keeps every dot's path.
     """
-    return replace(
-        moving, at=lambda time: moving.at(time * factor), period_s=moving.period_s / abs(factor)
-    )
+
+    name: Literal["speed"]
+    factor: Factor = Field(description="how much faster; not 0")
+
+    @field_validator("factor")
+    @classmethod
+    def _moves(cls, factor: float) -> float:
+        if factor == 0:
+            raise problem("a factor of 0 stands still; use freeze")
+        return factor
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        period_s = moving.period_s / abs(self.factor)
+        return replace(moving, at=lambda time: moving.at(time * self.factor), period_s=period_s)
 
 
-def reverse(moving: Moving, stage: Stage, *, end_s: float) -> Moving:
+class Reverse(Transform):
     """Play backwards: what was at ``end - t`` is at ``t``.
 
     With the stimulus' duration for the end it begins where it ended. Keeps every dot's path; twice
     is nothing.
     """
-    return replace(moving, at=lambda time: moving.at(end_s - time))
+
+    name: Literal["reverse"]
+    end_s: Seconds = Field(description="the moment it begins with")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        return replace(moving, at=lambda time: moving.at(self.end_s - time))
 
 
-def start(moving: Moving, stage: Stage, *, phase_deg: float) -> Moving:
+class Start(Transform):
     """Begin elsewhere in the cycle: what was at ``t + phase / 360 * period`` is at ``t``."""
-    later = phase_deg / 360 * moving.period_s
-    return replace(moving, at=lambda time: moving.at(time + later))
+
+    name: Literal["start"]
+    phase_deg: Degrees = Field(description="how far in the cycle it begins")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        later = self.phase_deg / 360 * moving.period_s
+        return replace(moving, at=lambda time: moving.at(time + later))
 
 
-def freeze(moving: Moving, stage: Stage, *, time_s: float) -> Moving:
+class Freeze(Transform):
     """Stand still as at one moment: the static control of most studies."""
-    return replace(moving, at=lambda time: moving.at(np.full(time.shape, time_s)))
+
+    name: Literal["freeze"]
+    time_s: Seconds = Field(0.0, description="the moment shown")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        return replace(moving, at=lambda time: moving.at(np.full(time.shape, self.time_s)))
 
 
-def phase_scramble(moving: Moving, stage: Stage, *, seed: int, spread: float) -> Moving:
+class PhaseScramble(Transform):
     """Let each dot run on a clock of its own: dot d is shown as at ``t + spread u_d period``.
 
     u_d is uniform from 0 to below 1, stream (PHASE_SCRAMBLE, seed, d, figure). Keeps each dot's
     path and tempo, breaks what the dots do together.
     """
-    dots = np.arange(len(moving.dots))
-    drawn = uniforms(Purpose.PHASE_SCRAMBLE, seed, dots, stage.figure, count=1).reshape(-1)
-    return _shifted(moving, spread * drawn * moving.period_s)
+
+    name: Literal["phase_scramble"]
+    seed: Seed = Field(description="seed of what is drawn at random")
+    spread: Share = Field(1.0, description="share of the cycle clocks differ by")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        dots = np.arange(len(moving.dots))
+        drawn = uniforms(Purpose.PHASE_SCRAMBLE, self.seed, dots, context.figure, count=1)
+        return _shifted(moving, self.spread * drawn.reshape(-1) * moving.period_s)
 
 
-def delay(moving: Moving, stage: Stage, *, markers: Sequence[str], phase_deg: float) -> Moving:
+class Delay(Transform):
     """Let some dots lag: they are shown as at ``t - phase / 360 * period``.
 
     A perturbation of single joints that keeps their paths and the rest of the body.
     """
-    lag = phase_deg / 360 * moving.period_s
-    return _shifted(moving, np.array([-lag if dot in markers else 0.0 for dot in moving.dots]))
+
+    name: Literal["delay"]
+    markers: Markers = Field(description="names of dots")
+    phase_deg: Degrees = Field(description="share of the cycle they lag")
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        lag = self.phase_deg / 360 * moving.period_s
+        late = np.array([dot in self.markers for dot in moving.dots])
+        return _shifted(moving, np.where(late, -lag, 0.0))
 
 
-def _shifted(moving: Moving, shifts: np.ndarray) -> Moving:
+def _shifted(moving: MovingDots, shifts: np.ndarray) -> MovingDots:
     """A figure of which each dot runs ahead by a time of its own."""
     same = {shift: np.flatnonzero(shifts == shift) for shift in np.unique(shifts)}
 
@@ -79,7 +130,7 @@ def _shifted(moving: Moving, shifts: np.ndarray) -> Moving:
     return replace(moving, at=at)
 
 
-def morph(moving: Moving, stage: Stage, *, walker: Moving, start_s: float, end_s: float) -> Moving:
+class Morph(Transform):
     """Pass from the figure into another walker.
 
     The share w of the other grows from 0 at the start to 1 at the end, evenly. Both are taken at
@@ -88,18 +139,32 @@ def morph(moving: Moving, stage: Stage, *, walker: Moving, start_s: float, end_s
     evenly too, so that the phase in cycles is ``f_a t + (f_b - f_a) W(t)``, W being the integral of
     w. Before the start and after the end each is as it is by itself but for the phase.
     """
-    order = [walker.dots.index(dot) for dot in moving.dots]
-    lasts = end_s - start_s
-    own_hz, other_hz = 1 / moving.period_s, 1 / walker.period_s
 
-    def at(time: np.ndarray) -> Moments:
-        share = np.clip((time - start_s) / lasts, 0, 1)
-        gathered = share * share * lasts / 2 + np.maximum(time - end_s, 0)
-        cycles = own_hz * time + (other_hz - own_hz) * gathered
-        own = moving.at(cycles * moving.period_s)
-        other = walker.at(cycles * walker.period_s)
-        share = share[:, None, None]
-        positions = (1 - share) * own.positions + share * other.positions[:, order]
-        return Moments(positions, own.visible & other.visible[:, order])
+    name: Literal["morph"]
+    walker: WalkerPart = Field(description="into whom")
+    start_s: Seconds = Field(description="when it begins")
+    end_s: Seconds = Field(description="when it has passed, after the start")
 
-    return replace(moving, at=at)
+    @model_validator(mode="after")
+    def _ends_after_its_start(self) -> Morph:
+        if not self.end_s > self.start_s:
+            raise problem("it must end after it starts")
+        return self
+
+    def apply(self, moving: MovingDots, context: Context) -> MovingDots:
+        target = walking(self.walker.to_walker(), moving.skeleton)
+        order = [target.dots.index(dot) for dot in moving.dots]
+        lasts = self.end_s - self.start_s
+        own_hz, other_hz = 1 / moving.period_s, 1 / target.period_s
+
+        def at(time: np.ndarray) -> Moments:
+            share = np.clip((time - self.start_s) / lasts, 0, 1)
+            gathered = share * share * lasts / 2 + np.maximum(time - self.end_s, 0)
+            cycles = own_hz * time + (other_hz - own_hz) * gathered
+            own = moving.at(cycles * moving.period_s)
+            other = target.at(cycles * target.period_s)
+            share = share[:, None, None]
+            positions = (1 - share) * own.positions + share * other.positions[:, order]
+            return Moments(positions, own.visible & other.visible[:, order])
+
+        return replace(moving, at=at)
