@@ -6,6 +6,8 @@ import { adds } from "./transforms";
 
 /** As much of JSON Schema as the schema of stimuli needs. */
 interface Schema {
+  readonly $ref?: string;
+  readonly $defs?: Readonly<Record<string, Schema>>;
   readonly type?: string;
   readonly enum?: readonly unknown[];
   readonly const?: unknown;
@@ -132,8 +134,14 @@ function needed(step: Stimulus["transforms"][number]): readonly string[] {
   return "markers" in step ? step.markers : [];
 }
 
+/** A schema with the definition that it refers to. */
+function resolved(part: Schema): Schema {
+  return part.$ref ? { ...(schema as Schema).$defs?.[part.$ref.split("/").at(-1)!], ...part } : part;
+}
+
 /** A value in its plain form, or an error that says where it departs from its schema. */
-function kept(value: unknown, schema: Schema, where: string): unknown {
+function kept(value: unknown, part: Schema, where: string): unknown {
+  const schema = resolved(part);
   if (schema.oneOf) return kept(value, branch(value, schema.oneOf, where), where);
   if (schema.anyOf) return keptByAny(value, schema.anyOf, where);
   if ("const" in schema && value !== schema.const) refuse(where, String(schema.const), value);
@@ -160,12 +168,13 @@ function kept(value: unknown, schema: Schema, where: string): unknown {
 /** The one of several kinds of object whose name the value bears. */
 function branch(value: unknown, kinds: readonly Schema[], where: string): Schema {
   const name = isObject(value) ? value["name"] : undefined;
-  const found = kinds.find((kind) => kind.properties?.["name"]?.const === name);
+  const found = kinds.map(resolved).find((kind) => kind.properties?.["name"]?.const === name);
   return found ?? refuse(where, "the name of a transform", name);
 }
 
 function keptByAny(value: unknown, kinds: readonly Schema[], where: string): unknown {
-  const [last, ...others] = [...kinds].reverse();
+  if (value === null && kinds.some(({ type }) => type === "null")) return null;
+  const [last, ...others] = kinds.filter(({ type }) => type !== "null").reverse();
   for (const kind of others) {
     try {
       return kept(value, kind, where);
