@@ -57,7 +57,7 @@ def read_mot(file: CaptureFile) -> xr.DataArray:
     table = TextTable(
         [names[i] for i in points],
         [columns[i] for i in points],
-        [re.sub(r"[~()\[\],]", " ", line).strip() for line in body[1:]] if vectors else body[1:],
+        [_without_brackets(line) for line in body[1:]] if vectors else body[1:],
         n_columns=1 + 3 * len(names) if vectors else len(head),
         separator=None if vectors else separator,
         first_line=end + 3,
@@ -73,6 +73,10 @@ def read_mot(file: CaptureFile) -> xr.DataArray:
         usual_unit=Unit("m", MILLIMETRES["m"], "OpenSim's unit"),
         usual_up="y",
     )
+
+
+def _without_brackets(line: str) -> str:
+    return " ".join(re.sub(r"[~()\[\],]", " ", line).split())
 
 
 def _count(
