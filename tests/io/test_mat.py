@@ -6,7 +6,6 @@ import struct
 import subprocess
 import sys
 import zlib
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -18,7 +17,6 @@ from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.mat import read_mat, read_mat_arrays
 from eigenwalker.io.readers.mat_arrays import mat_arrays
-from eigenwalker.io.sandbox import arrays_from_child
 
 NAMES = ["head", "left_ankle"]
 
@@ -147,58 +145,6 @@ def test_a_bomb_does_not_go_off(tmp_path):
     assert (tmp_path / "bomb.mat").stat().st_size < 2**20
     with pytest.raises(UnreadableFile, match=r"bomb\.mat: expected a MATLAB file"):
         read_mat_arrays(tmp_path / "bomb.mat")
-
-
-READERS = """
-import os, time
-import numpy as np
-
-def dies(path):
-    os.abort()
-
-def hangs(path):
-    time.sleep(60)
-
-def wants_too_much(path):
-    return {"x": np.ones(2**28)}
-
-def refuses(path):
-    raise KeyError("a\\nreason")
-
-def finds(path):
-    return {"file": np.ones(3), "args": np.zeros((0, 2))}
-"""
-
-
-def _reader(tmp_path: Path, name: str):
-    (tmp_path / "readers.py").write_text(READERS)
-    namespace: dict = {}
-    exec(compile(READERS, tmp_path / "readers.py", "exec"), namespace)
-    return namespace[name]
-
-
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("dies", r"breaks down \(status"),
-        ("hangs", "more than 2 s"),
-        pytest.param(
-            "wants_too_much",
-            "needs more than 1 GiB",
-            marks=pytest.mark.skipif(sys.platform != "linux", reason="no limit of memory there"),
-        ),
-        ("refuses", r"its reader says: 'a\\nreason'"),
-    ],
-)
-def test_a_child_may_end_as_it_likes(tmp_path, name, told):
-    with pytest.raises(UnreadableFile, match=told) as refusal:
-        arrays_from_child(_reader(tmp_path, name), Path("a.x"), expected="a file", seconds=2)
-    assert str(refusal.value).startswith("a.x: expected a file, but got one ")
-
-
-def test_arrays_may_have_any_name_and_shape(tmp_path):
-    found = arrays_from_child(_reader(tmp_path, "finds"), Path("a.x"), expected="a file")
-    assert {name: array.shape for name, array in found.items()} == {"file": (3,), "args": (0, 2)}
 
 
 def test_a_child_imports_nothing_from_the_folder_one_is_in(tmp_path, monkeypatch):

@@ -28,12 +28,12 @@ Asked = dict[str, Any]
 
 def main(task: str, folder: str, seconds: int, most_bytes: int) -> int:
     """Return the exit status after one task."""
-    from eigenwalker.io.sandbox_child import limit_itself
+    from eigenwalker.io.sandbox_child import limit_process
 
     place = Path(folder)
     asked = json.loads((place / ASKED).read_text(encoding="utf-8"))
     try:
-        limit_itself(seconds, most_bytes)
+        limit_process(seconds, most_bytes)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             answer = TASKS[task](place, asked)

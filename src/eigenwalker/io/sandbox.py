@@ -1,87 +1,129 @@
-"""Readers that a damaged file may crash: run in a process of their own, within limits.
+"""Functions that a damaged file may crash: run in a process of their own, within limits.
 
 Readers written in C can die, hang or ask for all the memory there is. Here they do so in a child
-process, and the file is refused as any other bad file is.
+process, and the caller goes on with an error.
 """
 
 from __future__ import annotations
 
+import asyncio
 import inspect
-import io
 import os
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
+from dataclasses import dataclass
+from typing import Literal
 
-import numpy as np
+from eigenwalker.io import sandbox_child
 
-from eigenwalker.io import sandbox_child as child_side
-from eigenwalker.io.errors import UnreadableFile
-
-SECONDS = 10
-MOST_BYTES = 2**30
-
-Reader = Callable[[str], dict[str, np.ndarray]]
+Reason = Literal["refused", "failed", "too large", "too slow"]
+_REASONS: dict[int, Reason] = {
+    sandbox_child.REFUSED: "refused",
+    sandbox_child.TOO_LARGE: "too large",
+}
 
 
-def arrays_from_child(
-    reader: Reader,
-    path: Path,
-    *,
-    expected: str,
-    seconds: int = SECONDS,
-    most_bytes: int = MOST_BYTES,
-) -> dict[str, np.ndarray]:
-    """Return the arrays that a reader finds in a file, read in a process of its own.
+class JobError(Exception):
+    """A function that ran in a child process gave no result.
 
     Parameters
     ----------
-    reader : function of a path
-        Returns named arrays of numbers. The child imports the module that it stands in by itself,
-        not this package, so that module should import only what reading takes.
-    path : Path
-        The file.
-    expected : str
-        What it should hold, for the message.
-    seconds : int
-        The child is ended after so long.
-    most_bytes : int
-        Memory it may take, where the system can limit that (Linux), and size of the arrays.
-
-    Returns
-    -------
-    dict of str to array
-
-    Raises
-    ------
-    UnreadableFile
-        If the reader refuses the file, dies, hangs, or needs too much.
+    reason : {"refused", "failed", "too large", "too slow"}
+        Whether it raised a ValueError, broke down in another way, needed more memory than it may
+        have, or took longer.
+    message : str
+        Message of the error that it raised; empty for the other reasons.
+    status : int
+        Exit status of the child process.
 
     """
-    told = [inspect.getfile(reader), reader.__name__, os.path.abspath(path), seconds, most_bytes]
-    try:
-        child = subprocess.run(
-            # -P: nothing is imported from the folder one happens to be in
-            [sys.executable, "-P", child_side.__file__, *map(str, told)],
+
+    def __init__(self, reason: Reason, message: str = "", status: int = 0) -> None:
+        super().__init__(reason, message, status)
+        self.reason = reason
+        self.message = message
+        self.status = status
+
+
+@dataclass(frozen=True)
+class Job:
+    """A function to be run in a process of its own.
+
+    Parameters
+    ----------
+    function : function of str, returning bytes
+        The child imports its module by path and not this package, so a module that imports little
+        starts fast.
+    arguments : tuple of str
+        Arguments of the function.
+    seconds : int
+        The child is ended after so long.
+    max_bytes : int
+        Memory that it may take, where the system can limit that (Linux), and size of the result.
+
+    """
+
+    function: Callable[..., bytes]
+    arguments: tuple[str, ...]
+    seconds: int = 10
+    max_bytes: int = 2**30
+
+    def run(self) -> bytes:
+        """Return what the function returns.
+
+        Raises
+        ------
+        JobError
+            If it refuses its arguments, dies, hangs, or needs too much.
+
+        """
+        try:
+            child = subprocess.run(
+                self._command(),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                timeout=self.seconds,
+                check=False,
+                env=_environment(),
+                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            )
+        except subprocess.TimeoutExpired as error:
+            raise JobError("too slow") from error
+        return self._result(child.returncode, child.stdout)
+
+    async def run_async(self) -> bytes:
+        """Return what the function returns, without blocking; the child ends if cancelled."""
+        child = await asyncio.create_subprocess_exec(
+            *self._command(),
             stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=seconds,
-            check=False,
-            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=_environment(),
         )
-    except subprocess.TimeoutExpired as error:
-        came = f"one that takes more than {seconds} s to read"
-        raise UnreadableFile(path.name, expected, came) from error
-    if child.returncode == child_side.TOO_LARGE:
-        came = f"one that needs more than {most_bytes / 2**30:.2g} GiB of memory"
-        raise UnreadableFile(path.name, expected, came)
-    if child.returncode == child_side.REFUSED:
-        came = f"one of which its reader says: {child.stderr.decode(errors='replace')}"
-        raise UnreadableFile(path.name, expected, came)
-    if child.returncode:
-        came = f"one on which its reader breaks down (status {child.returncode})"
-        raise UnreadableFile(path.name, expected, came)
-    with np.load(io.BytesIO(child.stdout), allow_pickle=False) as arrays:
-        return {name[1:]: arrays[name] for name in arrays.files}
+        try:
+            output, _ = await asyncio.wait_for(child.communicate(), self.seconds)
+        except TimeoutError as error:
+            raise JobError("too slow") from error
+        finally:
+            if child.returncode is None:
+                child.kill()
+                await child.wait()
+        return self._result(child.returncode or 0, output)
+
+    def _command(self) -> list[str]:
+        # -P: nothing is imported from the folder in which the program happens to run
+        start = [sys.executable, "-P", sandbox_child.__file__]
+        function = [inspect.getfile(self.function), self.function.__name__]
+        return [*start, *function, str(self.seconds), str(self.max_bytes), *self.arguments]
+
+    def _result(self, status: int, output: bytes) -> bytes:
+        if status == 0:
+            return output
+        message = output.decode(errors="replace")
+        raise JobError(_REASONS.get(status, "failed"), message, status)
+
+
+def _environment() -> dict[str, str]:
+    return os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}

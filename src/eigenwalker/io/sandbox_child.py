@@ -1,61 +1,63 @@
-"""What runs in the child process of `child_process`: one function on one file, within limits.
+"""What runs in the child process of `sandbox`: one function, within limits of time and memory.
 
 Run by its path, so that it imports nothing but what the function's own module does. Its arguments
-are the module's path, the function's name, the file, and limits in seconds and bytes; arrays go to
-standard output as an .npz, a refusal to standard error with the status `REFUSED`.
+are the module's path, the function's name, limits in seconds and bytes, and the arguments of the
+function. The function returns bytes, which go to standard output; after an error, its message does.
 """
 
 from __future__ import annotations
 
 import importlib.util
-import io
+import os
 import sys
 
+FAILED = 1
+"""The function raised an error that is none of those below, as a fault in the program does."""
 REFUSED = 3
+"""The function raised a ValueError: it cannot use what it was given."""
 TOO_LARGE = 4
+"""The function needs more memory than it may have, or returns more bytes."""
 
 
-def main(module: str, function: str, path: str, seconds: int, most_bytes: int) -> int:
-    """Return the exit status after one file."""
-    import numpy as np
-
-    spec = importlib.util.spec_from_file_location("reader", module)
-    assert spec is not None
-    assert spec.loader is not None
-    reader = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(reader)
-    limit_itself(seconds, most_bytes)
-    try:
-        arrays = getattr(reader, function)(path)
-        if sum(array.nbytes for array in arrays.values()) > most_bytes:
+def main(module: str, function: str, seconds: int, max_bytes: int, *arguments: str) -> int:
+    """Return the exit status after one call."""
+    with os.fdopen(os.dup(1), "wb") as output:
+        os.dup2(2, 1)  # what libraries print does not mix with the result
+        try:
+            spec = importlib.util.spec_from_file_location("job", module)
+            assert spec is not None
+            assert spec.loader is not None
+            job = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(job)
+            limit_process(seconds, max_bytes)
+            result: bytes = getattr(job, function)(*arguments)
+        except MemoryError:
             return TOO_LARGE
-        written = io.BytesIO()
-        np.savez(written, **{f"_{name}": array for name, array in arrays.items()})
-    except MemoryError:
-        return TOO_LARGE
-    except Exception as error:  # whatever a damaged file makes a reader raise
-        sys.stderr.write(" ".join(f"{error or type(error).__name__}".split())[:300])
-        return REFUSED
-    sys.stdout.buffer.write(written.getvalue())
+        except Exception as error:  # damaged files make readers raise anything
+            output.write((str(error) or type(error).__name__).encode(errors="replace"))
+            return REFUSED if isinstance(error, ValueError) else FAILED
+        if len(result) > max_bytes:
+            return TOO_LARGE
+        output.write(result)
     return 0
 
 
-def limit_itself(seconds: int, most_bytes: int) -> None:
-    """Set what the system takes away from a process; Windows has no such limits."""
+def limit_process(seconds: int, max_bytes: int) -> None:
+    """Limit the time and memory of this process; Windows cannot."""
     try:
         import resource
     except ImportError:
         return
-    for kind, most in (
-        (resource.RLIMIT_AS, most_bytes),
+    for kind, limit in (
+        (resource.RLIMIT_AS, max_bytes),
         (resource.RLIMIT_CPU, seconds),
         (resource.RLIMIT_CORE, 0),
     ):
         try:
-            resource.setrlimit(kind, (most, most))
+            resource.setrlimit(kind, (limit, limit))
         except (ValueError, OSError):
             continue  # macOS knows no limit of address space
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:4], seconds=int(sys.argv[4]), most_bytes=int(sys.argv[5])))
+    sys.exit(main(*sys.argv[1:3], int(sys.argv[3]), int(sys.argv[4]), *sys.argv[5:]))

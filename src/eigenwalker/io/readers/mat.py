@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,8 +14,8 @@ from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_row
 from eigenwalker.core.trajectories import DIMS, label_trajectories
 from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.readers.mat_arrays import mat_arrays
-from eigenwalker.io.sandbox import arrays_from_child
+from eigenwalker.io.readers.mat_arrays import mat_arrays_npz
+from eigenwalker.io.sandbox import Job, JobError
 
 _SHOWN = 10
 
@@ -26,7 +27,7 @@ def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
     ----------
     path : str or path
         A MATLAB file of version 4, 5 or 7.3. It is read in a process of its own, within 10 s and
-        1 GiB, as readers of such files may break down on damaged ones.
+        1 GiB, as SciPy and HDF5 may break down on damaged files.
 
     Returns
     -------
@@ -40,8 +41,22 @@ def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
 
     """
     path = Path(path)
-    read_bytes(path)
-    return arrays_from_child(mat_arrays, path, expected="a MATLAB file")
+    read_bytes(path)  # for the message about a file that is not there
+    job = Job(mat_arrays_npz, (os.path.abspath(path),))
+    try:
+        content = job.run()
+    except JobError as error:
+        message = " ".join(error.message.split())[:300]
+        got = {
+            "too slow": f"one that takes more than {job.seconds} s to read",
+            "too large": f"one that needs more than {job.max_bytes / 2**30:.2g} GiB of memory",
+            "failed": f"one on which its reader breaks down (status {error.status})",
+        }
+        if message:
+            got[error.reason] = f"one of which its reader says: {message}"
+        raise UnreadableFile(path.name, "a MATLAB file", got[error.reason]) from error
+    with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+        return {name[1:]: arrays[name] for name in arrays.files}
 
 
 def read_mat(

@@ -1,18 +1,26 @@
-"""The numbers in a MATLAB file, by name.
+"""The arrays in a MATLAB file, by name.
 
-Run in a child process (`child_process`), as SciPy does not promise to survive damaged files; so it
+Run in a child process (`sandbox`), as SciPy does not promise to survive damaged files; so it
 imports nothing of this package.
 """
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-DEEPEST = 8
-MOST_NUMBERS = 50_000_000
+MAX_DEPTH = 8
+MAX_NUMBERS = 50_000_000
+
+
+def mat_arrays_npz(path: str) -> bytes:
+    """Return the arrays of `mat_arrays` as an .npz file, each name with ``_`` before it."""
+    content = io.BytesIO()
+    np.savez(content, **{f"_{name}": array for name, array in mat_arrays(path).items()})
+    return content.getvalue()
 
 
 def mat_arrays(path: str) -> dict[str, np.ndarray]:
@@ -36,7 +44,7 @@ def mat_arrays(path: str) -> dict[str, np.ndarray]:
     from scipy.io import loadmat, whosmat
 
     for name, shape, _ in whosmat(path):
-        if np.prod([float(size) for size in shape]) > MOST_NUMBERS:
+        if np.prod([float(size) for size in shape]) > MAX_NUMBERS:
             raise ValueError(f"{name} has the shape {shape}")
     variables = loadmat(path, struct_as_record=False, chars_as_strings=False)
     return dict(_numeric({n: v for n, v in variables.items() if not n.startswith("__")}))
@@ -50,7 +58,7 @@ def _numeric(variables: Mapping[str, Any], depth: int = 0) -> Iterator[tuple[str
         fields = getattr(value.flat[0], "_fieldnames", None) if value.size == 1 else None
         if value.dtype.kind in "fiub" and value.size:
             yield name, value.astype(float)
-        elif fields and depth < DEEPEST:
+        elif fields and depth < MAX_DEPTH:
             inner = {f"{name}.{field}": getattr(value.flat[0], field) for field in fields}
             yield from _numeric(inner, depth + 1)
 
@@ -65,7 +73,7 @@ def _of_hdf5(path: str) -> dict[str, np.ndarray]:
             return
         if name.startswith("#") or bytes(item.attrs.get("MATLAB_class", b"")) == b"char":
             return  # cells, and texts, which MATLAB stores as numbers
-        if item.size > MOST_NUMBERS:
+        if item.size > MAX_NUMBERS:
             raise ValueError(f"{name} has the shape {item.shape}")
         found[name.replace("/", ".")] = np.asarray(item[()], dtype=float).T
 
