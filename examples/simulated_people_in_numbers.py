@@ -8,7 +8,7 @@ planted is found again. Nothing in the simulation was tuned to the first table.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.population.correspondence import matched_by_sign_and_order, posture_correlations
+from eigenwalker.population.correspondence import match_sign_and_order, posture_correlations
 from eigenwalker.simulation.foot import TOE_BEND
 from eigenwalker.simulation.person import ANSUR, PARAMETERS, PINZONE, SCHWARTZ, TROJE
 from eigenwalker.simulation.planted_effect import random_pattern
@@ -59,7 +59,7 @@ def _figures(people):
     yield "R2 of the sines", "0.99, 0.95, 0.94, 0.90", listed(sines)
     p0 = posture_correlations(np.array([[walker.p0] for walker in people.walkers]))
     yield "correlation of mean postures", "0.998", f"{p0[0]:.4f}"
-    eigen = posture_correlations(matched_by_sign_and_order(people.walkers))
+    eigen = posture_correlations(match_sign_and_order(people.walkers))
     yield "of eigenpostures, sign and order", "0.95, 0.88, 0.85, 0.73", listed(eigen)
     own = posture_correlations(np.array([walker.p for walker in people.walkers]))
     yield "of eigenpostures, in correspondence", "", listed(own)

@@ -57,7 +57,7 @@ def test_the_table_says_what_the_curves_say() -> None:
         np.testing.assert_array_equal(result.curves.generalisation, curves.generalisation)
         assert row.errors == curves.generalisation.min()
         assert curves.generalisation[row[3] - 1] == row.errors
-    missed = found.often_missed(least=1)
+    missed = found.often_misclassified(least=1)
     assert missed.is_monotonic_decreasing
 
 
@@ -76,7 +76,7 @@ def test_a_weight_that_no_walk_shows_is_not_told() -> None:
     people = simulate_population(10, 10, seed=1)
     dealt = np.random.default_rng(3).normal(70, 10, 20)
     people = replace(people, traits=people.traits.assign(weight_kg=dealt))
-    found = regress(people, "weight", n_permutations=40, seed=1)
+    found = regress(people, "weight", n_permutations=40, random_state=1)
     table = found.table()
     assert table["p"].median() > 0.1
     assert table["nested R2"].mean() < table["R2"].mean() < 0
@@ -84,7 +84,7 @@ def test_a_weight_that_no_walk_shows_is_not_told() -> None:
         source = people.size_normalised() if result.input.size_normalised else people
         X = source.part(result.input.part)
         assert row["nested RMSE"] == nested_regression(X, dealt).rmse
-        null = regression_permutation_test(X, dealt, n_permutations=40, seed=1)
+        null = regression_permutation_test(X, dealt, n_permutations=40, random_state=1)
         assert row["p"] == null.p
     fewer = regress(people, "weight", n_permutations=0).table()
     assert (fewer["p"] == 1).all()

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.analysis.contrast import contrast
+from eigenwalker.analysis.contrast import trait_contrast
 from eigenwalker.population.population import FLAG, Population
 from eigenwalker.simulation.people import simulate_population
 
@@ -26,7 +26,7 @@ def people() -> Population:
 
 
 def test_the_second_class_in_sorted_order_is_the_positive_pole(people) -> None:
-    sex = contrast(people, "sex")
+    sex = trait_contrast(people, "sex")
     assert (sex.negative, sex.positive, sex.two_classes) == ("female", "male", True)
     assert sex.rows.tolist() == [1, 2, 3, 4, 5, 6, 7]  # walker 0 is flagged
     assert sex.y.tolist() == [-1, -1, -1, 1, 1, 1, 1]
@@ -34,24 +34,24 @@ def test_the_second_class_in_sorted_order_is_the_positive_pole(people) -> None:
 
 
 def test_two_of_several_values_can_be_chosen_in_either_order(people) -> None:
-    mood = contrast(people, "style=sad:happy")
+    mood = trait_contrast(people, "style=sad:happy")
     assert (mood.negative, mood.positive) == ("sad", "happy")
     assert mood.rows.tolist() == [1, 3, 4, 6, 7]
-    np.testing.assert_array_equal(contrast(people, "style=happy:sad").y, -mood.y)
+    np.testing.assert_array_equal(trait_contrast(people, "style=happy:sad").y, -mood.y)
 
 
 def test_numbers_are_continuous_unless_there_are_two(people) -> None:
-    weight = contrast(people, "weight")
+    weight = trait_contrast(people, "weight")
     assert weight.trait == "weight_kg"
     assert not weight.two_classes
     assert (weight.negative, weight.positive) == ("light", "heavy")
     np.testing.assert_array_equal(weight.labels, people.traits["weight_kg"][1:])
-    assert contrast(people, "group").two_classes
-    assert contrast(people, "rating").rows.tolist() == [1, 3, 4, 5, 6, 7]
+    assert trait_contrast(people, "group").two_classes
+    assert trait_contrast(people, "rating").rows.tolist() == [1, 3, 4, 5, 6, 7]
 
 
 def test_walks_of_one_person_are_known_to_be(people) -> None:
-    persons = contrast(people, "sex").persons
+    persons = trait_contrast(people, "sex").persons
     assert persons is not None
     named = pd.Series(persons)
     assert named[[1, 2]].nunique() == 1  # both of b
@@ -71,4 +71,4 @@ def test_walks_of_one_person_are_known_to_be(people) -> None:
 )
 def test_what_cannot_be_told_is_refused_with_what_can(people, trait, said) -> None:
     with pytest.raises(ValueError, match=said):
-        contrast(people, trait)
+        trait_contrast(people, trait)

@@ -166,9 +166,9 @@ def test_a_man_who_walks_like_a_woman_is_missed_by_any_number_of_components():
     X, r = population(40, 100, effect=3)
     r[6] = -r[6]
     curves = jackknife_curves(X, r)
-    assert curves.missed[6, :20].all()
+    assert curves.misclassified[6, :20].all()
     assert (curves.confidence[6, :20] < 0).all()
-    np.testing.assert_array_equal(curves.missed.sum(axis=0), curves.generalisation)
+    np.testing.assert_array_equal(curves.misclassified.sum(axis=0), curves.generalisation)
     assert curves.generalisation[curves.best_n - 1] == curves.fewest_errors
 
 
@@ -222,9 +222,9 @@ def test_a_weight_is_told_of_walkers_left_out():
     curves = regression_curves(X, weight)
     pipeline = make_pipeline(WalkerSpace(), DiscriminantRegressor(6))
     predicted = cross_val_predict(pipeline, X, weight, cv=LeaveOneOut())
-    np.testing.assert_allclose(curves.predicted[:, 5], predicted, rtol=1e-9)
-    np.testing.assert_allclose(curves.fitted[:, 5], pipeline.fit(X, weight).predict(X), rtol=1e-9)
-    assert curves.fitted_r2[5] == pytest.approx(pipeline.score(X, weight))
+    np.testing.assert_allclose(curves.held_out[:, 5], predicted, rtol=1e-9)
+    np.testing.assert_allclose(curves.trained[:, 5], pipeline.fit(X, weight).predict(X), rtol=1e-9)
+    assert curves.trained_r2[5] == pytest.approx(pipeline.score(X, weight))
     assert curves.correlation[5] == pytest.approx(np.corrcoef(predicted, weight)[0, 1])
     assert curves.rmse[5] == pytest.approx(np.sqrt(np.mean((predicted - weight) ** 2)))
     assert curves.r2[-1] > 0.99

@@ -39,8 +39,8 @@ def test_the_number_of_components_is_that_of_a_jackknife_of_the_others(shape):
     for walker in range(len(X)):
         inner = jackknife_curves(np.delete(X, walker, axis=0), np.delete(r, walker))
         assert nested.chosen_n[walker] == inner.best_n
-        assert nested.missed[walker] == (r[walker] * sums[walker, inner.best_n - 1] <= 0)
-    assert nested.errors == nested.missed.sum()
+        assert nested.misclassified[walker] == (r[walker] * sums[walker, inner.best_n - 1] <= 0)
+    assert nested.errors == nested.misclassified.sum()
 
 
 def test_persons_are_nested_with_all_their_trials():
@@ -72,17 +72,17 @@ def test_persons_of_unlike_many_trials_choose_as_a_jackknife_of_the_others(n_fea
 def test_a_weight_is_nested_as_by_a_jackknife_of_the_others(shape, order):
     X, weight = heavy_population(*shape)
     nested = nested_regression(X, weight, order=order)
-    predicted = regression_curves(X, weight, order=order).predicted
+    predicted = regression_curves(X, weight, order=order).held_out
     for walker in range(len(X)):
         others = np.arange(len(X)) != walker
         inner = regression_curves(X[others], weight[others], order=order)
         assert nested.chosen_n[walker] == inner.best_n
         expected = predicted[walker, inner.best_n - 1]
-        assert nested.predicted[walker] == pytest.approx(expected, rel=1e-9)
-    errors = nested.predicted - weight
+        assert nested.held_out[walker] == pytest.approx(expected, rel=1e-9)
+    errors = nested.held_out - weight
     assert nested.rmse == pytest.approx(np.sqrt(np.mean(errors**2)))
     assert nested.r2 == pytest.approx(1 - np.mean(errors**2) / np.var(weight))
-    assert nested.correlation == pytest.approx(np.corrcoef(nested.predicted, weight)[0, 1])
+    assert nested.correlation == pytest.approx(np.corrcoef(nested.held_out, weight)[0, 1])
 
 
 def test_a_planted_weight_survives_nesting_and_chance_is_told_no_better_than_by_its_mean():
@@ -103,7 +103,7 @@ def test_twins_are_nested_too():
     X, r = population()
     X[3] = X[1]
     assert (nested_leave_one_out(X, r).chosen_n >= 1).all()
-    assert np.isfinite(nested_regression(X, X[:, 0]).predicted).all()
+    assert np.isfinite(nested_regression(X, X[:, 0]).held_out).all()
 
 
 def test_a_planted_sex_survives_nesting_and_chance_is_no_better_than_chance():
@@ -130,7 +130,7 @@ def test_progress_is_told_pair_by_pair():
 @pytest.mark.parametrize("shape", [(14, 30), (24, 6)])
 def test_each_deal_is_a_jackknife_of_its_own(shape):
     X, r = population(*shape)
-    test = permutation_test(X, r, n_permutations=5, seed=3)
+    test = permutation_test(X, r, n_permutations=5, random_state=3)
     deals = np.random.default_rng(3).permuted(np.tile(r[:, None], 5), axis=0)
     assert test.least_error == jackknife_curves(X, r).fewest_errors
     assert test.null.tolist() == [jackknife_curves(X, deal).fewest_errors for deal in deals.T]
@@ -139,7 +139,7 @@ def test_each_deal_is_a_jackknife_of_its_own(shape):
 @pytest.mark.parametrize("shape", [(14, 30), (24, 6)])
 def test_each_deal_of_weights_is_a_jackknife_of_its_own(shape):
     X, weight = heavy_population(*shape)
-    test = regression_permutation_test(X, weight, n_permutations=5, seed=3)
+    test = regression_permutation_test(X, weight, n_permutations=5, random_state=3)
     deals = np.random.default_rng(3).permuted(np.tile(weight[:, None], 5), axis=0)
     least = [regression_curves(X, deal).rmse.min() for deal in (weight, *deals.T)]
     np.testing.assert_allclose([test.least_error, *test.null], least / weight.std(), rtol=1e-9)
@@ -150,7 +150,7 @@ def test_weights_are_dealt_to_persons_whole():
     X, _ = heavy_population(20, 30)
     of_person = np.array([50.0, 60, 70, 80, 95, 120])
     weight = of_person[UNLIKE]
-    test = regression_permutation_test(X, weight, groups=UNLIKE, n_permutations=4, seed=3)
+    test = regression_permutation_test(X, weight, groups=UNLIKE, n_permutations=4, random_state=3)
     deals = np.random.default_rng(3).permuted(np.tile(of_person[:, None], 4), axis=0)[UNLIKE]
     least = [
         np.sqrt(1 - regression_curves(X, deal, groups=UNLIKE).r2.max())
@@ -188,7 +188,10 @@ def test_a_planted_sex_is_no_accident_and_no_sex_is():
 
 def test_a_seed_fixes_the_deals():
     X, r = population()
-    one, same, other = (permutation_test(X, r, n_permutations=50, seed=s) for s in (1, 1, 2))
+    deals = [permutation_test(X, r, n_permutations=50, random_state=each) for each in (1, 1, 2)]
+    one, same, other = deals
+        permutation_test(X, r, n_permutations=50, random_state=s) for s in (1, 1, 2)
+    )
     assert one.null.tolist() == same.null.tolist() != other.null.tolist()
 
 

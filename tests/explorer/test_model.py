@@ -207,7 +207,7 @@ def test_other_markers_in_the_fourier_form_have_a_page():
 
 
 def test_a_large_population_is_thinned():
-    made = page_model(two_markers(2500).trusting_all())
+    made = page_model(two_markers(2500).without_flags())
     assert (made["n_walkers"], len(made["walkers"])) == (2500, 100)
     assert 400 < made["cloud"]["n"] <= 500
     assert [point for point in made["cloud"]["walker"] if point >= 0] == list(range(100))

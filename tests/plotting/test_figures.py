@@ -98,7 +98,7 @@ def test_no_curves_are_refused():
 def trait_curves(told, fitted=None):
     n = np.arange(1, len(told) + 1)
     fitted = 1 - 0.8**n if fitted is None else fitted
-    return SimpleNamespace(n_components=n, fitted_r2=fitted, r2=np.array(told))
+    return SimpleNamespace(n_components=n, trained_r2=fitted, r2=np.array(told))
 
 
 def test_the_curves_of_a_trait_are_those_given_in_the_same_look():
@@ -108,7 +108,7 @@ def test_the_curves_of_a_trait_are_those_given_in_the_same_look():
     for axes, (title, curve) in zip(drawn, given.items(), strict=True):
         separation, generalisation, ring = axes.get_lines()[:3]
         assert axes.get_title(loc="left") == title
-        np.testing.assert_array_equal(separation.get_ydata(), curve.fitted_r2)
+        np.testing.assert_array_equal(separation.get_ydata(), curve.trained_r2)
         np.testing.assert_array_equal(generalisation.get_ydata(), curve.r2)
         assert (separation.get_color(), generalisation.get_color()) == (BLUE, RED)
         assert separation.is_dashed()

@@ -15,7 +15,7 @@ from eigenwalker.population.correspondence import (
     MIN_SIMILARITY,
     correspond,
     correspond_to,
-    matched_by_sign_and_order,
+    match_sign_and_order,
     posture_correlations,
 )
 
@@ -64,7 +64,7 @@ def test_sign_and_order_alone_fail_where_components_are_nearly_equal(orthogonal_
     wanted = np.array([600, 300, 105, 100])
     planted = replace(planted, p=planted.p * (wanted / lengths)[:, None, None])
     family = relatives(planted, 12, seed=2)
-    as_the_paper = posture_correlations(matched_by_sign_and_order(family))
+    as_the_paper = posture_correlations(match_sign_and_order(family))
     together = posture_correlations(np.stack([walker.p for walker in correspond(family)[0]]))
     assert as_the_paper[2] < 0.9 < together[2]
     assert as_the_paper[0] == pytest.approx(together[0], abs=0.01)

@@ -13,7 +13,6 @@ from eigenwalker.population.population import Population
 from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
-    names_of,
     plausibility_table,
     results_table,
 )
@@ -63,9 +62,9 @@ def test_missed_walkers_are_named_with_their_class(people) -> None:
     found = classify(people, "sex", inputs=INPUTS[:4], n_permutations=0)
     table = missed_table(people, found)
     assert table is not None
-    row = int(found.often_missed().index[0])
+    row = int(found.often_misclassified().index[0])
     assert table.rows[0][0] == f"walker {row} ({sex[row]})"
     files = [f"{n}.c3d" if n else "" for n in range(12)]
     named = replace(people, traits=people.traits.assign(file=files))
-    assert names_of(named)[:2] == ["walker 0", "1.c3d"]
+    assert named.names[:2] == ["walker 0", "1.c3d"]
     assert results_table(found).columns[0] == "input"

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypedDict
 import numpy as np
 import pandas as pd
 
-from eigenwalker.analysis.contrast import Contrast, contrast
+from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.jackknife import (
     JackknifeCurves,
     Progress,
@@ -129,7 +129,7 @@ class Classification:
         """Return the main table as it is printed: "-" where there is nothing, p with its floor."""
         return _in_words(self.table(), self.n_permutations)
 
-    def often_missed(self, least: int = 3) -> pd.Series:
+    def often_misclassified(self, least: int = 3) -> pd.Series:
         """Return the walkers that several classifiers miss, with how many of them do (J27).
 
         Returns
@@ -140,7 +140,7 @@ class Classification:
 
         """
         missed = sum(
-            result.curves.missed[:, result.curves.best_n - 1].astype(int)
+            result.curves.misclassified[:, result.curves.best_n - 1].astype(int)
             for result in self.results[:N_PANELS]
         )
         counts = pd.Series(missed, index=self.contrast.rows, name="inputs that miss it")
@@ -256,7 +256,7 @@ def classify(
     *,
     inputs: Sequence[Input] = INPUTS,
     n_permutations: int = 200,
-    seed: int = 0,
+    random_state: int = 0,
     progress: Progress | None = None,
 ) -> Classification:
     """Return how well a trait of two classes can be told, from everything and from parts.
@@ -274,8 +274,8 @@ def classify(
         What to classify from; parts that the population lacks are passed over.
     n_permutations : int
         Random labels to compare with.
-    seed : int
-        Of the permutations.
+    random_state : int
+        Seed of the permutations.
     progress : callable, optional
         Called with the number of steps done and of all: the folds of all inputs.
 
@@ -298,7 +298,7 @@ def classify(
     'Always answering the more frequent class makes 20 errors.'
 
     """
-    asked = contrast(population, trait)
+    asked = trait_contrast(population, trait)
     if not asked.two_classes:
         raise ValueError(
             f"{asked.trait} is a number; regress on it, or choose two of its values, for instance "
@@ -306,7 +306,7 @@ def classify(
         )
     tables = _tables(population, asked, inputs)
     left_out: _LeftOut = {"groups": asked.persons, "progress": _steps(asked, tables, progress)}
-    deals: _Deals = {"n_permutations": n_permutations, "seed": seed}
+    deals: _Deals = {"n_permutations": n_permutations, "random_state": random_state}
     results = [
         InputResult(
             input=each,
@@ -325,14 +325,14 @@ def regress(
     *,
     inputs: Sequence[Input] = INPUTS,
     n_permutations: int = 200,
-    seed: int = 0,
+    random_state: int = 0,
     progress: Progress | None = None,
 ) -> Regression:
     """Return how well a trait that is a number can be told, from everything and from parts (W8).
 
     Parameters
     ----------
-    population, trait, inputs, n_permutations, seed, progress
+    population, trait, inputs, n_permutations, random_state, progress
         As in `classify`.
 
     Returns
@@ -353,10 +353,10 @@ def regress(
     0  size alone       1         0.96
 
     """
-    asked = contrast(population, trait)
+    asked = trait_contrast(population, trait)
     tables = _tables(population, asked, inputs)
     left_out: _LeftOut = {"groups": asked.persons, "progress": _steps(asked, tables, progress)}
-    deals: _Deals = {"n_permutations": n_permutations, "seed": seed}
+    deals: _Deals = {"n_permutations": n_permutations, "random_state": random_state}
     results = [
         RegressionResult(
             input=each,
@@ -417,7 +417,7 @@ class _LeftOut(TypedDict):
 
 class _Deals(TypedDict):
     n_permutations: int
-    seed: int
+    random_state: int
 
 
 def _steps(asked: Contrast, tables: Sized, progress: Progress | None) -> Progress | None:

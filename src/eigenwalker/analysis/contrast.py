@@ -57,7 +57,7 @@ class Contrast:
         return np.where(self.y > 0, self.positive, self.negative)
 
 
-def contrast(population: Population, trait: str) -> Contrast:
+def trait_contrast(population: Population, trait: str) -> Contrast:
     """Return which walkers a trait is known of, and what it is for each.
 
     Parameters
@@ -79,10 +79,10 @@ def contrast(population: Population, trait: str) -> Contrast:
 
     Examples
     --------
-    >>> sex = contrast(ew.load_population(), "sex")
+    >>> sex = trait_contrast(ew.load_population(), "sex")
     >>> sex.positive, len(sex.rows)
     ('male', 40)
-    >>> contrast(ew.load_population(), "weight").positive
+    >>> trait_contrast(ew.load_population(), "weight").positive
     'heavy'
 
     """
@@ -93,7 +93,7 @@ def contrast(population: Population, trait: str) -> Contrast:
         raise ValueError(
             f"All {len(population)} walkers are flagged, the first because: "
             f"{population.traits[FLAG][0]} To use them all the same, take "
-            "population.trusting_all(), or --with-flagged on the command line."
+            "population.without_flags(), or --with-flagged on the command line."
         )
     known = values.notna() & (_words(values) != "") & ~population.flagged
     if pair:

@@ -52,10 +52,10 @@ class JackknifeCurves:
     @property
     def generalisation(self) -> np.ndarray:
         """Misclassified walkers among those left out, for 1, 2, ... components."""
-        return self.missed.sum(axis=0)
+        return self.misclassified.sum(axis=0)
 
     @property
-    def missed(self) -> np.ndarray:
+    def misclassified(self) -> np.ndarray:
         """Which walkers are misclassified when left out: shape (walker, component) (J27)."""
         return self.confidence <= 0
 
@@ -190,36 +190,36 @@ class RegressionCurves:
     ----------
     y : array of shape (walker,)
         The trait.
-    fitted : array of shape (walker, component)
+    trained : array of shape (walker, component)
         As told by 1, 2, ... components of all walkers.
-    predicted : array of shape (walker, component)
+    held_out : array of shape (walker, component)
         As told by the others when the walker is left out.
 
     """
 
     y: np.ndarray
-    fitted: np.ndarray
-    predicted: np.ndarray
+    trained: np.ndarray
+    held_out: np.ndarray
 
     @property
     def n_components(self) -> np.ndarray:
         """1, 2, ...: the abscissa of the curves."""
-        return np.arange(1, self.predicted.shape[1] + 1)
+        return np.arange(1, self.held_out.shape[1] + 1)
 
     @property
     def rmse(self) -> np.ndarray:
         """Root mean square error on walkers left out, in units of the trait."""
-        return root_mean_square_error(self.y, self.predicted)
+        return root_mean_square_error(self.y, self.held_out)
 
     @property
     def r2(self) -> np.ndarray:
         """Share of variance told on walkers left out; below 0 where the mean tells more."""
-        return share_told(self.y, self.predicted)
+        return share_told(self.y, self.held_out)
 
     @property
-    def fitted_r2(self) -> np.ndarray:
+    def trained_r2(self) -> np.ndarray:
         """Share of variance told on walkers trained on."""
-        return share_told(self.y, self.fitted)
+        return share_told(self.y, self.trained)
 
     @property
     def correlation(self) -> np.ndarray:
@@ -227,7 +227,7 @@ class RegressionCurves:
 
         Chance is below 0: leaving a walker out moves the mean of the others away from it.
         """
-        return correlation_with(self.y, self.predicted)
+        return correlation_with(self.y, self.held_out)
 
     @property
     def best_n(self) -> int:
@@ -306,8 +306,8 @@ def regression_curves(
     n_components = len(predicted)
     return RegressionCurves(
         y=trait,
-        fitted=(trait.mean() + fitted[:n_components]).T,
-        predicted=(level + predicted).T,
+        trained=(trait.mean() + fitted[:n_components]).T,
+        held_out=(level + predicted).T,
     )
 
 

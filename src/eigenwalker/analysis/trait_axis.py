@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eigenwalker.analysis.contrast import Contrast, contrast
+from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.direction import Discriminant, Kind, Units, direction
 from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
 from eigenwalker.analysis.walker_space import WalkerSpace
@@ -107,7 +107,7 @@ def trait_axis(
     >>> caricature = people.walker(people.average + 6 * sex.step)  # very much a man
 
     """
-    asked = contrast(population, trait)
+    asked = trait_contrast(population, trait)
     columns = population.layout.columns(part)
     space = strongest_space(population.X[np.ix_(asked.rows, columns)], n_components)
     return axis_within(space, population, asked, columns, kind=kind, units=units)

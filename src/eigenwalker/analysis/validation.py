@@ -22,6 +22,8 @@ from eigenwalker.analysis.walker_space import Scale
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.progress import Progress, ticked
 
+RandomState = int | np.random.Generator | None
+
 _Loss = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """What sums of eq. 11 of shape (component, ...) cost, given r and the mean r of those kept."""
 
@@ -32,20 +34,20 @@ class NestedErrors:
 
     Parameters
     ----------
-    missed : array of bool of shape (walker,)
+    misclassified : array of bool of shape (walker,)
         Which walkers are misclassified.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
 
     """
 
-    missed: np.ndarray
+    misclassified: np.ndarray
     chosen_n: np.ndarray
 
     @property
     def errors(self) -> int:
         """Number of walkers misclassified."""
-        return int(self.missed.sum())
+        return int(self.misclassified.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +58,7 @@ class NestedRegression:
     ----------
     y : array of shape (walker,)
         The trait.
-    predicted : array of shape (walker,)
+    held_out : array of shape (walker,)
         As told by the others.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
@@ -64,23 +66,23 @@ class NestedRegression:
     """
 
     y: np.ndarray
-    predicted: np.ndarray
+    held_out: np.ndarray
     chosen_n: np.ndarray
 
     @property
     def rmse(self) -> float:
         """Root mean square error, in units of the trait."""
-        return float(root_mean_square_error(self.y, self.predicted[:, None])[0])
+        return float(root_mean_square_error(self.y, self.held_out[:, None])[0])
 
     @property
     def r2(self) -> float:
         """Share of variance told; below 0 where the mean of all walkers tells more."""
-        return float(share_told(self.y, self.predicted[:, None])[0])
+        return float(share_told(self.y, self.held_out[:, None])[0])
 
     @property
     def correlation(self) -> float:
         """Correlation of trait and prediction; chance is below 0, as in `RegressionCurves`."""
-        return float(correlation_with(self.y, self.predicted[:, None])[0])
+        return float(correlation_with(self.y, self.held_out[:, None])[0])
 
 
 def nested_leave_one_out(
@@ -122,7 +124,7 @@ def nested_leave_one_out(
     with one_blas_thread():
         table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         sums, chosen_n = _nested(table, folds, order, _misses, progress)
-    return NestedErrors(missed=r * sums <= 0, chosen_n=chosen_n)
+    return NestedErrors(misclassified=r * sums <= 0, chosen_n=chosen_n)
 
 
 def nested_regression(
@@ -165,7 +167,7 @@ def nested_regression(
         sums, chosen_n = _nested(table, folds, order, _squared_errors, progress)
     for out in folds:
         sums[out] += trait.mean() + table.level_without(out)
-    return NestedRegression(y=trait, predicted=sums, chosen_n=chosen_n)
+    return NestedRegression(y=trait, held_out=sums, chosen_n=chosen_n)
 
 
 def _nested(
@@ -239,7 +241,7 @@ def permutation_test(
     y: ArrayLike,
     *,
     n_permutations: int = 1000,
-    seed: int = 0,
+    random_state: RandomState = 0,
     scale: Scale = "sd",
     order: Order = "standardised",
     scale_in_fold: bool = True,
@@ -258,8 +260,8 @@ def permutation_test(
         is of one class, and within groups otherwise.
     n_permutations : int
         Deals.
-    seed : int
-        Of the deals.
+    random_state : int or numpy.random.Generator
+        Seed of the permutations, or their generator.
 
     Returns
     -------
@@ -274,7 +276,7 @@ def permutation_test(
 
     """
     walkers, r, folds = checked_classes(X, y, groups)
-    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(seed))
+    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(random_state))
     with one_blas_thread():
         table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
         errors = _least_losses(table, folds, order, _misses, progress)
@@ -286,7 +288,7 @@ def regression_permutation_test(
     y: ArrayLike,
     *,
     n_permutations: int = 1000,
-    seed: int = 0,
+    random_state: RandomState = 0,
     scale: Scale = "sd",
     order: Order = "standardised",
     scale_in_fold: bool = True,
@@ -303,7 +305,7 @@ def regression_permutation_test(
     X, y, scale, order, scale_in_fold, groups, progress
         As in `regression_curves`. With `groups`, values are dealt to whole groups where each group
         has one value, and within groups otherwise.
-    n_permutations, seed
+    n_permutations, random_state
         As in `permutation_test`.
 
     Returns
@@ -320,7 +322,7 @@ def regression_permutation_test(
     """
     walkers, trait, folds = checked_trait(X, y, groups)
     r = trait - trait.mean()
-    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(seed))
+    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(random_state))
     with one_blas_thread():
         table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
         squares = _least_losses(table, folds, order, _squared_errors, progress)

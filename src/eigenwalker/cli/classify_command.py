@@ -37,11 +37,11 @@ def classify(
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
     from eigenwalker.analysis import classification
-    from eigenwalker.analysis.contrast import contrast
+    from eigenwalker.analysis.contrast import trait_contrast
     from eigenwalker.report.classification_report import write_main_job
 
     population = load_people(people, with_flagged)
-    classes = contrast(population, trait)
+    classes = trait_contrast(population, trait)
     page = None
     with progress_bar("Classifying") as progress:
         settings = {"n_permutations": permutations, "progress": progress}

@@ -338,7 +338,7 @@ def _walks(source: Path, told: dict, labels: dict) -> Walks:
 
     population = load_population(source)
     if labels["with_flagged"]:
-        population = population.trusting_all()
+        population = population.without_flags()
     with _bar("Looping walks") as progress:
         return walks_of_population(
             population, trait=labels["trait"], mannequin=told["mannequin"], progress=progress

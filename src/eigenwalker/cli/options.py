@@ -64,7 +64,7 @@ def load_people(path: Path | None, with_flagged: bool) -> Population:
     if path is None:
         print(f"Using {BUILT_IN}.", file=sys.stderr)
     population = load_population(path)
-    return population.trusting_all() if with_flagged else population
+    return population.without_flags() if with_flagged else population
 
 
 def parse_trait_steps(text: str) -> tuple[str, float]:

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import numpy as np
 import pandas as pd
 
-from eigenwalker.analysis.contrast import Contrast, contrast
+from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.direction import Kind, direction
 from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_space
 from eigenwalker.analysis.walker_space import WalkerSpace
@@ -89,7 +89,7 @@ class _Spaces:
 
 def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
     population = spaces.population
-    asked = contrast(population, name)
+    asked = trait_contrast(population, name)
     whole = spaces.axis(asked, "all")
     label, unit = _label_and_unit(asked)
     told = {

@@ -42,7 +42,7 @@ class TraitCurves(Protocol):
     @property
     def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells
     @property
-    def fitted_r2(self) -> np.ndarray: ...  # noqa: D102 - the class tells
+    def trained_r2(self) -> np.ndarray: ...  # noqa: D102 - the class tells
     @property
     def r2(self) -> np.ndarray: ...  # noqa: D102 - the class tells
 
@@ -116,7 +116,7 @@ def figure_regression_curves(
     Examples
     --------
     >>> from types import SimpleNamespace
-    >>> curve = SimpleNamespace(n_components=[1, 2], fitted_r2=[0.3, 0.6], r2=[0.2, 0.1])
+    >>> curve = SimpleNamespace(n_components=[1, 2], trained_r2=[0.3, 0.6], r2=[0.2, 0.1])
     >>> figure_regression_curves({"structure": curve}).axes[0].get_title(loc="left")
     'structure'
 
@@ -124,7 +124,7 @@ def figure_regression_curves(
     figure, axes, _ = _grid(curves, n_columns)
     for axis, curve in zip(axes, curves.values(), strict=True):
         told = np.asarray(curve.r2)
-        _draw(axis, curve.n_components, curve.fitted_r2, told)
+        _draw(axis, curve.n_components, curve.trained_r2, told)
         best, n = int(np.argmax(told)), curve.n_components
         if told[best] > _LOWEST_R2:
             _ring(axis, n[best], told[best])

@@ -187,7 +187,7 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     return together / (n_walkers * (n_walkers - 1))
 
 
-def matched_by_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
+def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     """Return the eigenpostures as first found, with only sign and order made to agree.
 
     The paper's own reading of correspondence (J12): components sorted by their harmonic, then by

@@ -18,7 +18,7 @@ from eigenwalker.population.correspondence import (
     Correspondence,
     correspond,
     correspond_to,
-    matched_by_sign_and_order,
+    match_sign_and_order,
     posture_correlations,
 )
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
@@ -120,6 +120,15 @@ class Population:
     def feature_names(self) -> tuple[str, ...]:
         """Names of the columns of `X`."""
         return self.layout.names
+
+    @property
+    def names(self) -> list[str]:
+        """What to call each walker: its file, or its number in the population."""
+        numbers = [f"walker {row}" for row in range(len(self))]
+        if "file" not in self.traits:
+            return numbers
+        files = self.traits["file"].fillna("").astype(str)
+        return [file or number for file, number in zip(files, numbers, strict=True)]
 
     @property
     def flagged(self) -> np.ndarray:
@@ -294,7 +303,7 @@ class Population:
         """Return the population without flagged walkers."""
         return self.select(~self.flagged)
 
-    def trusting_all(self) -> Population:
+    def without_flags(self) -> Population:
         """Return the population with its flags taken off, so that flagged walkers count too."""
         return replace(self, traits=self.traits.assign(**{FLAG: ""}))
 
@@ -335,7 +344,7 @@ class Population:
         """
         walkers = [w for w, kept in zip(self.walkers, self._trusted, strict=True) if kept]
         mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
-        as_found = posture_correlations(matched_by_sign_and_order(walkers))
+        as_found = posture_correlations(match_sign_and_order(walkers))
         together = posture_correlations(np.stack([walker.p for walker in walkers]))
         return pd.DataFrame(
             {
@@ -410,12 +419,3 @@ def flags_of(traits: pd.DataFrame) -> list[str]:
 def joined_flags(*flags: Iterable[str]) -> list[str]:
     """Return all that several sources say of each walker, in one line a walker."""
     return [" ".join(said for said in each if said) for each in zip(*flags, strict=True)]
-
-
-def names_of(population: Population) -> list[str]:
-    """Return what to call each walker: its file, or its number in the population."""
-    numbers = [f"walker {row}" for row in range(len(population))]
-    if "file" not in population.traits:
-        return numbers
-    files = population.traits["file"].fillna("").astype(str)
-    return [file or number for file, number in zip(files, numbers, strict=True)]

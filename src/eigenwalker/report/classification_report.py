@@ -19,7 +19,7 @@ from eigenwalker.analysis.classification import (
     classify as classify_inputs,
     regress as regress_inputs,
 )
-from eigenwalker.analysis.contrast import Contrast, contrast
+from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.direction import Kind
 from eigenwalker.analysis.plausibility import plausibility
 from eigenwalker.analysis.trait_axis import TraitAxis, trait_axis
@@ -48,7 +48,6 @@ from eigenwalker.report.blocks import (
 from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
-    names_of,
     plausibility_table,
     results_table,
 )
@@ -125,7 +124,7 @@ def write_main_job(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    asked = contrast(population, trait)
+    asked = trait_contrast(population, trait)
     tell = classify_inputs if asked.two_classes else regress_inputs
     found = tell(population, trait, n_permutations=n_permutations, progress=progress)
     report = Report(
@@ -188,7 +187,7 @@ def _who(population: Population) -> list[Block]:
         blocks.append(Table("Traits", ["trait", "values", "known of"], known))
     if population.flagged.any():
         named = population.traits[population.flagged]
-        names = names_of(population)
+        names = population.names
         flagged = [[names[row], flag] for row, flag in zip(named.index, named["flag"], strict=True)]
         blocks.append(Table("Flagged, and left out of all that follows", ["walk", "why"], flagged))
     return blocks

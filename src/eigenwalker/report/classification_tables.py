@@ -10,7 +10,7 @@ from eigenwalker.analysis.classification import N_PANELS, Classification, Regres
 from eigenwalker.analysis.plausibility import Plausibility
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
-from eigenwalker.population.population import Population, names_of
+from eigenwalker.population.population import Population
 from eigenwalker.report.blocks import Table
 
 _GAIT = {
@@ -76,11 +76,11 @@ def plausibility_table(found: Mapping[str, Plausibility]) -> Table:
 
 def missed_table(population: Population, found: Classification, most: int = 10) -> Table | None:
     """Return the walkers that several classifiers miss, named with their class; None if none."""
-    missed = found.often_missed().head(most)
+    missed = found.often_misclassified().head(most)
     if missed.empty:
         return None
     classes = dict(zip(found.contrast.rows, found.contrast.labels, strict=True))
-    names = names_of(population)
+    names = population.names
     rows = [
         [f"{names[row]} ({classes[row]})", int(count)]
         for row, count in zip(missed.index.to_numpy(), missed, strict=True)

@@ -17,7 +17,7 @@ from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.metric.comparison_pipeline import comparable_walk
 from eigenwalker.metric.prepared import PreparedClip, as_trajectories, prepare
 from eigenwalker.metric.retargeting import retarget
-from eigenwalker.population.population import FLAG, Population, flags_of, names_of
+from eigenwalker.population.population import FLAG, Population, flags_of
 from eigenwalker.quality.findings import assess
 from eigenwalker.study.body_warnings import strangeness
 from eigenwalker.study.capture_table import FILE, listed
@@ -118,7 +118,7 @@ def walks_of_population(
     Parameters
     ----------
     population : Population
-        Its flagged walkers are left out; `Population.trusting_all` counts them too.
+        Its flagged walkers are left out; `Population.without_flags` counts them too.
     trait : str, optional
         Trait to be the label.
     mannequin : bool
@@ -133,7 +133,7 @@ def walks_of_population(
         )
     if trait is not None:
         _refuse_continuous(population.traits[trait])
-    names, flags = names_of(population), flags_of(population.traits)
+    names, flags = population.names, flags_of(population.traits)
     clips, flagged = {}, {}
     for row, (name, walker) in enumerate(zip(names, population.walkers, strict=True)):
         if population.flagged[row]:
