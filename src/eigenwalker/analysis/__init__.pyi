@@ -5,7 +5,7 @@ from .classification import (
     classify as classify,
     regress as regress,
 )
-from .contrast import Contrast as Contrast, contrast as contrast
+from .contrast import Contrast as Contrast, trait_contrast as trait_contrast
 from .direction import direction as direction
 from .discriminant import (
     DiscriminantClassifier as DiscriminantClassifier,
