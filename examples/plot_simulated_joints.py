@@ -14,7 +14,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.simulation.norms import basis, norm_coefficients
 
 SHARE = np.linspace(0, 1, 101)
 
@@ -86,7 +85,7 @@ def main():
     mean = {name: np.mean([one[name] for one in people], axis=0) for name in people[0]}
     figure, axes = plt.subplots(1, 4, figsize=(14, 3.4), layout="constrained")
     hip, tilt, knee = (
-        basis(SHARE - 0.04, 4) @ norm_coefficients(name, 0.43, 4)
+        ew.core.harmonic_basis(SHARE - 0.04, 4) @ ew.simulation.norm_coefficients(name, 0.43, 4)
         for name in ("hip_flexion", "pelvis_tilt", "knee_flexion")
     )
     norms = {"thigh against the vertical": hip - tilt, "knee flexion": knee}

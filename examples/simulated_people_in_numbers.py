@@ -9,17 +9,21 @@ import numpy as np
 
 import eigenwalker as ew
 from eigenwalker.population.correspondence import match_sign_and_order, posture_correlations
-from eigenwalker.simulation.foot import TOE_BEND
-from eigenwalker.simulation.person import ANSUR, PARAMETERS, PINZONE, SCHWARTZ, TROJE
-from eigenwalker.simulation.planted_effect import random_pattern
-from eigenwalker.simulation.trait_effects import EFFECTS, draw_people
-from eigenwalker.simulation.truth import true_direction, truth_of
+from eigenwalker.simulation import (
+    EFFECTS,
+    PARAMETERS,
+    TOE_BEND,
+    draw_people,
+    random_effect,
+    true_direction,
+    truth_of,
+)
 
 SHORT = {
-    ANSUR: "ANSUR II",
-    PINZONE: "Pinzone 2014",
-    SCHWARTZ: "Schwartz 2008",
-    TROJE: "Troje 2002",
+    "ANSUR II (Gordon et al. 2014, Natick/TR-15/007), ages 18 to 38": "ANSUR II",
+    "Pinzone, Schwartz & Baker 2014, Gait Posture 40:286": "Pinzone 2014",
+    "Schwartz et al. 2008, J Biomech 41:1639": "Schwartz 2008",
+    "Troje 2002, J Vision 2:371": "Troje 2002",
 }
 
 
@@ -225,9 +229,9 @@ def found_again(n_each):
     for part in ("structure", "dynamics"):
         plain, planted = (
             ew.simulate_population(
-                n_each, n_each, seed=12, sex_effect=0, effects={}, duration_s=6, planted=patterns
+                n_each, n_each, seed=12, sex_effect=0, effects={}, duration_s=6, planted=planted_effects
             )
-            for patterns in ({}, {"sex": random_pattern(part, size_mm=8, seed=1)})
+            for planted_effects in ({}, {"sex": random_effect(part, size_mm=8, seed=1)})
         )
         found = [_mean_difference(people, part) for people in (plain, planted)]
         spread = plain.part(part).std(axis=0)

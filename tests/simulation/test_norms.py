@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from eigenwalker.simulation.foot import TOE_BEND, Foot
-from eigenwalker.simulation.norms import basis, later, norm_coefficients
+from eigenwalker.core.fourier import harmonic_basis
+from eigenwalker.simulation.body import TOE_BEND, Foot
+from eigenwalker.simulation.norms import delay, norm_coefficients
 
 FOOT = Foot(heel=70.0, ball=105.0, toe=60.0, height=70.0)
 PITCH = np.radians(np.linspace(-25, 75, 101))
 
 
 def curve(name, speed=0.43):
-    return basis(np.linspace(0, 1, 100, endpoint=False), 4) @ norm_coefficients(name, speed, 4)
+    return harmonic_basis(np.linspace(0, 1, 100, endpoint=False), 4) @ norm_coefficients(name, speed, 4)
 
 
 def test_extremes_are_those_that_schwartz_et_al_print():
@@ -28,10 +29,10 @@ def test_joints_move_more_the_faster_one_walks():
 
 
 @given(lag=st.floats(-1, 1), phase=st.floats(0, 1))
-def test_a_curve_that_is_late_is_the_same_curve_later(lag, phase):
+def test_a_curve_that_is_late_is_the_same_curve_delay(lag, phase):
     coefficients = norm_coefficients("knee_flexion", 0.43, 4)
-    now = basis(np.array([phase]), 4) @ later(coefficients, lag)
-    assert now == pytest.approx(basis(np.array([phase - lag]), 4) @ coefficients, abs=1e-9)
+    now = harmonic_basis(np.array([phase]), 4) @ delay(coefficients, lag)
+    assert now == pytest.approx(harmonic_basis(np.array([phase - lag]), 4) @ coefficients, abs=1e-9)
 
 
 def test_a_planted_foot_touches_the_ground_and_nothing_of_it_is_below():

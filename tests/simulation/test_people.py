@@ -10,10 +10,9 @@ from eigenwalker.decomposition import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.simulation.captures import write_captures
-from eigenwalker.simulation.people import simulate_captures, simulate_population
+from eigenwalker.simulation.people import simulate_captures, simulate_population, write_captures
 from eigenwalker.simulation.person import PARAMETERS
-from eigenwalker.simulation.planted_effect import Pattern, plant, random_pattern
+from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect, random_effect
 from eigenwalker.simulation.trait_effects import EFFECTS, TRAITS, draw_people
 from eigenwalker.simulation.truth import true_direction, truth_of
 from eigenwalker.simulation.walk import simulate_walk
@@ -125,7 +124,7 @@ def test_nobody_knows_the_truth_of_real_people(population):
 def test_parallel_work_gives_the_same_population(monkeypatch, population):
     from eigenwalker.simulation import people
 
-    monkeypatch.setattr(people, "_SHARE", 6)
+    monkeypatch.setattr(people, "_PER_TASK", 6)
     again = simulate_population(6, 6, seed=3, n_jobs=2, **SHORT)
     np.testing.assert_allclose(again.X, population.X, atol=1e-9)
 
@@ -138,8 +137,8 @@ def nobody_differs():
 @pytest.mark.parametrize(("part", "other"), [("structure", "dynamics"), ("dynamics", "structure")])
 def test_an_effect_planted_in_one_part_is_invisible_to_the_other(nobody_differs, part, other):
     plain = simulate_population(**nobody_differs)
-    pattern = random_pattern(part, size_mm=8, seed=1)
-    planted = simulate_population(planted={"sex": pattern}, **nobody_differs)
+    effect = random_effect(part, size_mm=8, seed=1)
+    planted = simulate_population(planted={"sex": effect}, **nobody_differs)
     spread = plain.part(other).std(axis=0)
     seen = np.abs(planted.part(other) - plain.part(other))
     assert np.median(seen[:, spread > 0.1] / spread[spread > 0.1]) < 0.02
@@ -148,14 +147,14 @@ def test_an_effect_planted_in_one_part_is_invisible_to_the_other(nobody_differs,
 
 
 def test_a_planted_effect_is_found_by_the_mean_difference():
-    pattern = random_pattern("structure", size_mm=15, seed=2)
+    effect = random_effect("structure", size_mm=15, seed=2)
     people = simulate_population(
-        30, 30, seed=6, sex_effect=0, effects={}, planted={"sex": pattern}, **SHORT
+        30, 30, seed=6, sex_effect=0, effects={}, planted={"sex": effect}, **SHORT
     )
-    expected = pattern.structure - pattern.structure[8] * [1, 1, 0]  # in place: from the pelvis
+    expected = effect.structure - effect.structure[8] * [1, 1, 0]  # in place: from the pelvis
     found = mean_difference(people, "p0").reshape(15, 3)
     assert cosine(found.ravel(), expected.ravel()) > 0.9
-    assert truth_of(people).planted["sex"].structure == pytest.approx(pattern.structure)
+    assert truth_of(people).planted["sex"].structure == pytest.approx(effect.structure)
 
 
 def test_the_true_direction_is_found_by_the_mean_difference():
@@ -181,13 +180,13 @@ def test_the_sexes_differ_as_the_papers_say():
     assert abs(difference["frequency_hz"]) < 0.02  # J26
 
 
-def test_patterns_are_of_the_fifteen_joints():
-    with pytest.raises(ValueError, match="A pattern has a structure of shape"):
-        Pattern(structure=np.zeros((3, 3)))
+def test_planted_effects_are_of_the_fifteen_joints():
+    with pytest.raises(ValueError, match="structure of shape"):
+        PlantedEffect(structure=np.zeros((3, 3)))
     with pytest.raises(ValueError, match="of the 15 joints"):
-        plant(simulate_walk(markers="skin", duration_s=2), Pattern(), 1.0)
+        add_effect(simulate_walk(markers="skin", duration_s=2), PlantedEffect(), 1.0)
     with pytest.raises(ValueError, match="part='p0' is not known"):
-        random_pattern("p0", size_mm=1)
+        random_effect("p0", size_mm=1)
 
 
 @pytest.mark.parametrize("format", ["c3d", "trc", "csv"])

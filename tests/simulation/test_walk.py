@@ -10,7 +10,7 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.gait.frequency import fundamental_frequency
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.simulation.foot import TOE_BEND
+from eigenwalker.simulation.body import TOE_BEND
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.person import PARAMETERS, average_person
 from eigenwalker.simulation.trait_effects import draw_people

@@ -152,8 +152,11 @@ def simulate(
     ] = "c3d",
 ) -> None:
     """Simulate walkers of known truth, and the raw captures of a whole study to rehearse with."""
-    from eigenwalker.simulation.captures import write_captures
-    from eigenwalker.simulation.people import simulate_captures, simulate_population
+    from eigenwalker.simulation.people import (
+        simulate_captures,
+        simulate_population,
+        write_captures,
+    )
 
     check_population_file(output)
     people = {"n_women": women, "n_men": men, "seed": seed, "sex_effect": sex_effect}

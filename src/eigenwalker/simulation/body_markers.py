@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from eigenwalker.simulation.posture import SIDES, Turns, turned
-from eigenwalker.simulation.segment_lengths import Body
+from eigenwalker.core.fourier import harmonic_basis
+from eigenwalker.simulation.body import Body
+from eigenwalker.simulation.posture import SIDES, Rotations, rotated
 
 Offset = tuple[float, float, float] | np.ndarray
 
 RADIUS_MM = 7.0
-_HARMONICS = 2
 SOFT_TISSUE_MM = {
     "head": 0.5,
     "trunk": 2.0,
@@ -33,10 +33,10 @@ up to 30 mm from end to end on the thigh and a third of that on the shank.
 def skin_markers(
     body: Body,
     positions: Mapping[str, np.ndarray],
-    turns: Mapping[str, Turns],
+    rotations: Mapping[str, Rotations],
     phase: np.ndarray,
     *,
-    chance: np.random.Generator,
+    rng: np.random.Generator,
     soft_tissue: float = 1.0,
 ) -> dict[str, np.ndarray]:
     """Return the markers of the full-body Plug-in Gait set without RBAK: 38.
@@ -50,42 +50,37 @@ def skin_markers(
     body : Body
     positions : mapping of joint to array of shape (frame, 3)
         As `posture.joint_positions` returns them.
-    turns : mapping of segment to turns
-        As `posture.segment_turns` returns them.
+    rotations : mapping of segment to rotations
+        As `posture.segment_rotations` returns them.
     phase : array of shape (frame,)
         Cycles; skin moves with the stride, in each person and marker in its own way.
-    chance : Generator
-        Where these ways come from.
+    rng : Generator
+        Of that way.
     soft_tissue : float
-        Multiplies `SOFT_TISSUE_MM`; 0 glues markers to the bones.
+        Multiplies `SOFT_TISSUE_MM`; 0 fixes markers to the bones.
 
     Returns
     -------
     dict of str to array of shape (frame, 3)
 
     """
-    waves = _waves(phase)
+    waves = harmonic_basis(phase, 2)[:, [2, 4, 1, 3]]
     markers = {}
-    for name, (joint, segment, offset) in _placed_markers(body).items():
+    for name, (joint, segment, offset) in _marker_offsets(body).items():
         kind = segment.removeprefix("left_").removeprefix("right_")
-        weights = chance.standard_normal((waves.shape[1], 3)) / np.sqrt(_HARMONICS)
+        weights = rng.standard_normal((4, 3)) / np.sqrt(2)
         slide = soft_tissue * SOFT_TISSUE_MM[kind] * (waves @ weights)
-        at_rest = turned(np.asarray(offset, dtype=float), turns[segment])
+        at_rest = rotated(np.asarray(offset, dtype=float), rotations[segment])
         markers[name] = positions[joint] + at_rest + slide
     return markers
 
 
-def _waves(phase: np.ndarray) -> np.ndarray:
-    angle = 2 * np.pi * np.outer(phase, np.arange(1, _HARMONICS + 1))
-    return np.concatenate([np.cos(angle), np.sin(angle)], axis=1)
-
-
-def _placed_markers(body: Body) -> dict[str, tuple[str, str, Offset]]:
+def _marker_offsets(body: Body) -> dict[str, tuple[str, str, Offset]]:
     """Return joint, segment and offset in the segment of each marker."""
     height = body.height
     spine = (body.hip[1] - 7.3) / 0.33 / 2  # Harrington et al.: hip 0.33 of their distance and 7.3
     sternum = body.sternum
-    placed: dict[str, tuple[str, str, Offset]] = {
+    offsets: dict[str, tuple[str, str, Offset]] = {
         "CLAV": ("pelvis", "trunk", np.add(sternum, (0.053 * height, 0, 0.012 * height))),
         "STRN": ("pelvis", "trunk", np.add(sternum, (0.065 * height, 0, -0.066 * height))),
         "C7": ("pelvis", "trunk", np.add(sternum, (-0.043 * height, 0, 0.050 * height))),
@@ -93,15 +88,15 @@ def _placed_markers(body: Body) -> dict[str, tuple[str, str, Offset]]:
     }
     for side, sign in SIDES.items():
         own = _one_side(body, side, spine)
-        placed |= {
+        offsets |= {
             f"{side[0].upper()}{name}": (joint, segment, (x, sign * y, z))
             for name, (joint, segment, (x, y, z)) in own.items()
         }
-    return placed
+    return offsets
 
 
 def _one_side(body: Body, side: str, spine: float) -> dict[str, tuple[str, str, Offset]]:
-    """Offsets of one side: forward, outwards, up."""
+    """Return the same of one side: forward, outwards, up."""
     share, foot = 0.49 * body.height, body.foot  # of the leg from iliac spine to ankle
     knee, ankle, elbow = (width * share / 2 + RADIUS_MM for width in (0.112, 0.080, 0.076))
     height = body.height

@@ -1,10 +1,10 @@
-"""One stride, solved: the joint angles nearest to a person's draw whose feet hold the ground.
+"""One stride, solved: the joint angles nearest to the drawn ones whose feet hold the ground.
 
-A person asks for a step length, a step width and a range of vertical and lateral movement, and
-has joint angles drawn about published norms. Both cannot be had at once. The cycle that walks is
-the most probable one: Gauss-Newton finds the least change of the drawn angles, in units of what
-people differ by, for which the planted feet stay where they are, the swinging ones clear the
-ground, and the pelvis moves as asked.
+A person is drawn with a step length, a step width and ranges of vertical and lateral movement, and
+with joint angles about published norms. These contradict each other. The solved cycle is the most
+probable one: Gauss-Newton finds the least change of the drawn angles, in units of what people
+differ by, for which planted feet stay where they are, swinging ones clear the ground, and the
+pelvis moves as drawn.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from eigenwalker.core.blas_threads import one_blas_thread
-from eigenwalker.simulation.cadence import pace_of
+from eigenwalker.simulation.body import body_of
 from eigenwalker.simulation.ground import Ground
-from eigenwalker.simulation.segment_lengths import body_of
+from eigenwalker.simulation.prior_curves import gait_parameters
 
-_MOST_STEPS = 30
-_ENOUGH = 1.0
+_MAX_ITERATIONS = 30
+_LEAST_GAIN = 1.0
 
 
 @dataclass(frozen=True)
@@ -29,64 +29,54 @@ class Cycle:
 
     `legs` has shape (side, joint, coefficient) for thigh, knee and pitch of the foot over the
     side's own phase, which is 0 at its heel strike (at phase `onsets` of the left side); `pelvis`
-    has shape (axis, coefficient) over the left side's phase. `legs_longer` and `pelvis_longer`
+    has shape (axis, coefficient) over the left side's phase. `legs_slope` and `pelvis_slope`
     are what is added for each unit by which a step is longer than the person's own.
     """
 
     legs: np.ndarray
     pelvis: np.ndarray
-    legs_longer: np.ndarray
-    pelvis_longer: np.ndarray
+    legs_slope: np.ndarray
+    pelvis_slope: np.ndarray
     onsets: np.ndarray
 
 
 def solve_cycle(person: Mapping[str, float]) -> Cycle:
-    """Return the stride that a person walks.
-
-    Parameters
-    ----------
-    person : mapping
-        Parameters of `traits.PARAMETERS`.
-
-    Returns
-    -------
-    Cycle
-
-    """
+    """Return the stride that a person with these parameters (see `PARAMETERS`) walks."""
     body = body_of(person)
-    pace = pace_of(person, body)
-    own = Ground(person, body, pace)
-    doubled = own.with_stride(2 * pace.stride)
+    gait = gait_parameters(person, body)
+    own = Ground(person, body, gait)
+    doubled = own.with_stride_length(2 * gait.stride_length)
     with one_blas_thread():
-        best = _least_change(own, own.prior)
+        best = _most_probable(own)
         slope = _change_with_stride(own, doubled, best)
     legs, _, pelvis = own.split(best)
     legs_slope, _, pelvis_slope = own.split(slope)
-    sway = np.array([np.zeros_like(own.sway), own.sway, np.zeros_like(own.sway)])
-    return Cycle(legs, pelvis + sway, legs_slope, pelvis_slope, own.onsets)
+    pelvis[1] += own.sway
+    return Cycle(legs, pelvis, legs_slope, pelvis_slope, own.onsets)
 
 
-def _least_change(problem: Ground, unknown: np.ndarray) -> np.ndarray:
-    """Return the most probable cycle: Gauss-Newton, its steps shortened where they overshoot."""
+def _most_probable(problem: Ground) -> np.ndarray:
+    """Return the solution by Gauss-Newton, its steps shortened where they overshoot."""
 
     def cost(residual: np.ndarray, unknown: np.ndarray) -> float:
         return float(residual @ residual + problem.precision @ (unknown - problem.prior) ** 2)
 
-    residual, slopes = problem.linearised(unknown)
-    now = cost(residual, unknown)
-    for _ in range(_MOST_STEPS):
-        pull = problem.precision * (problem.prior - unknown) - slopes.T @ residual
-        step = np.linalg.solve(slopes.T @ slopes + np.diag(problem.precision), pull)
+    unknown = problem.prior
+    residual, jacobian = problem.linearised(unknown)
+    current = cost(residual, unknown)
+    for _ in range(_MAX_ITERATIONS):
+        gradient = problem.precision * (problem.prior - unknown) - jacobian.T @ residual
+        step = np.linalg.solve(jacobian.T @ jacobian + np.diag(problem.precision), gradient)
         for _ in range(6):
-            residual, slopes = problem.linearised(unknown + step)
-            then = cost(residual, unknown + step)
-            if then < now:
+            residual, jacobian = problem.linearised(unknown + step)
+            new = cost(residual, unknown + step)
+            if new < current:
                 break
             step = 0.4 * step
         else:
             return unknown
-        unknown, gain, now = unknown + step, now - then, then
-        if gain < _ENOUGH:
+        unknown, gain, current = unknown + step, current - new, new
+        if gain < _LEAST_GAIN:
             break
     return unknown
 
@@ -94,9 +84,9 @@ def _least_change(problem: Ground, unknown: np.ndarray) -> np.ndarray:
 def _change_with_stride(own: Ground, doubled: Ground, best: np.ndarray) -> np.ndarray:
     """Return how the solution moves for each unit by which the stride is longer.
 
-    Residuals are linear in the stride, so one solution of the linearised problem tells.
+    Residuals are linear in the stride length, so one solution of the linearised problem suffices.
     """
-    residual, slopes = own.linearised(best)
-    missed, _ = doubled.linearised(best)
-    normal = slopes.T @ slopes + np.diag(own.precision)
-    return np.linalg.solve(normal, slopes.T @ (residual - missed))
+    residual, jacobian = own.linearised(best)
+    residual_doubled, _ = doubled.linearised(best)
+    normal = jacobian.T @ jacobian + np.diag(own.precision)
+    return np.linalg.solve(normal, jacobian.T @ (residual - residual_doubled))

@@ -1,4 +1,4 @@
-"""What the ground asks of a stride, and how far a stride is from it: the equations to be solved.
+"""The stride of one person as a least-squares problem: what the ground asks of drawn movement.
 
 The unknowns are the Fourier coefficients of thigh, knee and pitch of both feet, the places of
 their prints, and the coefficients of the pelvis' path up and ahead.
@@ -12,21 +12,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from eigenwalker.simulation.cadence import Pace
-from eigenwalker.simulation.norms import basis
-from eigenwalker.simulation.posture import SIDES, trunk_turns, turned
+from eigenwalker.core.fourier import harmonic_basis
+from eigenwalker.simulation.body import Body
+from eigenwalker.simulation.posture import SIDES, rotated, trunk_rotations
 from eigenwalker.simulation.prior_curves import (
     LEG_HARMONICS,
     PELVIS_HARMONICS,
+    GaitParameters,
     leg_curves,
     pelvis_paths,
     trunk_curves,
 )
-from eigenwalker.simulation.segment_lengths import Body
 
 _FRAMES = 96
 _LEG = 2 * LEG_HARMONICS + 1
 _PELVIS = 2 * PELVIS_HARMONICS + 1
+_ONE_LEG = 3 * _LEG + 1
+"""Unknowns of a leg: three curves and the place of its print."""
 
 _CONTACT_MM = 0.5
 _FLAT = (0.10, 0.28)
@@ -36,22 +38,21 @@ _LEAST_KNEE = np.radians(2.5)
 _KNEE_RAD = np.radians(0.5)
 _CLEARANCE_MM = 16.0
 _SPREAD_RAD = np.radians([[1.5], [1.3], [2.3]])
-"""How far thigh, knee and pitch may be from their draw; higher harmonics less."""
+"""How far thigh, knee and pitch may be from what was drawn; higher harmonics less."""
 _RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 1.5, 5.0
-"""How far the pelvis may be from its: other harmonics, the second one of its height, fore-aft."""
-
-
+"""How far the pelvis may be from it: other harmonics, the second one of its height, fore-aft."""
 _ONE = np.ones(2 * _FRAMES)
-_Demand = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
+
+_Residual = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
 
 
 class Ground:
-    """The stride of one person as a least-squares problem.
+    """What a person's stride should be, and by how much a stride misses it.
 
     Attributes
     ----------
     prior, precision : array of shape (unknown,)
-        What the person was drawn to do, and how firmly: one over the variance.
+        What the person was drawn to do, and one over its variance.
     onsets : array of shape (side,)
         When the feet strike, shares of a stride.
     sway : array of shape (coefficient,)
@@ -59,21 +60,23 @@ class Ground:
 
     """
 
-    def __init__(self, person: Mapping[str, float], body: Body, pace: Pace) -> None:
-        self.body, self.pace = body, pace
+    def __init__(self, person: Mapping[str, float], body: Body, gait: GaitParameters) -> None:
+        self.body, self.gait = body, gait
         phase = np.arange(_FRAMES) / _FRAMES
         self.onsets = np.array([0.0, 0.5 + person["step_asymmetry"]])
         phases = (phase - self.onsets[:, None]) % 1.0
-        self._own, self._side = phases.ravel(), np.repeat(list(SIDES.values()), _FRAMES)
-        self._legs = [basis(own, LEG_HARMONICS) for own in phases]
-        self._trunk = basis(phase, PELVIS_HARMONICS)
+        self._phase, self._side = phases.ravel(), np.repeat(list(SIDES.values()), _FRAMES)
+        self._legs = [harmonic_basis(own, LEG_HARMONICS) for own in phases]
+        self._trunk = harmonic_basis(phase, PELVIS_HARMONICS)
         self._paths = np.concatenate([self._trunk, self._trunk])
         self._yaw = np.radians(person["foot_progression_deg"])
-        curves = trunk_curves(person, pace.effort)
-        turns = trunk_turns({name: self._trunk @ curve for name, curve in curves.items()}, "pelvis")
-        ahead, self.sway, rise = pelvis_paths(person, pace)
-        hips = [turned(body.hip * [1, side, 1], turns) for side in SIDES.values()]
-        self._hips = np.concatenate(hips)
+        curves = trunk_curves(person, gait.effort)
+        angles = {name: self._trunk @ curve for name, curve in curves.items()}
+        rotations = trunk_rotations(angles, "pelvis")
+        ahead, self.sway, rise = pelvis_paths(person, gait)
+        self._hips = np.concatenate(
+            [rotated(body.hip * [1, side, 1], rotations) for side in SIDES.values()]
+        )
         self._hips[:, 1] += np.tile(self._trunk @ self.sway, 2)
         rise[0] = 0.985 * (body.thigh + body.shank) + body.foot.height - body.hip[2]
         self.prior = self._prior(person, rise, ahead[1:])
@@ -82,7 +85,7 @@ class Ground:
     def _prior(
         self, person: Mapping[str, float], rise: np.ndarray, ahead: np.ndarray
     ) -> np.ndarray:
-        curves = np.array(leg_curves(person, self.pace.effort))
+        curves = np.array(leg_curves(person, self.gait.effort))
         half = np.radians([person["thigh_asymmetry_deg"], person["knee_asymmetry_deg"]]) / 2
         legs = []
         for side in SIDES.values():
@@ -92,44 +95,44 @@ class Ground:
         return np.concatenate([legs, rise, ahead])
 
     def _first_print(self, own: np.ndarray) -> float:
-        """Where the ball of a foot comes to stand at its heel strike if nothing is changed."""
-        thigh, knee = (basis(np.array([0.0]), LEG_HARMONICS) @ own[:2].T)[0]
+        """Return where the ball of a foot is put at its heel strike if nothing is changed."""
+        thigh, knee = (harmonic_basis(np.array([0.0]), LEG_HARMONICS) @ own[:2].T)[0]
         reach = self.body.thigh * np.sin(thigh) + self.body.shank * np.sin(thigh - knee)
         return reach + self.body.foot.ball
 
     def split(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return curves (side, joint, coefficient), prints (side,), pelvis (axis, coefficient)."""
-        legs = unknown[: 2 * (3 * _LEG + 1)].reshape(2, -1)
-        rise, ahead = np.split(unknown[2 * (3 * _LEG + 1) :], [_PELVIS])
+        legs = unknown[: 2 * _ONE_LEG].reshape(2, -1)
+        rise, ahead = np.split(unknown[2 * _ONE_LEG :], [_PELVIS])
         pelvis = np.array([np.concatenate([[0.0], ahead]), np.zeros(_PELVIS), rise])
         return legs[:, :-1].reshape(2, 3, _LEG), legs[:, -1], pelvis
 
-    def with_stride(self, stride: float) -> Ground:
+    def with_stride_length(self, length: float) -> Ground:
         """Return the same problem for another length of the stride."""
         other = copy(self)
-        other.pace = replace(self.pace, stride=stride)
+        other.gait = replace(self.gait, stride_length=length)
         return other
 
     def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return all residuals, each divided by its tolerance, and their derivatives."""
-        held = [
-            (miss, by, rows, tolerance)
-            for miss, by, when, tolerance in self._demands(unknown)
+        """Return all residuals, each divided by its tolerance, and their Jacobian."""
+        active = [
+            (residual, slopes, rows, tolerance)
+            for residual, slopes, when, tolerance in self._residuals(unknown)
             if len(rows := np.flatnonzero(when))
         ]
-        slopes = np.zeros((sum(len(rows) for _, _, rows, _ in held), len(self.prior)))
-        parts = np.split(slopes, np.cumsum([len(rows) for _, _, rows, _ in held])[:-1])
-        for (_, by, rows, tolerance), part in zip(held, parts, strict=True):
-            self._put_slopes(part, {name: slope / tolerance for name, slope in by.items()}, rows)
-        return np.concatenate([miss[rows] / tol for miss, _, rows, tol in held]), slopes
+        jacobian = np.zeros((sum(len(rows) for _, _, rows, _ in active), len(self.prior)))
+        blocks = np.split(jacobian, np.cumsum([len(rows) for _, _, rows, _ in active])[:-1])
+        for (_, slopes, rows, tolerance), block in zip(active, blocks, strict=True):
+            self._fill(block, {name: slope / tolerance for name, slope in slopes.items()}, rows)
+        return np.concatenate([each[rows] / tol for each, _, rows, tol in active]), jacobian
 
-    def _demands(self, unknown: np.ndarray) -> Iterator[_Demand]:
-        """Yield what the legs miss over the stride, by what it changes, when, and the tolerance.
+    def _residuals(self, unknown: np.ndarray) -> Iterator[_Residual]:
+        """Yield what the legs miss, its slopes, the frames where it counts, and the tolerance.
 
         Frames of the left leg, then those of the right one.
         """
         curves, prints, pelvis = self.split(unknown)
-        body, foot, own = self.body, self.body.foot, self._own
+        body, foot, phase = self.body, self.body.foot, self._phase
         thigh, knee, pitch = np.concatenate(
             [leg @ waves.T for leg, waves in zip(curves, self._legs, strict=True)], axis=1
         )
@@ -137,50 +140,47 @@ class Ground:
         forward = body.thigh * np.sin(thigh) + body.shank * np.sin(shank)
         down = body.thigh * np.cos(thigh) + body.shank * np.cos(shank)
         hip = self._hips + self._paths @ pelvis.T
-        foot_y = ankle_to_the_side(self._side, self.pace, body, self._yaw, pitch)
+        foot_y = ankle_to_the_side(self._side, self.gait, body, self._yaw, pitch)
         upright = np.sqrt(1 - ((foot_y - hip[:, 1]) / down) ** 2)
         x, z = hip[:, 0] + forward, hip[:, 2] - upright * down
         by_x = {"thigh": down, "knee": -body.shank * np.cos(shank), "ahead": _ONE, "print": -_ONE}
         by_z = {"thigh": upright * forward, "knee": -upright * body.shank * np.sin(shank)}
         by_z["rise"] = _ONE
 
-        stands = own <= self.pace.stance
+        stands = phase <= self.gait.stance
         over, rolling = foot.ankle_over_print(pitch)
         along = np.cos(self._yaw)
-        belt = np.repeat(prints, _FRAMES) - self.pace.stride * own
+        belt = np.repeat(prints, _FRAMES) - self.gait.stride_length * phase
         miss_x = x - belt - along * over[:, 0]
         yield miss_x, by_x | {"pitch": -along * rolling[:, 0]}, stands, _CONTACT_MM
         yield z - over[:, 1], by_z | {"pitch": -rolling[:, 1]}, stands, _CONTACT_MM
-        yield pitch, {"pitch": _ONE}, (own > _FLAT[0]) & (own < _FLAT[1]), _FLAT_RAD
+        yield pitch, {"pitch": _ONE}, (phase > _FLAT[0]) & (phase < _FLAT[1]), _FLAT_RAD
         yield knee - _LEAST_KNEE, {"knee": _ONE}, knee < _LEAST_KNEE, _KNEE_RAD
         sole, swinging = foot.sole_under_ankle(pitch)
-        room = _clearance(own, self.pace.stance)
+        room = _clearance(phase, self.gait.stance)
         for point in range(sole.shape[1]):
             miss = z + sole[:, point, 1] - room
             low = ~stands & (miss < 0)
             yield miss, by_z | {"pitch": swinging[:, point, 1]}, low, 2 * _CONTACT_MM
 
-    def _put_slopes(
-        self, slopes: np.ndarray, by: Mapping[str, np.ndarray], rows: np.ndarray
-    ) -> None:
-        """Put in derivatives by the unknowns, where those by angles and the pelvis are given."""
-        of_left = int(np.searchsorted(rows, _FRAMES))
-        legs = (slice(0, of_left), slice(of_left, None))
+    def _fill(self, block: np.ndarray, slopes: Mapping[str, np.ndarray], rows: np.ndarray) -> None:
+        """Fill in derivatives by the unknowns, given those by angles, print and pelvis."""
+        n_left = int(np.searchsorted(rows, _FRAMES))
+        legs = (slice(0, n_left), slice(n_left, None))
         for leg, (here, waves) in enumerate(zip(legs, self._legs, strict=True)):
-            first = leg * (3 * _LEG + 1)
-            frames = rows[here]
+            first, frames = leg * _ONE_LEG, rows[here]
             waves = waves[frames - leg * _FRAMES]
             for number, angle in enumerate(("thigh", "knee", "pitch")):
-                if angle in by:
+                if angle in slopes:
                     start = first + number * _LEG
-                    slopes[here, start : start + _LEG] = by[angle][frames, None] * waves
-            if "print" in by:
-                slopes[here, first + 3 * _LEG] = by["print"][frames]
-        pelvis = 2 * (3 * _LEG + 1)
-        if "rise" in by:
-            slopes[:, pelvis : pelvis + _PELVIS] = by["rise"][rows, None] * self._paths[rows]
-        if "ahead" in by:
-            slopes[:, pelvis + _PELVIS :] = by["ahead"][rows, None] * self._paths[rows, 1:]
+                    block[here, start : start + _LEG] = slopes[angle][frames, None] * waves
+            if "print" in slopes:
+                block[here, first + 3 * _LEG] = slopes["print"][frames]
+        rise = 2 * _ONE_LEG
+        if "rise" in slopes:
+            block[:, rise : rise + _PELVIS] = slopes["rise"][rows, None] * self._paths[rows]
+        if "ahead" in slopes:
+            block[:, rise + _PELVIS :] = slopes["ahead"][rows, None] * self._paths[rows, 1:]
 
 
 def _precision() -> np.ndarray:
@@ -193,17 +193,17 @@ def _precision() -> np.ndarray:
 
 
 def ankle_to_the_side(
-    side: int | np.ndarray, pace: Pace, body: Body, yaw: float, pitch: np.ndarray
+    side: int | np.ndarray, gait: GaitParameters, body: Body, yaw: float, pitch: np.ndarray
 ) -> np.ndarray:
     """Return the lateral place of an ankle: half a step width from the middle.
 
     It swings about the ball of the foot as the foot, toes out, rolls over it.
     """
     rolled = body.foot.ankle_over_ball(pitch) + body.foot.ball
-    return side * (pace.step_width / 2 - np.sin(yaw) * rolled)
+    return side * (gait.step_width / 2 - np.sin(yaw) * rolled)
 
 
-def _clearance(own: np.ndarray, stance: float) -> np.ndarray:
-    """Least height of the sole in swing, less just after toe-off and before heel strike."""
-    swing = (own - stance) / (1 - stance)
+def _clearance(phase: np.ndarray, stance: float) -> np.ndarray:
+    """Return the least height of the sole in swing, less near toe-off and heel strike."""
+    swing = (phase - stance) / (1 - stance)
     return _CLEARANCE_MM * np.clip(np.minimum(swing / 0.15, (1 - swing) / 0.12), 0.0, 1.0)

@@ -1,9 +1,8 @@
 """How joints turn over a stride: published norms as Fourier series.
 
-Angles in degrees over a cycle phase in [0, 1) that begins at the left heel strike,
-``mean + sum_h a_h cos(2 pi h phase) + b_h sin(2 pi h phase)``; the right limb follows half a stride
-later. Forward, left side up, left side forward, flexion, abduction and inward rotation are
-positive.
+Angles in degrees over a cycle phase in [0, 1) that begins at the left heel strike; the right limb
+follows half a stride later. Forward, left side up, left side forward, flexion, abduction and inward
+rotation are positive. Coefficients are in the order of `core.fourier.harmonic_basis`.
 """
 
 from __future__ import annotations
@@ -17,7 +16,8 @@ FREE_SPEED = 0.43
 
 
 def _series(mean: float, *pairs: tuple[float, float]) -> np.ndarray:
-    return np.array([mean, *np.ravel(pairs)])
+    """Return coefficients of a mean and, for each harmonic, the weights of cosine and sine."""
+    return np.array([mean, *np.fliplr(pairs).ravel()])
 
 
 CURVES_DEG = MappingProxyType(
@@ -50,31 +50,16 @@ SPEED_SLOPES_DEG = MappingProxyType(
 )
 
 
-def basis(phase: np.ndarray, n_harmonics: int) -> np.ndarray:
-    """Return 1, cos, sin of each harmonic at each phase: array of shape (phase, coefficient).
-
-    Examples
-    --------
-    >>> basis(np.array([0.0, 0.25]), 1).round(9).tolist()
-    [[1.0, 1.0, 0.0], [1.0, 0.0, 1.0]]
-
-    """
-    angle = 2 * np.pi * np.outer(phase, np.arange(1, n_harmonics + 1))
-    columns = np.ones((len(phase), 2 * n_harmonics + 1))
-    columns[:, 1::2], columns[:, 2::2] = np.cos(angle), np.sin(angle)
-    return columns
-
-
 def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     """Return the Fourier coefficients, in degrees, of a joint's norm at a walking speed.
 
-    One number, the dimensionless speed, slides hip, knee and ankle together along the family that
+    One number, the dimensionless speed, changes hip, knee and ankle together along the lines that
     Schwartz et al. (2008) measured.
 
     Parameters
     ----------
     name : str
-        A key of `CURVES_DEG`.
+        ``"hip_flexion"``, ``"knee_flexion"``, ``"pelvis_rotation"`` ...
     speed : float
         Speed divided by sqrt(g times leg length).
     n_harmonics : int
@@ -83,11 +68,21 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     Returns
     -------
     array of shape (1 + 2 * n_harmonics,)
+        Mean, then sine and cosine of each harmonic of the stride from a left heel strike.
+
+    See Also
+    --------
+    core.harmonic_basis : the waves that these coefficients weight.
+
+    References
+    ----------
+    Schwartz, M. H., Rozumalski, A., & Trost, J. P. (2008). The effect of walking speed on the gait
+    of typically developing children. Journal of Biomechanics, 41, 1639-1650.
 
     Examples
     --------
     >>> norm_coefficients("hip_flexion", 0.43, 1).tolist()
-    [18.4, 20.9, -3.2]
+    [18.4, -3.2, 20.9]
 
     """
     coefficients = np.zeros(1 + 2 * max(n_harmonics, 4))
@@ -98,17 +93,17 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     return coefficients[: 1 + 2 * n_harmonics]
 
 
-def later(coefficients: np.ndarray, lag: float) -> np.ndarray:
+def delay(coefficients: np.ndarray, lag: float) -> np.ndarray:
     """Return the Fourier coefficients of a curve that is late by a share of the cycle.
 
     Examples
     --------
-    >>> later(np.array([0.0, 1.0, 0.0]), 0.25).round(9).tolist()
-    [0.0, 0.0, 1.0]
+    >>> delay(np.array([0.0, 0.0, 1.0]), 0.25).round(9).tolist()
+    [0.0, 1.0, 0.0]
 
     """
     angle = 2 * np.pi * lag * np.arange(1, len(coefficients) // 2 + 1)
-    turned = (coefficients[1::2] - 1j * coefficients[2::2]) * np.exp(-1j * angle)
-    moved = coefficients.copy()
-    moved[1::2], moved[2::2] = turned.real, -turned.imag
-    return moved
+    turned = (coefficients[2::2] - 1j * coefficients[1::2]) * np.exp(-1j * angle)
+    delayed = coefficients.copy()
+    delayed[1::2], delayed[2::2] = -turned.imag, turned.real
+    return delayed

@@ -1,8 +1,9 @@
-"""Many simulated people: their captures, and the population these make."""
+"""Many simulated people: their captures, files of these, and the population that they make."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,14 +15,15 @@ from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
+from eigenwalker.io.write import FORMATS, write_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population
-from eigenwalker.simulation.planted_effect import Pattern, plant
-from eigenwalker.simulation.provenance import CAPTURE, Recipe
+from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
+from eigenwalker.simulation.provenance import CAPTURE, KEY, Provenance
 from eigenwalker.simulation.trait_effects import EFFECTS, TRAITS, Effects, draw_people
 from eigenwalker.simulation.walk import simulate_walk
 
-_SHARE = 100
+_PER_TASK = 100
 
 
 def simulate_captures(
@@ -31,10 +33,10 @@ def simulate_captures(
     seed: int = 0,
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
-    planted: Mapping[str, Pattern] | None = None,
+    planted: Mapping[str, PlantedEffect] | None = None,
     **capture: Any,
 ) -> Iterator[tuple[xr.DataArray, pd.Series]]:
-    """Yield the capture of one drawn person after another, with all that is known of the person.
+    """Yield the capture of one simulated person after another, with all that is known of them.
 
     One capture at a time is in memory, however many there are.
 
@@ -48,7 +50,7 @@ def simulate_captures(
         Multiplies all differences between the sexes, of body and of movement: 0 removes them.
     effects : mapping of trait to mapping of parameter to effect size
         See `draw_people`; ``{}`` for none.
-    planted : mapping of trait to Pattern, optional
+    planted : mapping of trait to PlantedEffect, optional
         Effects in mean posture, movement or frequency themselves, for each unit of the trait's
         score (see `draw_people`: sex counts from -0.5 to 0.5).
     **capture
@@ -70,26 +72,29 @@ def simulate_captures(
 
     """
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
+    planted = planted or {}
     for number in range(len(people)):
         person = people.iloc[number]
-        walk = _walked(person, (seed, number), planted or {}, capture)
-        yield _planted(walk, person, planted or {}), person
+        walk = _capture(person, (seed, number), planted, capture)
+        yield _with_effects(walk, person, planted), person
 
 
-def _walked(
-    person: pd.Series, seed: tuple[int, int], planted: Mapping[str, Pattern],
+def _capture(
+    person: pd.Series, seed: tuple[int, int], planted: Mapping[str, PlantedEffect],
     capture: Mapping[str, Any],
 ) -> xr.DataArray:  # fmt: skip
-    own = {str(name): value for name, value in person.items()}
-    own["frequency_hz"] += sum(
-        person[f"{trait}_score"] * pattern.frequency_hz for trait, pattern in planted.items()
+    parameters = {str(name): value for name, value in person.items()}
+    parameters["frequency_hz"] += sum(
+        person[f"{trait}_score"] * effect.frequency_hz for trait, effect in planted.items()
     )
-    return simulate_walk(own, seed=seed, **{**CAPTURE, **capture})
+    return simulate_walk(parameters, seed=seed, **{**CAPTURE, **capture})
 
 
-def _planted(walk: xr.DataArray, person: pd.Series, planted: Mapping[str, Pattern]) -> xr.DataArray:
-    for trait, pattern in planted.items():
-        walk = plant(walk, pattern, person[f"{trait}_score"])
+def _with_effects(
+    walk: xr.DataArray, person: pd.Series, planted: Mapping[str, PlantedEffect]
+) -> xr.DataArray:
+    for trait, effect in planted.items():
+        walk = add_effect(walk, effect, person[f"{trait}_score"])
     return walk
 
 
@@ -100,7 +105,7 @@ def simulate_population(
     seed: int = 0,
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
-    planted: Mapping[str, Pattern] | None = None,
+    planted: Mapping[str, PlantedEffect] | None = None,
     n_jobs: int = -1,
     **capture: Any,
 ) -> Population:
@@ -133,38 +138,91 @@ def simulate_population(
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
     planted = dict(planted or {})
     capture = {"markers": "skin", **CAPTURE, **capture}
-    recipe = Recipe(n_women, n_men, seed, sex_effect, effects, planted, capture)
-    parts = np.array_split(np.arange(len(people)), max(len(people) // _SHARE, 1))
-    work = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
-    found = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(work)
-    walkers = [walker for some in found or () for walker in some or ()]
+    provenance = Provenance(n_women, n_men, seed, sex_effect, effects, planted, capture)
+    parts = np.array_split(np.arange(len(people)), max(len(people) // _PER_TASK, 1))
+    tasks = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
+    lists = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(tasks)
     return Population(
-        walkers,
+        [walker for some in lists or () for walker in some or ()],
         people[list(TRAITS)],
         provenance={
             "simulated": f"{n_women} women and {n_men} men who do not exist, seed {seed}",
-            "recipe": recipe.as_text(),
+            KEY: provenance.to_json(),
         },
     )
 
 
 def _walkers(
-    people: pd.DataFrame, numbers: np.ndarray, seed: int, planted: Mapping[str, Pattern],
+    people: pd.DataFrame, numbers: np.ndarray, seed: int, planted: Mapping[str, PlantedEffect],
     capture: Mapping[str, Any],
 ) -> list[Walker]:  # fmt: skip
-    """Return the walkers of some of the people; only these leave the process that walked them."""
-    making = {"truth": bool(planted), **capture}
+    """Return the walkers of some of the people; only these leave the process that made them."""
     walkers = []
     with one_blas_thread():
         for row, number in enumerate(numbers):
             person = people.iloc[row]
-            walk = _walked(person, (seed, int(number)), planted, making)
-            if making["markers"] == "skin":
-                # Planting needs the phase of each frame, which virtual markers do not carry on.
-                walk = virtual_markers(walk).assign_coords(_phase_of(walk))
-            walkers.append(decompose_pca(in_place(_planted(walk, person, planted))))
+            settings = {"truth": bool(planted), **capture}
+            walk = _capture(person, (seed, int(number)), planted, settings)
+            if capture["markers"] == "skin":
+                # Effects need the phase of each frame, which virtual markers do not carry on.
+                phase = {"phase": walk["phase"]} if "phase" in walk.coords else {}
+                walk = virtual_markers(walk).assign_coords(phase)
+            walkers.append(decompose_pca(in_place(_with_effects(walk, person, planted))))
     return walkers
 
 
-def _phase_of(walk: xr.DataArray) -> dict[str, xr.DataArray]:
-    return {"phase": walk["phase"]} if "phase" in walk.coords else {}
+def write_captures(
+    captures: Iterable[tuple[xr.DataArray, pd.Series]],
+    folder: str | Path,
+    *,
+    format: str = "c3d",
+) -> Path:
+    """Write captures into a folder, with a table of the traits; return the path of that table.
+
+    Captures are written as they are simulated, so that no more than one is in memory.
+
+    Parameters
+    ----------
+    captures : iterable of capture and person
+        Such as `simulate_captures` yields, best with ``markers="skin"``.
+    folder : path
+        Made if need be.
+    format : str
+        Any suffix that `write_mocap` knows: C3D or TRC as motion capture systems write them, CSV
+        for a table with a column for each coordinate.
+
+    Returns
+    -------
+    Path
+        Of ``traits.csv``, whose column ``file`` names each capture; ``truth.csv`` beside it holds
+        all parameters of each person.
+
+    Raises
+    ------
+    ValueError
+        If the format is unknown.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> write_captures(simulate_captures(1, 1, duration_s=2), folder, format="csv").name
+    'traits.csv'
+    >>> sorted(path.name for path in folder.iterdir())
+    ['traits.csv', 'truth.csv', 'walker_0001.csv', 'walker_0002.csv']
+
+    """
+    if f".{format}" not in FORMATS:
+        known = [suffix.removeprefix(".") for suffix in FORMATS]
+        raise ValueError(f"format={format!r} is not known; give one of {known}.")
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    people = []
+    for number, (walk, person) in enumerate(captures, start=1):
+        file = f"walker_{number:04}.{format}"
+        write_mocap(walk, folder / file)
+        people.append({"file": file, **person.to_dict()})
+    table = pd.DataFrame(people)
+    table[["file", *TRAITS]].to_csv(folder / "traits.csv", index=False)
+    table.to_csv(folder / "truth.csv", index=False)
+    return folder / "traits.csv"

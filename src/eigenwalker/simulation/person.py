@@ -1,4 +1,4 @@
-"""The numbers that make a simulated person, each with its mean, its spread and their source."""
+"""The parameters of a simulated person, each with its mean, its spread and their source."""
 
 from __future__ import annotations
 
@@ -10,8 +10,15 @@ from typing import NamedTuple
 class Parameter(NamedTuple):
     """One number in which simulated people differ.
 
-    `female` and `male` are the means of the sexes, `sd` the spread within a sex, `source` where
-    they come from.
+    Attributes
+    ----------
+    female, male : float
+        Means of the sexes.
+    sd : float
+        Standard deviation within a sex.
+    source : str
+        Publication that these come from.
+
     """
 
     female: float
@@ -46,7 +53,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "upper_arm_share": Parameter(0.173, 0.173, 0.0062, f"{ANSUR}, acromion-radiale less 0.018"),
         "forearm_share": Parameter(0.1482, 0.1525, 0.0065, f"{ANSUR}, radiale-stylion"),
         "head_share": Parameter(0.927, 0.930, 0.0060, f"{ANSUR}, tragion height and 0.005"),
-        # Pace.
+        # Speed.
         "frequency_hz": _alike(0.84, 0.08, f"{TROJE}: 0.845 (0.09) women, 0.836 (0.07) men"),
         "stride_share": _alike(0.78, 0.045, f"{SCHWARTZ}: step 0.76 (0.044) of leg length"),
         "stance_share": _alike(0.605, 0.010, "Perry 1992: 60 per cent at 1.3 m/s"),
@@ -65,7 +72,7 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "head_tilt_deg": _alike(0, 6, CHOICE),
         "trunk_nod_deg": _alike(0.8, 0.5, CHOICE),
         "head_nod_deg": _alike(1.0, 0.7, CHOICE),
-        # When they turn: shares of a cycle by which a person is later than the norm.
+        # Lags: shares of a cycle by which a person is later than the norm.
         "sway_lag": _alike(0, 0.02, CHOICE),
         "bob_lag": _alike(0, 0.01, CHOICE),
         "obliquity_lag": _alike(0, 0.02, CHOICE),
@@ -105,11 +112,27 @@ PARAMETERS: Mapping[str, Parameter] = MappingProxyType(
         "arm_asymmetry": _alike(0.05, 0.12, "arm swing differs by 10 to 20 per cent"),
     }
 )
-"""The numbers that make a person; `shares` are of height, `factors` multiply the norm."""
+"""All parameters: shares of height, factors of the norm, lags in strides."""
 
 
 def average_person() -> dict[str, float]:
-    """Return the parameters of the person halfway between the average woman and man."""
+    """Return the parameters of the person halfway between the average woman and man.
+
+    Returns
+    -------
+    dict of str to float
+        For `simulate_walk`.
+
+    See Also
+    --------
+    draw_people : people who differ.
+
+    Examples
+    --------
+    >>> average_person()["height_mm"]
+    1693.0
+
+    """
     return {name: (p.female + p.male) / 2 for name, p in PARAMETERS.items()}
 
 

@@ -1,7 +1,7 @@
-"""Effects planted in what a walk is described by, not in the body that walks.
+"""Effects added to what a walk is described by, not to the body that walks.
 
 In a jointed body breadth also scales movement, so an effect set through the body reaches structure
-and dynamics alike. One planted here moves the mean posture alone, or the movement alone: what a
+and dynamics alike. One added here moves the mean posture alone, or the movement alone: what a
 classifier of the other must not see.
 """
 
@@ -13,14 +13,14 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.fourier import harmonic_basis
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.simulation.norms import basis
 
 _N_JOINTS = len(JOINTS.markers)
 
 
 @dataclass(frozen=True)
-class Pattern:
+class PlantedEffect:
     """What one unit of a trait adds to a walk of the 15 joints.
 
     Parameters
@@ -32,6 +32,11 @@ class Pattern:
     frequency_hz : float
         Added to the stride frequency.
 
+    See Also
+    --------
+    random_effect : one of random directions.
+    simulate_population : plants effects.
+
     """
 
     structure: np.ndarray = field(default_factory=lambda: np.zeros((_N_JOINTS, 3)))
@@ -42,15 +47,15 @@ class Pattern:
         shapes = np.shape(self.structure), np.shape(self.movement)
         if shapes != ((_N_JOINTS, 3), (4, _N_JOINTS, 3)):
             raise ValueError(
-                f"A pattern has a structure of shape {(_N_JOINTS, 3)} and a movement of shape "
+                f"An effect has a structure of shape {(_N_JOINTS, 3)} and a movement of shape "
                 f"{(4, _N_JOINTS, 3)}; got {shapes[0]} and {shapes[1]}."
             )
 
 
-def random_pattern(
+def random_effect(
     part: Literal["structure", "dynamics"], *, size_mm: float, seed: int = 0
-) -> Pattern:
-    """Return a pattern of random directions, all in one part of a walk.
+) -> PlantedEffect:
+    """Return an effect of random directions, all in one part of a walk.
 
     Parameters
     ----------
@@ -60,38 +65,63 @@ def random_pattern(
     size_mm : float
         Root mean square of what one unit of the trait adds to each coordinate.
     seed : int
+        The same seed gives the same effect.
 
     Returns
     -------
-    Pattern
+    PlantedEffect
 
     Examples
     --------
-    >>> pattern = random_pattern("structure", size_mm=5, seed=1)
-    >>> bool(pattern.structure.any()), bool(pattern.movement.any())
+    >>> effect = random_effect("structure", size_mm=5, seed=1)
+    >>> bool(effect.structure.any()), bool(effect.movement.any())
     (True, False)
 
     """
     if part not in ("structure", "dynamics"):
         raise ValueError(f"part={part!r} is not known; give 'structure' or 'dynamics'.")
-    chance = np.random.default_rng([seed, 77])
+    rng = np.random.default_rng([seed, 77])
     shape = (_N_JOINTS, 3) if part == "structure" else (4, _N_JOINTS, 3)
-    direction = chance.standard_normal(shape)
+    direction = rng.standard_normal(shape)
     direction[..., [JOINTS.index(f"{side}_ankle") for side in ("left", "right")], 2] = 0
     direction *= size_mm / np.sqrt(np.mean(direction**2))
-    if part == "structure":
-        return Pattern(structure=direction)
-    return Pattern(movement=direction)
+    return PlantedEffect(**{"structure" if part == "structure" else "movement": direction})
 
 
-def plant(walk: xr.DataArray, pattern: Pattern, amount: float) -> xr.DataArray:
-    """Return a simulated walk of the 15 joints with a pattern added, so many times.
+def add_effect(walk: xr.DataArray, effect: PlantedEffect, amount: float) -> xr.DataArray:
+    """Return a simulated walk of the 15 joints with an effect added, so many times.
 
     The stride frequency is a matter of the person, not of the trajectories: see
     `simulate_captures`.
+
+    Parameters
+    ----------
+    walk : DataArray of shape (time, marker, axis)
+        As `simulate_walk` returns it, with the coordinate ``phase``.
+    effect : PlantedEffect
+    amount : float
+        Units of the trait.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        Millimetres.
+
+    Raises
+    ------
+    ValueError
+        If the walk is not of the 15 joints.
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1)
+    >>> lower = PlantedEffect(structure=np.full((15, 3), [0.0, 0.0, -10.0]))
+    >>> round(float((add_effect(walk, lower, 2.0) - walk).min()))
+    -20
+
     """
     if tuple(walk["marker"].values) != JOINTS.markers:
-        raise ValueError("Patterns are of the 15 joints; simulate the walk with markers='joints'.")
-    waves = basis(walk["phase"].values, 2)[:, 1:]
-    added = pattern.structure + np.tensordot(waves, pattern.movement, axes=1)
+        raise ValueError("Effects are of the 15 joints; simulate the walk with markers='joints'.")
+    waves = harmonic_basis(walk["phase"].values, 2)[:, [2, 1, 4, 3]]
+    added = effect.structure + np.tensordot(waves, effect.movement, axes=1)
     return walk.copy(data=walk.values + amount * added)

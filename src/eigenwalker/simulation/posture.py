@@ -7,14 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.simulation.foot import TOE_BEND
-from eigenwalker.simulation.segment_lengths import Body
+from eigenwalker.simulation.body import TOE_BEND, Body
 
 SIDES = {"left": 1, "right": -1}
 """Each side with the sign of its lateral axis."""
 
 
-class Turn(NamedTuple):
+class Rotation(NamedTuple):
     """A rotation about an axis of the room, frame by frame: cosine and sine of its angle."""
 
     axis: int
@@ -22,44 +21,45 @@ class Turn(NamedTuple):
     sin: np.ndarray
 
 
-def turn(axis: str, angle: np.ndarray) -> Turn:
+def rotation(axis: str, angle: np.ndarray) -> Rotation:
     """Return a right-handed rotation about x, y or z by an angle in radians."""
-    return Turn("xyz".index(axis), np.cos(angle), np.sin(angle))
+    return Rotation("xyz".index(axis), np.cos(angle), np.sin(angle))
 
 
-Turns = tuple[Turn, ...]
+Rotations = tuple[Rotation, ...]
 
 
-def turned(vector: np.ndarray, turns: Turns) -> np.ndarray:
-    """Return a vector of a segment after the turns, one after the other: shape (frame, 3).
+def rotated(vector: np.ndarray, rotations: Rotations) -> np.ndarray:
+    """Return a vector of a segment after the rotations, one after the other: shape (frame, 3).
 
     Examples
     --------
     A thigh lifted to the horizontal points forward:
 
-    >>> turned(np.array([0.0, 0.0, -400.0]), (turn("y", np.array([-np.pi / 2])),)).round(6).tolist()
+    >>> lift = rotation("y", np.array([-np.pi / 2]))
+    >>> rotated(np.array([0.0, 0.0, -400.0]), (lift,)).round(6).tolist()
     [[400.0, 0.0, -0.0]]
 
     """
     parts = list(vector)
-    for axis, cos, sin in turns:
+    for axis, cos, sin in rotations:
         a, b = (axis + 1) % 3, (axis + 2) % 3
         parts[a], parts[b] = cos * parts[a] - sin * parts[b], sin * parts[a] + cos * parts[b]
-    place = np.empty((len(turns[0].cos), 3))
+    place = np.empty((len(rotations[0].cos), 3))
     place[:, 0], place[:, 1], place[:, 2] = parts
     return place
 
 
-def trunk_turns(angles: Mapping[str, np.ndarray], part: str) -> Turns:
-    """Return the turns of pelvis, trunk or head in the room: tilt, obliquity, rotation."""
+def trunk_rotations(angles: Mapping[str, np.ndarray], part: str) -> Rotations:
+    """Return the rotations of pelvis, trunk or head in the room: tilt, obliquity, rotation."""
     return (
-        turn("y", angles[f"{part}_tilt"]),
-        turn("x", angles[f"{part}_obliquity"]),
-        turn("z", -angles[f"{part}_rotation"]),
+        rotation("y", angles[f"{part}_tilt"]),
+        rotation("x", angles[f"{part}_obliquity"]),
+        rotation("z", -angles[f"{part}_rotation"]),
     )
 
 
-def segment_turns(angles: Mapping[str, np.ndarray]) -> dict[str, Turns]:
+def segment_rotations(angles: Mapping[str, np.ndarray]) -> dict[str, Rotations]:
     """Return how each segment stands in the room.
 
     Parameters
@@ -71,36 +71,36 @@ def segment_turns(angles: Mapping[str, np.ndarray]) -> dict[str, Turns]:
         ``shoulder_flexion``, ``shoulder_abduction``, ``shoulder_rotation``, ``elbow_flexion``.
 
     """
-    turns = {part: trunk_turns(angles, part) for part in ("pelvis", "trunk", "head")}
+    rotations = {part: trunk_rotations(angles, part) for part in ("pelvis", "trunk", "head")}
     for name, side in SIDES.items():
         own = {key.removeprefix(f"{name}_"): a for key, a in angles.items() if key.startswith(name)}
-        splay, yaw = turn("x", own["splay"]), turn("z", -side * own["foot_yaw"])
+        splay, yaw = rotation("x", own["splay"]), rotation("z", -side * own["foot_yaw"])
         pitch = own["foot_pitch"]
-        turns[f"{name}_thigh"] = (turn("y", -own["thigh"]), splay)
-        turns[f"{name}_shank"] = (turn("y", own["knee_flexion"] - own["thigh"]), splay)
-        turns[f"{name}_foot"] = (turn("y", pitch), yaw)
-        turns[f"{name}_toes"] = (turn("y", pitch - np.clip(pitch, 0.0, TOE_BEND)), yaw)
+        rotations[f"{name}_thigh"] = (rotation("y", -own["thigh"]), splay)
+        rotations[f"{name}_shank"] = (rotation("y", own["knee_flexion"] - own["thigh"]), splay)
+        rotations[f"{name}_foot"] = (rotation("y", pitch), yaw)
+        rotations[f"{name}_toes"] = (rotation("y", pitch - np.clip(pitch, 0.0, TOE_BEND)), yaw)
         upper = (
-            turn("z", -side * own["shoulder_rotation"]),
-            turn("x", side * own["shoulder_abduction"]),
-            turn("y", -own["shoulder_flexion"]),
-            *turns["trunk"],
+            rotation("z", -side * own["shoulder_rotation"]),
+            rotation("x", side * own["shoulder_abduction"]),
+            rotation("y", -own["shoulder_flexion"]),
+            *rotations["trunk"],
         )
-        turns[f"{name}_upper_arm"] = upper
-        turns[f"{name}_forearm"] = (turn("y", -own["elbow_flexion"]), *upper)
-    return turns
+        rotations[f"{name}_upper_arm"] = upper
+        rotations[f"{name}_forearm"] = (rotation("y", -own["elbow_flexion"]), *upper)
+    return rotations
 
 
 def joint_positions(
-    body: Body, turns: Mapping[str, Turns], pelvis: np.ndarray
+    body: Body, rotations: Mapping[str, Rotations], pelvis: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Return where all joints are, and heel, ball and tip of the toes: arrays (frame, 3).
 
     Parameters
     ----------
     body : Body
-    turns : mapping of segment to turns
-        As `segment_turns` returns them.
+    rotations : mapping of segment to rotations
+        As `segment_rotations` returns them.
     pelvis : array of shape (frame, 3)
         Path of the pelvis point.
 
@@ -108,7 +108,9 @@ def joint_positions(
     places = {"pelvis": pelvis}
 
     def put(joint: str, parent: str, segment: str, offset: np.ndarray | tuple) -> None:
-        places[joint] = places[parent] + turned(np.asarray(offset, dtype=float), turns[segment])
+        places[joint] = places[parent] + rotated(
+            np.asarray(offset, dtype=float), rotations[segment]
+        )
 
     put("sternum", "pelvis", "trunk", body.sternum)
     put("neck", "pelvis", "trunk", body.neck)

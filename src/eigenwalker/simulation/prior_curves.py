@@ -1,4 +1,4 @@
-"""The movement a person was drawn to make: norms, with the person's own parameters applied.
+"""What a person was drawn to do before the ground constrains it: speed, and curves from norms.
 
 Fourier coefficients of angles in radians, of paths in millimetres.
 """
@@ -6,29 +6,74 @@ Fourier coefficients of angles in radians, of paths in millimetres.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from eigenwalker.simulation.cadence import Pace
-from eigenwalker.simulation.norms import basis, later, norm_coefficients
-from eigenwalker.simulation.segment_lengths import GRAVITY
+from eigenwalker.core.fourier import harmonic_basis
+from eigenwalker.simulation.body import GRAVITY, Body
+from eigenwalker.simulation.norms import FREE_SPEED, delay, norm_coefficients
 
 LEG_HARMONICS = 8
 PELVIS_HARMONICS = 6
 
 
-def _in_swing() -> np.ndarray:
-    """Return what keeps of a curve what it does in swing: square, of shape (coefficient,).
+@dataclass(frozen=True)
+class GaitParameters:
+    """How a person gets along: millimetres, hertz, shares of a stride.
 
-    It fades in from half of the stride to its middle of swing, and out until the next heel strike.
+    `effort` is the dimensionless speed at which the people of the norm make steps as long.
+    """
+
+    stride_length: float
+    frequency: float
+    effort: float
+    stance: float
+    step_width: float
+    vertical_range: float
+    lateral_range: float
+
+    @property
+    def speed(self) -> float:
+        """Forward speed in mm/s."""
+        return self.stride_length * self.frequency
+
+
+def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
+    """Return speed from stride length and cadence, and pelvis movement from speed.
+
+    The vertical range grows from 27 mm at 0.7 m/s to 48 mm at 1.6, the lateral one shrinks from
+    70 to 39 mm (Orendurff et al. 2004).
+    """
+    stride_length = person["stride_share"] * body.height
+    speed = stride_length * person["frequency_hz"]
+    faster = (speed / 1000 - 0.7) / 0.9
+    # Schwartz et al. (2008): steps of 0.64, 0.76, 0.85 leg lengths at 0.29, 0.43, 0.56.
+    effort = FREE_SPEED + (stride_length / 2 / body.leg - 0.76) / 0.78
+    dimensionless = speed / np.sqrt(GRAVITY * body.leg)
+    return GaitParameters(
+        stride_length=stride_length,
+        frequency=person["frequency_hz"],
+        effort=effort,
+        stance=person["stance_share"] - 0.1 * (dimensionless - 0.38),
+        step_width=max(person["step_width_mm"], 45.0),
+        vertical_range=max(27 + 21 * faster + person["vertical_mm"], 12.0),
+        lateral_range=max(70 - 31 * faster + person["lateral_mm"], 10.0),
+    )
+
+
+def _swing_filter() -> np.ndarray:
+    """Return the matrix that keeps of a curve what it does in swing: (coefficient, coefficient).
+
+    It fades in from half of the stride to the middle of swing, and out until the next heel strike.
     """
     phase = np.arange(4 * LEG_HARMONICS) / (4 * LEG_HARMONICS)
-    waves = basis(phase, LEG_HARMONICS)
+    waves = harmonic_basis(phase, LEG_HARMONICS)
     share = np.where(phase > 0.5, np.sin(2 * np.pi * phase) ** 2, 0.0)
     return np.linalg.pinv(waves) @ (share[:, None] * waves)
 
 
-_SWUNG = _in_swing()
+_SWING_FILTER = _swing_filter()
 
 
 def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.ndarray]:
@@ -40,41 +85,42 @@ def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.nda
 
     def curve(name: str, factor: str | None = None, lag: str | None = None) -> np.ndarray:
         norm = np.radians(norm_coefficients(name, effort, PELVIS_HARMONICS))
-        return later(norm * (person[factor] if factor else 1), person[lag] if lag else 0)
+        return delay(norm * (person[factor] if factor else 1), person[lag] if lag else 0)
 
-    listing = curve("pelvis_obliquity", "obliquity_factor", "obliquity_lag")
     rotation = curve("pelvis_rotation", "pelvis_rotation_factor", "pelvis_rotation_lag")
     lean = curve("trunk_obliquity") + curve("pelvis_obliquity")
-    turning = curve("trunk_rotation", "trunk_rotation_factor", "trunk_rotation_lag")
-    tilt, upright = curve("pelvis_tilt"), np.zeros(2 * PELVIS_HARMONICS + 1)
-    tilt[0] += np.radians(person["pelvis_tilt_deg"])
-    upright[0] = np.radians(person["trunk_tilt_deg"])
+    twist = curve("trunk_rotation", "trunk_rotation_factor", "trunk_rotation_lag")
+    pelvis_tilt, trunk_tilt = curve("pelvis_tilt"), np.zeros(2 * PELVIS_HARMONICS + 1)
+    pelvis_tilt[0] += np.radians(person["pelvis_tilt_deg"])
+    trunk_tilt[0] = np.radians(person["trunk_tilt_deg"])
     return {
-        "pelvis_tilt": tilt,
-        "pelvis_obliquity": listing,
+        "pelvis_tilt": pelvis_tilt,
+        "pelvis_obliquity": curve("pelvis_obliquity", "obliquity_factor", "obliquity_lag"),
         "pelvis_rotation": rotation,
-        "trunk_tilt": upright,
-        "trunk_obliquity": later(lean * person["trunk_lean_factor"], person["trunk_lean_lag"]),
-        "trunk_rotation": turning + 0.5 * (rotation + curve("pelvis_rotation")),
+        "trunk_tilt": trunk_tilt,
+        "trunk_obliquity": delay(lean * person["trunk_lean_factor"], person["trunk_lean_lag"]),
+        "trunk_rotation": twist + 0.5 * (rotation + curve("pelvis_rotation")),
     }
 
 
 def leg_curves(
     person: Mapping[str, float], effort: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return thigh against the vertical, knee, and pitch of the foot, before the ground is felt."""
+    """Return thigh against the vertical, knee flexion, and pitch of the foot."""
     hip, tilt, knee, ankle = (
         np.radians(norm_coefficients(name, effort, LEG_HARMONICS))
         for name in ("hip_flexion", "pelvis_tilt", "knee_flexion", "ankle_dorsiflexion")
     )
     thigh = hip - tilt
-    knee = later(_SWUNG @ knee * (person["knee_swing_factor"] - 1) + knee, person["knee_lag"])
+    knee = delay(
+        _SWING_FILTER @ knee * (person["knee_swing_factor"] - 1) + knee, person["knee_lag"]
+    )
     thigh[0] += np.radians(person["thigh_deg"])
     knee[0] += np.radians(person["knee_deg"])
     return thigh, knee, knee - thigh - ankle
 
 
-def pelvis_paths(person: Mapping[str, float], pace: Pace) -> np.ndarray:
+def pelvis_paths(person: Mapping[str, float], gait: GaitParameters) -> np.ndarray:
     """Return how the pelvis moves ahead, to the side and up, about its mean: (axis, coefficient).
 
     Towards the foot that stands, furthest in mid-stance; highest near 30 and 80 per cent of the
@@ -82,10 +128,9 @@ def pelvis_paths(person: Mapping[str, float], pace: Pace) -> np.ndarray:
     with speed (Cavagna, Heglund & Taylor 1977: the two energies go up and down by as much).
     """
     ahead, side, up = np.zeros((3, 2 * PELVIS_HARMONICS + 1))
-    side[2] = pace.lateral_range / 2
-    up[3] = pace.vertical_range / 2
-    ahead[3] = GRAVITY * up[3] / pace.speed / (4 * np.pi * pace.frequency)
+    side[1] = gait.lateral_range / 2
+    up[4] = gait.vertical_range / 2
+    ahead[4] = GRAVITY * up[4] / gait.speed / (4 * np.pi * gait.frequency)
     highest = 0.30 + person["bob_lag"]
-    return np.array(
-        [later(ahead, highest - 0.125), later(side, 0.02 + person["sway_lag"]), later(up, highest)]
-    )
+    lags = highest - 0.125, 0.02 + person["sway_lag"], highest
+    return np.array([delay(path, lag) for path, lag in zip((ahead, side, up), lags, strict=True)])

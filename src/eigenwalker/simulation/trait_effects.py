@@ -18,10 +18,10 @@ EFFECTS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "sex": {
             "obliquity_factor": -0.58,  # Smith et al. 2002
             "pelvis_rotation_factor": -0.4,  # Bruening 2015: direction; size chosen
-            "trunk_lean_factor": 0.6,  # Bruening 2015, J32: direction; size chosen
+            "trunk_lean_factor": 0.6,  # Bruening 2015, Troje 2002: direction; size chosen
             "arm_swing_deg": -0.5,  # Bruening 2015: direction; size chosen
-            "arm_out_deg": 0.6,  # J32, W11: direction; size chosen
-            "lateral_mm": 0.5,  # W11: direction; size chosen
+            "arm_out_deg": 0.6,  # Troje 2002, WDP2002: direction; size chosen
+            "lateral_mm": 0.5,  # WDP2002: direction; size chosen
             "pelvis_tilt_deg": -0.4,  # Cho 2004: direction; size chosen
         },
         # For each SD of the trait.
@@ -29,8 +29,8 @@ EFFECTS: Mapping[str, Mapping[str, float]] = MappingProxyType(
             "hip_share": 0.3,  # ANSUR: mass with bicristal 0.69, much of it through height
             "step_width_mm": 0.3,
             "arm_out_deg": 0.3,
-            "frequency_hz": -0.2,  # W11: slightly lower
-            "vertical_mm": -0.3,  # W11: light people move up and down more
+            "frequency_hz": -0.2,  # WDP2002: slightly lower
+            "vertical_mm": -0.3,  # WDP2002: light people move up and down more
         },
         "age": {"arm_swing_deg": -0.1},  # Mirelman 2015, over 30 to 77 years
         "happy": {
@@ -77,7 +77,7 @@ def draw_people(
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
 ) -> pd.DataFrame:
-    """Return people drawn at random: their traits and the numbers that make their walk.
+    """Return a table of people drawn at random: their traits and the parameters of their walk.
 
     Every parameter is normal within a sex, about a mean that sex, weight, age and mood shift by
     the stated effects; nobody is further than 2.5 SD from that mean.
@@ -97,14 +97,19 @@ def draw_people(
     Returns
     -------
     DataFrame of n_women + n_men rows
-        The columns `TRAITS`; the other keys of `PARAMETERS`; and what each trait amounts to in
+        The columns `TRAITS`; the other keys of `PARAMETERS`; and the score of each trait in
         the unit of its effects: ``sex_score`` (-0.5 for women, 0.5 for men), ``weight_score``
         (body mass beside height), ``age_score``, ``happy_score``, ``nervous_score`` in SDs.
 
     Raises
     ------
     ValueError
-        If nobody is asked for, or an effect is of or on something unknown.
+        If there are no people, or an effect is of an unknown trait or on an unknown parameter.
+
+    See Also
+    --------
+    simulate_walk : simulates such a person.
+    simulate_population : draws people and makes a population of them.
 
     Examples
     --------
@@ -114,22 +119,22 @@ def draw_people(
 
     """
     _check(n_women, n_men, effects)
-    chance = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed)
     n_people = n_women + n_men
     scores = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}
     for trait, (_, _, lowest, highest) in _SCALES.items():
-        scores[trait] = np.clip(chance.standard_normal(n_people), lowest, highest)
-    own = np.clip(chance.standard_normal((len(PARAMETERS), n_people)), -2.5, 2.5)
+        scores[trait] = np.clip(rng.standard_normal(n_people), lowest, highest)
+    own = np.clip(rng.standard_normal((len(PARAMETERS), n_people)), -2.5, 2.5)
     own[list(PARAMETERS).index("body_mass_index")] = scores["weight"]
     amounts = scores | {"sex": sex_effect * scores["sex"]}
     values = {}
-    for (name, parameter), drawn in zip(PARAMETERS.items(), own, strict=True):
+    for (name, parameter), score in zip(PARAMETERS.items(), own, strict=True):
         mean = (parameter.female + parameter.male) / 2
         mean = mean + amounts["sex"] * (parameter.male - parameter.female)
         shift = sum(
             amount * effects.get(trait, {}).get(name, 0.0) for trait, amount in amounts.items()
         )
-        values[name] = mean + parameter.sd * (drawn + shift)
+        values[name] = mean + parameter.sd * (score + shift)
     traits = {
         "sex": np.where(scores["sex"] > 0, "male", "female"),
         "age_years": _on_scale("age", scores["age"]),

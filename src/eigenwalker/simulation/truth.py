@@ -14,8 +14,8 @@ from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.person import PARAMETERS
-from eigenwalker.simulation.planted_effect import Pattern, plant
-from eigenwalker.simulation.provenance import read_recipe
+from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
+from eigenwalker.simulation.provenance import KEY, provenance_from_json
 from eigenwalker.simulation.trait_effects import EFFECTS, Effects, draw_people
 from eigenwalker.simulation.walk import simulate_walk
 
@@ -32,21 +32,25 @@ class Truth:
     effects : DataFrame of shape (parameter, trait)
         What one unit of a trait's score adds to a parameter, in SDs of the parameter within a
         sex. That of sex holds the differences of the means too.
-    planted : mapping of trait to Pattern
+    planted : mapping of trait to PlantedEffect
         Effects planted in mean posture, movement or frequency themselves.
     capture : mapping of str to value
         How everyone was captured, as `simulate_walk` takes it: markers, noise, wander, variability.
     seeds : list of pairs of int
         The seed of each walker's capture: ``simulate_walk(truth.people.iloc[0],
-        seed=truth.seeds[0], **truth.capture)`` is that of the first, before anything was planted,
-        with the joint angles, phase and stance of each frame; `true_events` of it tells when its
-        feet strike and leave the ground.
+        seed=truth.seeds[0], **truth.capture)`` is that of the first, before effects were planted,
+        with the joint angles, phase and stance of each frame; `true_events` of it gives the moments
+        at which its feet strike and leave the ground.
+
+    See Also
+    --------
+    truth_of : gives it.
 
     """
 
     people: pd.DataFrame
     effects: pd.DataFrame
-    planted: Mapping[str, Pattern]
+    planted: Mapping[str, PlantedEffect]
     capture: Mapping[str, Any]
     seeds: list[tuple[int, int]]
 
@@ -54,8 +58,8 @@ class Truth:
 def truth_of(population: Population) -> Truth:
     """Return the truth about a population that `simulate_population` made.
 
-    It travels with the population, through files and selections, as the recipe by which everyone
-    was drawn; who is who is checked against their traits.
+    The population carries, through files and selections, how everyone was drawn, so that all can
+    be drawn again; which walker is which is found by their traits.
 
     Parameters
     ----------
@@ -65,6 +69,10 @@ def truth_of(population: Population) -> Truth:
     Returns
     -------
     Truth
+
+    See Also
+    --------
+    true_direction : what a trait does to the features.
 
     Raises
     ------
@@ -80,35 +88,35 @@ def truth_of(population: Population) -> Truth:
     True
 
     """
-    if "recipe" not in population.provenance:
+    if KEY not in population.provenance:
         raise ValueError(
             "This population was not simulated, so nobody knows its truth; "
             "make one with simulate_population()."
         )
-    recipe = read_recipe(population.provenance["recipe"])
+    known = provenance_from_json(population.provenance[KEY])
     people = draw_people(
-        recipe.n_women,
-        recipe.n_men,
-        seed=recipe.seed,
-        sex_effect=recipe.sex_effect,
-        effects=recipe.effects,
+        known.n_women,
+        known.n_men,
+        seed=known.seed,
+        sex_effect=known.sex_effect,
+        effects=known.effects,
     )
     rows = _same_rows(people, population.traits)
     return Truth(
         people=people.iloc[rows].reset_index(drop=True),
-        effects=_effect_table(recipe.effects, recipe.sex_effect),
-        planted=recipe.planted,
-        capture=recipe.capture,
-        seeds=[(recipe.seed, row) for row in rows],
+        effects=_effect_table(known.effects, known.sex_effect),
+        planted=known.planted,
+        capture=known.capture,
+        seeds=[(known.seed, row) for row in rows],
     )
 
 
 def true_direction(population: Population, trait: str, *, n_people: int = 100) -> np.ndarray:
     """Return what a trait truly does to the features of a simulated population.
 
-    Some of the people walk twice, without noise: as one unit less of the trait would have them
-    walk, and as one unit more; for sex, half a unit. Of small steps the direction would be less
-    sure, as the stride that is solved for does not change evenly with every parameter.
+    Some of the people are simulated twice, without noise: with one unit less of the trait, and with
+    one unit more; for sex, half a unit. Smaller steps would make the direction less sure, as the
+    solved stride does not change evenly with every parameter.
 
     Parameters
     ----------
@@ -117,9 +125,9 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
     trait : str
         A key of `EFFECTS`.
     n_people : int
-        How many people to average over; they are taken evenly from the population. Who walks
-        in what way has a say in what a trait does: over 12 people the direction of a small
-        effect is 0.87 of that over 40, in cosines; over 100 it is 0.98 of that over everybody.
+        How many people to average over; they are taken evenly from the population. What a trait
+        does differs from person to person: the direction of a small effect over 12 people has a
+        cosine of 0.87 with that over 40, over 100 one of 0.98 with that over all.
 
     Returns
     -------
@@ -143,14 +151,14 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
     if trait not in EFFECTS:
         raise ValueError(f"trait={trait!r} is not known; effects are of {sorted(EFFECTS)}.")
     truth = truth_of(population)
-    pattern = truth.planted.get(trait, Pattern())
+    effect = truth.planted.get(trait, PlantedEffect())
     steps = truth.effects[trait] * [parameter.sd for parameter in PARAMETERS.values()]
-    steps["frequency_hz"] += pattern.frequency_hz
+    steps["frequency_hz"] += effect.frequency_hz
     rows = np.linspace(0, len(truth.people) - 1, min(n_people, len(truth.people))).round()
     own = truth.people.iloc[rows.astype(int)][list(PARAMETERS)]
 
     def walked(person: pd.Series, amount: float) -> np.ndarray:
-        walk = plant(simulate_walk((person + amount * steps).to_dict()), pattern, amount)
+        walk = add_effect(simulate_walk((person + amount * steps).to_dict()), effect, amount)
         return population.vector(decompose_pca(in_place(walk)))
 
     step = 0.5 if trait == "sex" else 1.0
@@ -165,7 +173,7 @@ def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> list[int]:
     rows = [number.get(key, -1) for key in traits[known].itertuples(index=False, name=None)]
     if -1 in rows:
         raise ValueError(
-            "These walkers are not those that this version draws by the recipe of the population; "
+            "These walkers are not those that this version draws for this population; "
             "read its truth with the version that simulated it, or simulate it anew."
         )
     return rows

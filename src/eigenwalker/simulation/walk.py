@@ -11,20 +11,20 @@ import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.simulation.body import body_of
 from eigenwalker.simulation.body_markers import skin_markers
-from eigenwalker.simulation.cadence import Pace, pace_of
 from eigenwalker.simulation.cycle import Cycle, solve_cycle
-from eigenwalker.simulation.measurement_noise import with_drift, with_gaps, with_noise
-from eigenwalker.simulation.overground import Route, set_off
+from eigenwalker.simulation.overground import Route, blend_with_standing
 from eigenwalker.simulation.person import check_parameters
-from eigenwalker.simulation.posture import SIDES, joint_positions, segment_turns
-from eigenwalker.simulation.segment_lengths import body_of
-from eigenwalker.simulation.stride_noise import Strides, walked_strides
+from eigenwalker.simulation.posture import SIDES, joint_positions, segment_rotations
+from eigenwalker.simulation.prior_curves import GaitParameters, gait_parameters
+from eigenwalker.simulation.stride_noise import Strides, simulate_strides
 from eigenwalker.simulation.trait_effects import draw_people
-from eigenwalker.simulation.walk_cycle_frames import Angles, play
+from eigenwalker.simulation.walk_cycle_frames import Angles, walk_cycle_frames
 
 FULL = (*JOINTS.markers, *(f"{side}_{part}" for side in SIDES for part in ("heel", "ball", "toe")))
 """The 15 joints, and of each foot where heel, ball and tip of the toes touch the ground."""
+_MEAN_GAP_S, _LONGEST_GAP_S = 0.05, 0.12
 
 
 def simulate_walk(
@@ -45,7 +45,7 @@ def simulate_walk(
     truth: bool = True,
     **parameters: float,
 ) -> xr.DataArray:
-    """Return someone walking, with all that is known of the walk.
+    """Return trajectories of someone walking, with all that is known of the walk.
 
     A jointed body (segment shares of ANSUR II) moves by published joint-angle norms, changed as
     little as keeps its feet on the ground; speed, cadence and step length fit each other as in
@@ -58,7 +58,7 @@ def simulate_walk(
     seed : int or sequence of int
         The same seed gives the same walk, whatever markers, noise and gaps are asked for.
     sex : {"female", "male"}, optional
-        Whom to draw; left out, either.
+        Of the person who is drawn; left out, either.
     duration_s, rate_hz : float
         Length in seconds, and frames a second.
     markers : {"joints", "full", "skin"}
@@ -75,26 +75,36 @@ def simulate_walk(
     noise_mm : float
         SD of the noise of each coordinate.
     gap_share : float
-        Share of the samples that are missing.
+        Share of the samples that are missing, in gaps of up to 0.12 s.
     soft_tissue : float
         How much markers on the skin move over the bones: 1 as in people, 0 not at all.
     truth : bool
-        Whether to tell the truth of each frame; leaving it out saves time.
+        Whether to add the truth of each frame; leaving it out saves time.
     **parameters : float
-        Parameters that the person is to have, whatever was drawn: ``frequency_hz=0.9``.
+        Parameters that replace those of the person: ``frequency_hz=0.9``.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        Millimetres. Coordinates along time tell the truth of each frame: ``phase`` in cycles
+        Millimetres. Coordinates along time hold the truth of each frame: ``phase`` in cycles
         from a left heel strike, ``left_stance`` and ``right_stance``, joint angles in degrees such
-        as ``left_knee_flexion_deg``. Scalar attributes tell the truth of the walk:
+        as ``left_knee_flexion_deg``. Scalar attributes hold the truth of the walk:
         ``frequency_hz``, ``speed_mm_s``, ``stance_of_stride``, and the person's parameters.
 
     Raises
     ------
     ValueError
         If a parameter is unknown, or rate, duration, noise or gaps make no sense.
+
+    See Also
+    --------
+    true_events : heel strikes and toe offs of such a walk.
+    simulate_captures : walks of many people.
+
+    References
+    ----------
+    Schwartz, Rozumalski & Trost (2008), Journal of Biomechanics 41:1639 (joint angles);
+    Gordon et al. (2014), Natick/TR-15/007 (bodies); ``docs/simulation.md`` lists the rest.
 
     Examples
     --------
@@ -107,38 +117,41 @@ def simulate_walk(
     """
     _check(duration_s, rate_hz, noise_mm, gap_share, markers, sex)
     check_parameters(parameters)
-    drawn, walked, shaken, slid, lost = (_chance(seed, stream) for stream in range(5))
-    person = {**(_anyone(drawn, sex) if person is None else person), **parameters}
+    streams = (np.random.default_rng([*np.atleast_1d(seed).tolist(), n]) for n in range(5))
+    person_rng, stride_rng, noise_rng, skin_rng, gap_rng = streams
+    person = {**(_anyone(person_rng, sex) if person is None else person), **parameters}
     time = np.arange(round(duration_s * rate_hz)) / rate_hz
-    body = body_of(person)
-    pace = pace_of(person, body)
-    cycle = solve_cycle(person)
-    strides = walked_strides(
-        time, cycle, pace, chance=walked, variability=variability, wander_mm=wander_mm
+    body, cycle = body_of(person), solve_cycle(person)
+    gait = gait_parameters(person, body)
+    strides = simulate_strides(
+        time, cycle, gait, rng=stride_rng, variability=variability, wander_mm=wander_mm
     )
-    angles, pelvis = play(person, body, pace, cycle, strides)
+    angles, pelvis = walk_cycle_frames(person, body, gait, cycle, strides)
     if route is not None:
-        angles, pelvis = set_off(angles, pelvis, body, pace, route.vigour(time))
-    turns = segment_turns(angles)
-    places = joint_positions(body, turns, pelvis)
+        ramp = route.speed_ramp(time)
+        angles, pelvis = blend_with_standing(angles, pelvis, body, gait, ramp)
+    rotations = segment_rotations(angles)
+    places = joint_positions(body, rotations, pelvis)
     if markers == "skin":
         places = skin_markers(
-            body, places, turns, strides.phase, chance=slid, soft_tissue=soft_tissue
+            body, places, rotations, strides.phase, rng=skin_rng, soft_tissue=soft_tissue
         )
-    if route is not None:
-        places = route.along(places, time, pace.speed)
     names = {"joints": JOINTS.markers, "full": FULL, "skin": tuple(places)}[markers]
     values = np.stack([places[name] for name in names], axis=1)
-    values = with_noise(with_drift(values, time, drift_mm_s), noise_mm, shaken)
-    values = with_gaps(values, rate_hz, gap_share, lost)
+    if route is not None:
+        values = route.along(values, time, gait.speed)
+    values[..., 0] += drift_mm_s * time[:, None]
+    if noise_mm:
+        values += noise_mm * noise_rng.standard_normal(values.shape)
+    _add_gaps(values, rate_hz, gap_share, gap_rng)
     walk = label_trajectories(values, markers=names, rate_hz=rate_hz)
-    told = _scalars(person, cycle, pace, strides, time) | {"noise_mm": noise_mm}
-    coords = _truth(cycle, pace, strides.phase, angles) if truth else {}
-    return walk.assign_coords(coords).assign_attrs(told)
+    scalars = _scalars(person, cycle, gait, strides, time) | {"noise_mm": noise_mm}
+    coords = _truth(cycle, gait, strides.phase, angles) if truth else {}
+    return walk.assign_coords(coords).assign_attrs(scalars)
 
 
 def true_events(walk: xr.DataArray) -> pd.DataFrame:
-    """Return when the feet of a simulated walk struck and left the ground.
+    """Return when the feet of a simulated walk strike and leave the ground.
 
     Parameters
     ----------
@@ -147,7 +160,13 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame with columns side, event ("heel_strike", "toe_off") and time_s, in order of time
+    DataFrame
+        One row an event, in the order of time, as `gait_events` gives them: ``time_s``; ``side``;
+        ``event``, "heel_strike" or "toe_off"; ``marker``, the point of the foot that does so.
+
+    See Also
+    --------
+    gait.gait_events : estimates of the same from trajectories.
 
     Examples
     --------
@@ -157,83 +176,90 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
 
     """
     phase, time = walk["phase"].values, walk["time"].values
+    kinds = (("heel_strike", 0.0, "heel"), ("toe_off", walk.attrs["stance_of_stride"], "toe"))
     rows = []
     for side in SIDES:
-        for event, share in (("heel_strike", 0.0), ("toe_off", walk.attrs["stance_of_stride"])):
+        for event, share, point in kinds:
             begins = walk.attrs["right_onset"] * (side == "right") + share
             at = np.arange(np.ceil(phase[0] - begins), np.floor(phase[-1] - begins) + 1) + begins
-            rows += [(side, event, moment) for moment in np.interp(at, phase, time)]
-    table = pd.DataFrame(rows, columns=["side", "event", "time_s"])
-    return table.sort_values("time_s", ignore_index=True)
+            moments = np.interp(at, phase, time).tolist()
+            rows += [(moment, side, event, f"{side}_{point}") for moment in moments]
+    return pd.DataFrame(sorted(rows), columns=["time_s", "side", "event", "marker"])
 
 
 def _check(
     duration_s: float, rate_hz: float, noise_mm: float, gap_share: float, markers: str,
     sex: str | None,
 ) -> None:  # fmt: skip
-    amiss = []
+    problems = []
     if not (duration_s > 0 and rate_hz > 0 and duration_s * rate_hz >= 2):
-        amiss.append(f"duration_s={duration_s} at rate_hz={rate_hz} holds fewer than two frames")
+        problems.append(f"duration_s={duration_s} at rate_hz={rate_hz} holds fewer than two frames")
     if not noise_mm >= 0:
-        amiss.append(f"noise_mm={noise_mm} must be 0 or more")
+        problems.append(f"noise_mm={noise_mm} must be 0 or more")
     if not 0 <= gap_share < 1:
-        amiss.append(f"gap_share={gap_share} must be from 0 to below 1")
+        problems.append(f"gap_share={gap_share} must be from 0 to below 1")
     if markers not in ("joints", "full", "skin"):
-        amiss.append(f"markers={markers!r} is not known; give 'joints', 'full' or 'skin'")
+        problems.append(f"markers={markers!r} is not known; give 'joints', 'full' or 'skin'")
     if sex not in (None, "female", "male"):
-        amiss.append(f"sex={sex!r} is not known; give 'female' or 'male'")
-    if amiss:
-        raise ValueError("This walk cannot be simulated: " + "; ".join(amiss) + ".")
+        problems.append(f"sex={sex!r} is not known; give 'female' or 'male'")
+    if problems:
+        raise ValueError("This walk cannot be simulated: " + "; ".join(problems) + ".")
 
 
-def _chance(seed: int | Sequence[int], stream: int) -> np.random.Generator:
-    return np.random.default_rng([*np.atleast_1d(seed).tolist(), stream])
+def _anyone(rng: np.random.Generator, sex: str | None) -> dict[str, Any]:
+    women = int(rng.random() < 0.5) if sex is None else int(sex == "female")
+    person = draw_people(women, 1 - women, seed=int(rng.integers(2**31))).iloc[0]
+    return {str(name): value for name, value in person.items()}
 
 
-def _anyone(chance: np.random.Generator, sex: str | None) -> dict[str, Any]:
-    women = int(chance.random() < 0.5) if sex is None else int(sex == "female")
-    drawn = draw_people(women, 1 - women, seed=int(chance.integers(2**31))).iloc[0]
-    return {str(name): value for name, value in drawn.items()}
+def _add_gaps(values: np.ndarray, rate_hz: float, share: float, rng: np.random.Generator) -> None:
+    """Set a share of the samples of each marker to NaN, in short gaps."""
+    n_frames, n_markers, _ = values.shape
+    for marker in range(n_markers):
+        lost = 0
+        while lost < share * n_frames:
+            length = 1 + int(min(rng.exponential(_MEAN_GAP_S), _LONGEST_GAP_S) * rate_hz)
+            start = int(rng.integers(n_frames))
+            values[start : start + length, marker] = np.nan
+            lost += length
 
 
 def _scalars(
-    person: Mapping[str, float], cycle: Cycle, pace: Pace, strides: Strides, time: np.ndarray
-) -> dict[str, str | float]:
-    told: dict[str, str | float] = {
-        name: value if isinstance(value, str) else float(value) for name, value in person.items()
-    }
+    person: Mapping[str, Any], cycle: Cycle, gait: GaitParameters, strides: Strides,
+    time: np.ndarray,
+) -> dict[str, str | float]:  # fmt: skip
     cycles = strides.phase[-1] - strides.phase[0]
-    return told | {
+    return {
+        **{name: each if isinstance(each, str) else float(each) for name, each in person.items()},
         "frequency_hz": float(cycles / (time[-1] - time[0])),
-        "speed_mm_s": pace.speed,
-        "stance_of_stride": pace.stance,
+        "speed_mm_s": gait.speed,
+        "stance_of_stride": gait.stance,
         "right_onset": float(cycle.onsets[1]),
         "source": "simulated",
     }
 
 
+_JOINT_ANGLES = (
+    *("thigh", "knee_flexion", "foot_pitch"),
+    *("shoulder_flexion", "shoulder_abduction", "elbow_flexion"),
+)
+
+
 def _truth(
-    cycle: Cycle, pace: Pace, phase: np.ndarray, angles: Angles
+    cycle: Cycle, gait: GaitParameters, phase: np.ndarray, angles: Angles
 ) -> dict[str, tuple[str, np.ndarray]]:
     """Return what is known of each frame: phase, which foot stands, joint angles in degrees."""
     truth: dict[str, np.ndarray] = {"phase": phase}
     for leg, (name, side) in enumerate(SIDES.items()):
-        truth[f"{name}_stance"] = (phase - cycle.onsets[leg]) % 1.0 <= pace.stance
-        own = {joint: angles[f"{name}_{joint}"] for joint in _TOLD_OF_A_SIDE}
-        lean, listing = angles[f"{name}_splay"], angles["pelvis_obliquity"]
+        truth[f"{name}_stance"] = (phase - cycle.onsets[leg]) % 1.0 <= gait.stance
+        own = {joint: angles[f"{name}_{joint}"] for joint in _JOINT_ANGLES}
         own |= {
             "hip_flexion": own["thigh"] + angles["pelvis_tilt"],
-            "hip_adduction": side * (listing - lean),
+            "hip_adduction": side * (angles["pelvis_obliquity"] - angles[f"{name}_splay"]),
             "ankle_dorsiflexion": own["knee_flexion"] - own["thigh"] - own["foot_pitch"],
         }
         truth |= {f"{name}_{joint}_deg": np.degrees(curve) for joint, curve in own.items()}
     for part in ("pelvis", "trunk", "head"):
-        for turn in ("tilt", "obliquity", "rotation"):
-            truth[f"{part}_{turn}_deg"] = np.degrees(angles[f"{part}_{turn}"])
+        for angle in ("tilt", "obliquity", "rotation"):
+            truth[f"{part}_{angle}_deg"] = np.degrees(angles[f"{part}_{angle}"])
     return {name: ("time", curve) for name, curve in truth.items()}
-
-
-_TOLD_OF_A_SIDE = (
-    *("thigh", "knee_flexion", "foot_pitch"),
-    *("shoulder_flexion", "shoulder_abduction", "elbow_flexion"),
-)
