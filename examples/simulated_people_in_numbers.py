@@ -229,9 +229,15 @@ def found_again(n_each):
     for part in ("structure", "dynamics"):
         plain, planted = (
             ew.simulate_population(
-                n_each, n_each, seed=12, sex_effect=0, effects={}, duration_s=6, planted=planted_effects
+                n_each,
+                n_each,
+                seed=12,
+                sex_effect=0,
+                effects={},
+                duration_s=6,
+                planted=added,
             )
-            for planted_effects in ({}, {"sex": random_effect(part, size_mm=8, seed=1)})
+            for added in ({}, {"sex": random_effect(part, size_mm=8, seed=1)})
         )
         found = [_mean_difference(people, part) for people in (plain, planted)]
         spread = plain.part(part).std(axis=0)

@@ -13,7 +13,9 @@ PITCH = np.radians(np.linspace(-25, 75, 101))
 
 
 def curve(name, speed=0.43):
-    return harmonic_basis(np.linspace(0, 1, 100, endpoint=False), 4) @ norm_coefficients(name, speed, 4)
+    return harmonic_basis(np.linspace(0, 1, 100, endpoint=False), 4) @ norm_coefficients(
+        name, speed, 4
+    )
 
 
 def test_extremes_are_those_that_schwartz_et_al_print():

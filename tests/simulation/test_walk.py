@@ -3,10 +3,12 @@
 import itertools
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given, settings, strategies as st
 
 from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.gait.events import gait_events
 from eigenwalker.gait.frequency import fundamental_frequency
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.markers.virtual_markers import virtual_markers
@@ -193,6 +195,20 @@ def test_events_are_where_feet_touch_and_leave():
     begins = walk["time"].values[1:][np.diff(stance.astype(int)) == 1]
     strikes = events.query("side == 'left' and event == 'heel_strike'")["time_s"]
     np.testing.assert_allclose(begins, strikes[strikes > 0], atol=1 / 120)
+
+
+def test_true_events_merge_with_estimated_ones():
+    walk = simulate_walk(seed=5, duration_s=5, markers="full")
+    true, estimated = true_events(walk), gait_events(walk)
+    assert list(true) == list(estimated)
+    estimated["event"] = estimated["event"].str.replace(" ", "_")
+    both = pd.merge_asof(
+        true.query("0.3 < time_s < 4.7"), estimated.rename(columns={"time_s": "estimated_s"}),
+        left_on="time_s", right_on="estimated_s", by=["side", "event", "marker"],
+        direction="nearest",
+    )  # fmt: skip
+    assert len(both) > 12
+    assert (both["time_s"] - both["estimated_s"]).abs().max() < 0.06
 
 
 def test_a_walk_over_ground_is_brought_back_in_place():

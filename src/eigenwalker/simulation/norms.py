@@ -11,6 +11,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from eigenwalker.core.fourier import shift_origin
+
 FREE_SPEED = 0.43
 """Speed over sqrt(g leg) of the group "Free" of Schwartz et al. (2008)."""
 
@@ -102,8 +104,4 @@ def delay(coefficients: np.ndarray, lag: float) -> np.ndarray:
     [0.0, 1.0, 0.0]
 
     """
-    angle = 2 * np.pi * lag * np.arange(1, len(coefficients) // 2 + 1)
-    turned = (coefficients[2::2] - 1j * coefficients[1::2]) * np.exp(-1j * angle)
-    delayed = coefficients.copy()
-    delayed[1::2], delayed[2::2] = -turned.imag, turned.real
-    return delayed
+    return np.append(coefficients[:1], shift_origin(coefficients[1:], -2 * np.pi * lag))

@@ -49,7 +49,9 @@ def provenance_from_json(text: str) -> Provenance:
     if capture.get("route") is not None:
         capture["route"] = Route(**capture["route"])
     planted = {
-        trait: PlantedEffect(**{name: np.array(value)[()] for name, value in each.items()})
+        trait: PlantedEffect(
+            np.array(each["structure"]), np.array(each["movement"]), each["frequency_hz"]
+        )
         for trait, each in content.pop("planted", {}).items()
     }
     effects = content.pop("effects", EFFECTS)
