@@ -25,7 +25,7 @@ def draw_room(axes: Axes) -> None:
     posture = walker.trajectories([moment]).values[0]
 
     def seen(points):
-        return project(points, view_deg=VIEW, elevation_deg=ELEVATION)
+        return project(points, azimuth_deg=VIEW, elevation_deg=ELEVATION)
 
     for line in np.arange(-1000, 1001, 500):
         for ends in ([[line, -1000, 0], [line, 1000, 0]], [[-1000, line, 0], [1000, line, 0]]):

@@ -79,7 +79,7 @@ ROWS = (
     Row(
         "body",
         "conflict",
-        'make_stimulus(average, view_deg=0, **small).then("conflict", shoulder_width=1.3, '
+        'make_stimulus(average, azimuth_deg=0, **small).then("conflict", shoulder_width=1.3, '
         "hip_width=0.8, shoulder_sway=0.3, hip_sway=4)",
         "--view 0 --conflict shoulder_width=1.3,hip_width=0.8,shoulder_sway=0.3,hip_sway=4",
         "Wide shoulders say a man, swaying hips a woman; sway wins (Mather and Murdoch, 1994).",
@@ -87,7 +87,7 @@ ROWS = (
     Row(
         "body",
         "ellipses",
-        'make_stimulus(average, view_deg=90, **small).then("ellipses", shoulder_mm=[70, 20], '
+        'make_stimulus(average, azimuth_deg=90, **small).then("ellipses", shoulder_mm=[70, 20], '
         "hip_mm=[15, 10])",
         "--view 90 --ellipses shoulder=70/20,hip=15/10",
         "Shoulders go round large ellipses, hips round small ones: a synthetic man (Cutting, "
@@ -153,7 +153,8 @@ ROWS = (
     Row(
         "space",
         "overground",
-        'make_stimulus(average, view_deg=90, **small | {"size_px": (240, 128)}).then("overground")',
+        'make_stimulus(average, azimuth_deg=90, **small | {"size_px": (240, 128)})'
+        '.then("overground")',
         "--view 90 --size 240x128 --overground",
         "A translation with the walker's own speed: feet that stand stay where they are.",
     ),
@@ -241,7 +242,7 @@ ROWS = (
         "The average of the built-in population of synthetic people, nothing done to it.",
     ),
     Row(
-        *("begin", "view", "make_stimulus(average, view_deg=90, **small)"),
+        *("begin", "view", "make_stimulus(average, azimuth_deg=90, **small)"),
         "--view 90",
         "In profile; 0 is the front (Troje, 2002, compares 0, 30 and 90 degrees).",
     ),
@@ -253,7 +254,7 @@ ROWS = (
     Row(
         "begin",
         "perspective",
-        "make_stimulus(average, view_deg=0, eye_distance_mm=1500, **small)",
+        "make_stimulus(average, azimuth_deg=0, eye_distance_mm=1500, **small)",
         "--view 0 --eye-distance 1500",
         "In perspective, from 1.5 m: what swings towards the observer grows apart.",
     ),
@@ -292,7 +293,7 @@ ROWS = (
     Row(
         "begin",
         "several",
-        "make_stimulus([Figure(woman), Figure(man, position_mm=(0, -900, 0))], view_deg=0, "
+        "make_stimulus([Figure(woman), Figure(man, position_mm=(0, -900, 0))], azimuth_deg=0, "
         '**small).then("invert", figures=1)',
         None,
         "Two in one scene; a transform acts on the figures named.",

@@ -8,4 +8,4 @@ import eigenwalker as ew
 
 people = ew.load_population()
 average = people.walker(people.average)
-ew.plotting.write_film(average, "average_walker.gif", n_strides=2, view_deg=30, size_px=400)
+ew.plotting.write_film(average, "average_walker.gif", n_strides=2, azimuth_deg=30, size_px=400)

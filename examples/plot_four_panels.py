@@ -19,6 +19,6 @@ figure = ew.plotting.figure_walkers(
         "women, tripled": people.walker(middle - 3 * half),
         "men, tripled": people.walker(middle + 3 * half),
     },
-    views_deg=(0, 90),
+    azimuths_deg=(0, 90),
 )
 figure.savefig("four_panels.png")

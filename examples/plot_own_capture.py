@@ -23,7 +23,7 @@ ew.plotting.write_film(
     [walk, walker],
     "own_capture.mp4",
     duration_s=min(lasts_s, 5),
-    view_deg=90,
+    azimuth_deg=90,
     style="sticks",
     titles=["capture", f"R² {walker.fit.r2:.2f}"],
 )

@@ -22,7 +22,7 @@ ew.plotting.write_film(
     list(walkers.values()),
     "sex_extremes.mp4",
     n_strides=2,
-    view_deg=0,
+    azimuth_deg=0,
     style="sticks",
     titles=list(walkers),
 )

@@ -37,7 +37,7 @@ def test_the_drawing_is_what_an_observer_sees_of_the_walker():
     svg = walker.moving_svg()
     drawn = frames_of(svg)
     time = walker.time_origin_s + np.arange(25) * walker.period_s / 24
-    seen = project(walker.trajectories(time), view_deg=VIEW_DEG) * [1, -1]
+    seen = project(walker.trajectories(time), azimuth_deg=VIEW_DEG) * [1, -1]
     scale = np.ptp(drawn[..., 1]) / np.ptp(seen[..., 1])
     apart = drawn - scale * seen
     assert np.ptp(apart, axis=(0, 1)).max() < 0.3  # a constant shift, but for rounding

@@ -50,8 +50,10 @@ def stimuli() -> dict[str, Stimulus]:
     legs = ["left_ankle", "right_ankle", "left_knee", "right_knee"]
     return {
         "plain": plain,
-        "view": make_stimulus(walker, view_deg=-57.5, elevation_deg=20, duration_s=2.0),
-        "perspective": make_stimulus(walker, view_deg=80, elevation_deg=-10, eye_distance_mm=2500),
+        "view": make_stimulus(walker, azimuth_deg=-57.5, elevation_deg=20, duration_s=2.0),
+        "perspective": make_stimulus(
+            walker, azimuth_deg=80, elevation_deg=-10, eye_distance_mm=2500
+        ),
         "sized": plain.sized(5, viewing_distance_mm=570, px_per_cm=38),
         "trajectories": make_stimulus(captured(repeat=False), duration_s=2.0),
         "trajectories_repeat": make_stimulus(captured(repeat=True), duration_s=2.0),

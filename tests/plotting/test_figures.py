@@ -180,7 +180,7 @@ def test_the_joints_are_drawn_where_they_are_and_named(walker):
 
 
 def test_names_do_not_lie_on_each_other(walker):
-    axes = figure_joints(walker, views_deg=[0]).axes[0]
+    axes = figure_joints(walker, azimuths_deg=[0]).axes[0]
     for side in ("left", "right"):
         heights = sorted(t.get_position()[1] for t in axes.texts if t.get_ha() == side)
         assert np.diff(heights).min() > 90
@@ -209,7 +209,7 @@ def test_walkers_stand_side_by_side_at_one_scale(walker):
     small = Walker(
         walker.markers, walker.p0 / 2, walker.p / 2, walker.harmonics, walker.phases, 1.0
     )
-    axes = figure_walkers({"as is": walker, "half": small}, views_deg=[0]).axes[0]
+    axes = figure_walkers({"as is": walker, "half": small}, azimuths_deg=[0]).axes[0]
     assert [text.get_text() for text in axes.texts] == ["as is", "half"]
     whole, half = (patch.get_center()[1] for patch in axes.patches)
     assert whole / half == pytest.approx(2)

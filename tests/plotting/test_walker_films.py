@@ -65,18 +65,18 @@ def test_a_film_has_the_duration_and_size_that_were_asked(tmp_path, suffix):
 
 
 @pytest.mark.parametrize("suffix", [".mp4", ".gif"])
-@pytest.mark.parametrize("view_deg", [0, 30, -90])
-def test_dots_are_within_half_a_pixel_of_where_the_walker_is(tmp_path, suffix, view_deg):
+@pytest.mark.parametrize("azimuth_deg", [0, 30, -90])
+def test_dots_are_within_half_a_pixel_of_where_the_walker_is(tmp_path, suffix, azimuth_deg):
     walker = three_dots()
     path = write_film(
-        walker, tmp_path / f"walk{suffix}", duration_s=1, view_deg=view_deg, rate_hz=25
+        walker, tmp_path / f"walk{suffix}", duration_s=1, azimuth_deg=azimuth_deg, rate_hz=25
     )
     frames, _ = decode(path)
     scene = stage(
         [positions_at(walker, walker.time_origin_s + np.arange(25) / 25)],
-        view_deg=view_deg,
+        azimuth_deg=azimuth_deg,
         elevation_deg=0,
-        distance_mm=np.inf,
+        eye_distance_mm=None,
         style="dots",
         size_px=512,
         titles=(),
@@ -92,7 +92,7 @@ def test_dots_are_within_half_a_pixel_of_where_the_walker_is(tmp_path, suffix, v
 def test_the_scale_is_in_the_picture_as_well(tmp_path):
     """Known truth from outside the staging: the ankles are 400 mm apart, the head 1500 above."""
     still = Walker(THREE, three_dots().p0, np.zeros((1, 3, 3)), [1], [0], 1.0)
-    frames, _ = decode(write_film(still, tmp_path / "still.gif", duration_s=0.1, view_deg=0))
+    frames, _ = decode(write_film(still, tmp_path / "still.gif", duration_s=0.1, azimuth_deg=0))
     rows, columns = np.nonzero(frames[0] > 127)
     head, ankles = columns[rows < 256], columns[rows > 256]
     left, right = ankles[ankles > ankles.mean()], ankles[ankles < ankles.mean()]
@@ -121,7 +121,7 @@ def test_a_gif_of_whole_strides_keeps_the_tempo_to_a_hundredth_of_a_second(
 
 @pytest.mark.parametrize("suffix", [".mp4", ".gif"])
 def test_a_film_of_whole_strides_repeats_without_a_seam(tmp_path, suffix):
-    path = write_film(three_dots(0.93), tmp_path / f"w{suffix}", n_strides=1, view_deg=90)
+    path = write_film(three_dots(0.93), tmp_path / f"w{suffix}", n_strides=1, azimuth_deg=90)
     frames, duration = decode(path)
     assert duration == pytest.approx(1 / 0.93, abs=0.006)
     dark = frames.astype(float)
@@ -145,9 +145,9 @@ def test_walkers_side_by_side_have_one_scale_and_stay_in_their_panels():
     seconds = np.linspace(0, 1, 40)
     scene = stage(
         [positions_at(walker, seconds) for walker in (small, giant)],
-        view_deg=90,
+        azimuth_deg=90,
         elevation_deg=0,
-        distance_mm=np.inf,
+        eye_distance_mm=None,
         style="sticks",
         size_px=(600, 300),
         titles=("small", "giant"),
@@ -163,13 +163,13 @@ def test_walkers_side_by_side_have_one_scale_and_stay_in_their_panels():
 
 @given(st.floats(-6, 6), st.sampled_from([0, 30, 90, 200]), st.sampled_from(["dots", "sticks"]))
 @settings(max_examples=20, deadline=None)
-def test_nothing_is_drawn_at_the_border_however_large_the_step(alpha, view_deg, style):
+def test_nothing_is_drawn_at_the_border_however_large_the_step(alpha, azimuth_deg, style):
     walker = three_dots(step=250 + 150 * alpha)
     scene = stage(
         [positions_at(walker, np.linspace(0, 1.19, 12))],
-        view_deg=view_deg,
+        azimuth_deg=azimuth_deg,
         elevation_deg=10,
-        distance_mm=np.inf,
+        eye_distance_mm=None,
         style=style,
         size_px=128,
         titles=(),
@@ -185,7 +185,7 @@ def test_a_capture_plays_on_its_own_clock_and_gaps_are_not_drawn(tmp_path):
     values[:, 1] = [0, 400, 0]
     values[5:, 1] = np.nan
     walk = label_trajectories(values, markers=["a", "b"], rate_hz=10, start_s=7)
-    frames, duration = decode(write_film(walk, tmp_path / "w.gif", rate_hz=20, view_deg=0))
+    frames, duration = decode(write_film(walk, tmp_path / "w.gif", rate_hz=20, azimuth_deg=0))
     assert duration == pytest.approx(1.0)
     right_half = frames[..., frames.shape[2] // 2 :].max(axis=(1, 2))
     assert (right_half[:8] > 200).all()

@@ -27,7 +27,7 @@ def three_dots() -> Walker:
 
 @pytest.fixture(scope="module")
 def shown() -> Stimulus:
-    made = make_stimulus(three_dots(), view_deg=30, duration_s=1, rate_hz=25, size_px=(301, 240))
+    made = make_stimulus(three_dots(), azimuth_deg=30, duration_s=1, rate_hz=25, size_px=(301, 240))
     return made.then("start", phase_deg=200)
 
 

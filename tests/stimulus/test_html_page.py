@@ -114,7 +114,7 @@ def plain() -> Stimulus:
 
 
 def perspective() -> Stimulus:
-    return shown(view_deg=70, eye_distance_mm=3000).then("invert")
+    return shown(azimuth_deg=70, eye_distance_mm=3000).then("invert")
 
 
 def scrambled_in_noise() -> Stimulus:
@@ -177,7 +177,7 @@ def three_kinds() -> list[Stimulus]:
     return [
         shown(style="mannequin"),
         shown(style="mannequin", eye_distance_mm=3000, elevation_deg=20, **wood),
-        shown_all([average_walker(), other], style="mannequin", view_deg=0).then("invert"),
+        shown_all([average_walker(), other], style="mannequin", azimuth_deg=0).then("invert"),
     ]
 
 

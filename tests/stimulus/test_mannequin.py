@@ -278,5 +278,5 @@ def test_a_drawing_has_an_outline_for_each_piece(average, tmp_path):
 def test_a_mannequin_beside_the_picture_or_behind_the_eye_is_not_drawn(average):
     away = wooden(Figure(average, position_mm=(0, 0, 0))).then("translate", offset_mm=[0, 1e5, 0])
     assert not frame(away).any()
-    behind = wooden(average, eye_distance_mm=3000, view_deg=0)
+    behind = wooden(average, eye_distance_mm=3000, azimuth_deg=0)
     assert not frame(behind.then("translate", offset_mm=[5000, 0, 0])).any()

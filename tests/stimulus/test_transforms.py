@@ -35,7 +35,7 @@ def walker(people) -> Walker:
 
 @pytest.fixture(scope="module")
 def plain(walker) -> Stimulus:
-    return make_stimulus(walker, view_deg=30)
+    return make_stimulus(walker, azimuth_deg=30)
 
 
 def at(stimulus: Stimulus, time=TIME) -> np.ndarray:
@@ -56,15 +56,15 @@ def test_a_plain_stimulus_is_the_walker_from_its_first_phase(walker, plain):
 
 def test_the_picture_is_the_projection_about_the_centre(walker):
     for view, elevation in ((0, 0), (30, 10), (-90, -20)):
-        shown = make_stimulus(walker, view_deg=view, elevation_deg=elevation)
-        centre = project(shown.view.centre_mm, view_deg=view, elevation_deg=elevation)
-        seen = project(at(shown), view_deg=view, elevation_deg=elevation) - centre
+        shown = make_stimulus(walker, azimuth_deg=view, elevation_deg=elevation)
+        centre = project(shown.view.centre_mm, azimuth_deg=view, elevation_deg=elevation)
+        seen = project(at(shown), azimuth_deg=view, elevation_deg=elevation) - centre
         same(shown.play(TIME).picture, seen)
 
 
 def test_perspective_shows_the_near_larger_and_the_centre_as_it_is(walker):
-    shown = make_stimulus(walker, view_deg=90, eye_distance_mm=2000)
-    flat = make_stimulus(walker, view_deg=90)
+    shown = make_stimulus(walker, azimuth_deg=90, eye_distance_mm=2000)
+    flat = make_stimulus(walker, azimuth_deg=90)
     near, far = INDEX["right_wrist"], INDEX["left_wrist"]
     ratio = np.linalg.norm(shown.play(TIME).picture, axis=2) / np.linalg.norm(
         flat.play(TIME).picture, axis=2
@@ -76,8 +76,8 @@ def test_perspective_shows_the_near_larger_and_the_centre_as_it_is(walker):
 
 
 def test_dots_behind_the_eye_are_not_seen(walker):
-    played = make_stimulus(walker, view_deg=90, eye_distance_mm=150).play(TIME)
-    centre = make_stimulus(walker, view_deg=90).view.centre_mm
+    played = make_stimulus(walker, azimuth_deg=90, eye_distance_mm=150).play(TIME)
+    centre = make_stimulus(walker, azimuth_deg=90).view.centre_mm
     towards = (played.positions - centre) @ observer_axes(90)[2]
     assert played.visible.tolist() == (towards <= 149).tolist()
     assert 0 < played.visible[:, INDEX["right_wrist"]].mean() < 1
@@ -107,8 +107,8 @@ def test_a_mirror_swaps_the_sides(plain):
 
 def test_a_mirror_is_the_other_view_mirrored(walker):
     """J33: views of 30 and -30 degrees, of a walker and its mirror image."""
-    one = make_stimulus(walker, view_deg=30).then("mirror").play(TIME).picture
-    other = make_stimulus(walker, view_deg=-30).play(TIME).picture
+    one = make_stimulus(walker, azimuth_deg=30).then("mirror").play(TIME).picture
+    other = make_stimulus(walker, azimuth_deg=-30).play(TIME).picture
     swapped = other[:, list(JOINTS.mirror())] * [-1, 1]
     same(one - one[:1, :1], swapped - swapped[:1, :1])
 
@@ -126,8 +126,8 @@ def test_a_rotation_keeps_all_distances_and_can_be_undone(plain, axis, angle):
 
 
 def test_a_rotation_about_up_is_a_change_of_view(walker):
-    turned = make_stimulus(walker, view_deg=30).then("rotate", axis="z", angle_deg=40)
-    seen = make_stimulus(walker, view_deg=70).play(TIME).picture
+    turned = make_stimulus(walker, azimuth_deg=30).then("rotate", axis="z", angle_deg=40)
+    seen = make_stimulus(walker, azimuth_deg=70).play(TIME).picture
     found = turned.play(TIME).picture
     same(found - found[:1, :1], seen - seen[:1, :1])
 

@@ -140,7 +140,7 @@ def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulu
     looks |= {"size_px": None if size is None else _size(size)}
     return make_stimulus(
         _walker(population, options),
-        view_deg=options["view"],
+        azimuth_deg=options["view"],
         elevation_deg=options["elevation"],
         eye_distance_mm=options["eye_distance"],
         duration_s=options["duration"],

@@ -72,7 +72,7 @@ def synthesize(
             output,
             duration_s=duration,
             n_strides=max(round(4 * walker.frequency_hz), 1) if duration is None else None,
-            view_deg=view,
+            azimuth_deg=view,
             elevation_deg=elevation,
             style=style,  # pyright: ignore[reportArgumentType] - checked above
             progress=progress,

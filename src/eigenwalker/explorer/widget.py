@@ -210,7 +210,7 @@ class WalkerWidget(anywidget.AnyWidget):
             return Stimulus.from_dict(self._stimulus)
         return make_stimulus(
             self.walker,
-            view_deg=self.azimuth_deg,
+            azimuth_deg=self.azimuth_deg,
             elevation_deg=self.elevation_deg,
             style=self.style,  # pyright: ignore[reportArgumentType] - one of the three
             colour=_LIGHT if self.dark else _DARK,

@@ -229,7 +229,8 @@ def figure_two_walks(
     frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)
     views = (90.0, 0.0)
     seen = {
-        view: [project(walk[frames], view_deg=view) for walk in (first, second)] for view in views
+        view: [project(walk[frames], azimuth_deg=view) for walk in (first, second)]
+        for view in views
     }
     reach = max(np.abs(each[..., 0]).max() for both in seen.values() for each in both) + HEAD_MM
     low = min(each[..., 1].min() for both in seen.values() for each in both)

@@ -44,7 +44,7 @@ REACH_MM = 300.0
 
 
 def figure_eigenpostures(
-    walker: Walker, *, views_deg: Sequence[float] = (0, 90), skeleton: Skeleton = LINKS
+    walker: Walker, *, azimuths_deg: Sequence[float] = (0, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
     """Return the eigenpostures of a walker one by one, over its mean posture (M4).
 
@@ -56,7 +56,7 @@ def figure_eigenpostures(
     ----------
     walker : Walker
         Its postures, amplitudes included (J9), are what is drawn.
-    views_deg : sequence of float
+    azimuths_deg : sequence of float
         Views as `project` takes them, from above to below.
     skeleton : Skeleton
         Who is joined to whom.
@@ -78,17 +78,19 @@ def figure_eigenpostures(
         (walker.p0 + gain * p, walker.p0 - gain * p)
         for gain, p in zip(gains, walker.p, strict=True)
     ]
-    seen = np.concatenate([project(extremes, view_deg=view).reshape(-1, 2) for view in views_deg])
+    seen = np.concatenate(
+        [project(extremes, azimuth_deg=view).reshape(-1, 2) for view in azimuths_deg]
+    )
     pitch = 2 * np.abs(seen[:, 0]).max() + 220
     bottom, top = seen[:, 1].min() - 30, seen[:, 1].max() + HEAD_MM
     story = top - bottom + 130
     figure = new_figure(
-        (len(walker.p) * pitch + 100) / INCH_MM, (len(views_deg) * story + 330) / INCH_MM
+        (len(walker.p) * pitch + 100) / INCH_MM, (len(azimuths_deg) * story + 330) / INCH_MM
     )
     axes = bare(panels(figure, 1, 1)[0][0])
     for column, (plus, minus) in enumerate(extremes):
-        for row, view in enumerate(views_deg):
-            shown = project([walker.p0, plus, minus], view_deg=view)
+        for row, view in enumerate(azimuths_deg):
+            shown = project([walker.p0, plus, minus], azimuth_deg=view)
             _draw_extremes(axes, shown, body, (column * pitch, -row * story))
         harmonic, gain = walker.harmonics[column], gains[column]
         where = (column * pitch, top + 190)
@@ -96,7 +98,7 @@ def figure_eigenpostures(
         how = f"harmonic {harmonic}" + (f", {gain}-fold" if gain > 1 else "")
         axes.text(where[0], top + 75, how, fontsize=SMALL, ha="center", color=GREY)
     axes.set_xlim(-pitch / 2 - 50, (len(walker.p) - 0.5) * pitch + 50)
-    axes.set_ylim(bottom - (len(views_deg) - 1) * story - 10, top + 320)
+    axes.set_ylim(bottom - (len(azimuths_deg) - 1) * story - 10, top + 320)
     return figure
 
 

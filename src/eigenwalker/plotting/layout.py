@@ -107,9 +107,9 @@ class Scene:
 def stage(
     walks: Sequence[xr.DataArray],
     *,
-    view_deg: float,
+    azimuth_deg: float,
     elevation_deg: float,
-    distance_mm: float,
+    eye_distance_mm: float | None,
     style: Style,
     size_px: int | tuple[int, int],
     titles: Sequence[str],
@@ -124,7 +124,7 @@ def stage(
     ----------
     walks : sequence of DataArray of shape (time, marker, axis)
         Positions at the moments of the film, in millimetres; NaN where a marker is missing.
-    view_deg, elevation_deg, distance_mm : float
+    azimuth_deg, elevation_deg, eye_distance_mm : float
         The view, as `project` takes it.
     style : {"dots", "sticks"}
         Point-light display or stick figure.
@@ -143,7 +143,12 @@ def stage(
     if any(np.isnan(walk.values).all() for walk in walks):
         raise ValueError("A capture has no samples at all during the film; nothing can be drawn.")
     views = [
-        project(walk, view_deg=view_deg, elevation_deg=elevation_deg, distance_mm=distance_mm)
+        project(
+            walk,
+            azimuth_deg=azimuth_deg,
+            elevation_deg=elevation_deg,
+            eye_distance_mm=eye_distance_mm,
+        )
         for walk in walks
     ]
     radii = [_radii(walk.marker.values.tolist(), style)[:, None] for walk in walks]

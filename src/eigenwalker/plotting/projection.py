@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 def project(
     positions: ArrayLike,
     *,
-    view_deg: float = 0.0,
+    azimuth_deg: float = 0.0,
     elevation_deg: float = 0.0,
-    distance_mm: float = math.inf,
+    eye_distance_mm: float | None = None,
 ) -> np.ndarray:
     """Return where an observer sees points of the room.
 
@@ -26,14 +26,13 @@ def project(
     ----------
     positions : array of shape (..., 3)
         Millimetres: x forward, y to the walker's left, z up. Trajectories will do.
-    view_deg : float
+    azimuth_deg : float
         By how much the walker is turned out of the frontal view.
     elevation_deg : float
         By how much the observer is raised above the horizontal; 90 looks straight down.
-    distance_mm : float
-        From the eye to the middle of all points, about which the observer turns. Infinite gives the
-        orthographic picture; any other a perspective one, in which things as far as the middle keep
-        their size.
+    eye_distance_mm : float, optional
+        From the eye to the middle of all points, about which the observer turns, for a perspective
+        picture, in which things as far as the middle keep their size. None: orthographic.
 
     Returns
     -------
@@ -51,7 +50,7 @@ def project(
 
     >>> project([0, 300, 1000]).tolist()
     [300.0, 1000.0]
-    >>> project([0, 300, 1000], view_deg=90).round(9).tolist()
+    >>> project([0, 300, 1000], azimuth_deg=90).round(9).tolist()
     [0.0, 1000.0]
 
     """
@@ -60,13 +59,13 @@ def project(
         raise ValueError(
             f"Expected positions with x, y, z along the last axis, got {positions.shape}."
         )
-    seen = positions @ observer_axes(view_deg, elevation_deg).T
-    if math.isinf(distance_mm):
+    seen = positions @ observer_axes(azimuth_deg, elevation_deg).T
+    if eye_distance_mm is None:
         return seen[..., :2]
-    return _in_perspective(seen, distance_mm)
+    return _in_perspective(seen, eye_distance_mm)
 
 
-def observer_axes(view_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
+def observer_axes(azimuth_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
     """Return the observer's right, up and the way to the observer as unit vectors of the room.
 
     Returns
@@ -82,7 +81,7 @@ def observer_axes(view_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
     [0.0, 1.0, 0.0]
 
     """
-    view, elevation = math.radians(view_deg), math.radians(elevation_deg)
+    view, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
     ahead = np.array([math.cos(view), -math.sin(view), 0.0])
     right = np.array([math.sin(view), math.cos(view), 0.0])
     above = np.array([0.0, 0.0, 1.0])
@@ -91,14 +90,14 @@ def observer_axes(view_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
     return np.stack([right, up, towards])
 
 
-def _in_perspective(seen: np.ndarray, distance_mm: float) -> np.ndarray:
+def _in_perspective(seen: np.ndarray, eye_distance_mm: float) -> np.ndarray:
     points = seen.reshape(-1, 3)
     middle = (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) / 2
     offset = seen - middle
-    from_eye = distance_mm - offset[..., 2]
+    from_eye = eye_distance_mm - offset[..., 2]
     if not (np.isnan(from_eye) | (from_eye > 0)).all():
         raise ValueError(
-            f"distance_mm={distance_mm:g} puts the eye among the points; choose more than "
+            f"eye_distance_mm={eye_distance_mm:g} puts the eye among the points; choose more than "
             f"{np.nanmax(offset[..., 2]):.0f}."
         )
-    return middle[:2] + offset[..., :2] * (distance_mm / from_eye)[..., None]
+    return middle[:2] + offset[..., :2] * (eye_distance_mm / from_eye)[..., None]

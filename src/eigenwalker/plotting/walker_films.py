@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -37,9 +36,9 @@ def write_film(
     *,
     duration_s: float | None = None,
     n_strides: int | None = None,
-    view_deg: float = 30.0,
+    azimuth_deg: float = 30.0,
     elevation_deg: float = 0.0,
-    distance_mm: float = math.inf,
+    eye_distance_mm: float | None = None,
     style: Style = "dots",
     size_px: int | tuple[int, int] = 512,
     rate_hz: float | None = None,
@@ -66,8 +65,8 @@ def write_film(
     n_strides : int, optional
         Whole strides in place of a duration, so that the film repeats without a seam. Walkers of
         different frequency then keep step, in the time of their mean frequency (M1).
-    view_deg, elevation_deg, distance_mm : float
-        0 is the frontal view, 90 in profile to the right; see `project`.
+    azimuth_deg, elevation_deg, eye_distance_mm : float
+        An azimuth of 0 is the frontal view, 90 in profile to the right; see `project`.
     style : {"dots", "sticks"}
         Point-light display or stick figure.
     size_px : int or (width, height)
@@ -118,9 +117,9 @@ def write_film(
             positions_at(walk, _start(walk, shown) + moments)
             for walk, moments in zip(shown, seconds, strict=True)
         ],
-        view_deg=view_deg,
+        azimuth_deg=azimuth_deg,
         elevation_deg=elevation_deg,
-        distance_mm=distance_mm,
+        eye_distance_mm=eye_distance_mm,
         style=style,
         size_px=size_px,
         titles=titles,

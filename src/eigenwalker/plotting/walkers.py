@@ -81,7 +81,7 @@ def _mixed(color: str, share: float) -> tuple[float, ...]:
 
 
 def figure_joints(
-    walker: Walker, *, views_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = LINKS
+    walker: Walker, *, azimuths_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
     """Return the joints and links of a walker's mean posture from several sides (J fig. 1).
 
@@ -91,7 +91,7 @@ def figure_joints(
     ----------
     walker : Walker
         Whose mean posture to draw.
-    views_deg : sequence of float
+    azimuths_deg : sequence of float
         Views as `project` takes them; 0 is the front.
     skeleton : Skeleton
         Who is joined to whom.
@@ -103,21 +103,23 @@ def figure_joints(
     Examples
     --------
     >>> still = ew.Walker(["head"], [[0, 0, 1600]], [[[0, 0, 0]]], [1], [0], 1.0)
-    >>> [text.get_text() for text in figure_joints(still, views_deg=[0]).axes[0].texts]
+    >>> [text.get_text() for text in figure_joints(still, azimuths_deg=[0]).axes[0].texts]
     ['head', 'front']
 
     """
     body = skeleton.restricted_to(walker.markers)
-    pictures = [project(walker.p0, view_deg=view) for view in views_deg]
+    pictures = [project(walker.p0, azimuth_deg=view) for view in azimuths_deg]
     reach = max(np.abs(picture[:, 0]).max() for picture in pictures) + HEAD_MM
     pitch, names = 2 * reach + 120, 620.0
-    middles = np.arange(len(views_deg)) * pitch + np.where(np.arange(len(views_deg)) > 0, names, 0)
+    middles = np.arange(len(azimuths_deg)) * pitch + np.where(
+        np.arange(len(azimuths_deg)) > 0, names, 0
+    )
     right = middles[-1] + reach + (50 if len(middles) > 1 else names)
     top = max(picture[:, 1].max() for picture in pictures) + 1.5 * HEAD_MM
     figure = new_figure((reach + names + right) / INCH_MM, (top + 230) / INCH_MM)
     axes = bare(panels(figure, 1, 1)[0][0])
     _name_joints(axes, pictures[0], body, reach)
-    for middle, view, picture in zip(middles, views_deg, pictures, strict=True):
+    for middle, view, picture in zip(middles, azimuths_deg, pictures, strict=True):
         draw_body(axes, picture, body, at=(middle, 0))
         axes.text(middle, -170, view_name(view), fontsize=USUAL, ha="center", color=GREY)
     axes.set_xlim(-reach - names, right)
@@ -125,7 +127,7 @@ def figure_joints(
     return figure
 
 
-def view_name(view_deg: float) -> str:
+def view_name(azimuth_deg: float) -> str:
     """Return a view in words: front, three-quarter, side, or its angle.
 
     Examples
@@ -135,7 +137,7 @@ def view_name(view_deg: float) -> str:
 
     """
     names: dict[float, str] = {0: "front", 30: "three-quarter", 90: "side"}
-    return names.get(view_deg, f"{view_deg:g}°")
+    return names.get(azimuth_deg, f"{azimuth_deg:g}°")
 
 
 def _name_joints(axes: Axes, seen: np.ndarray, body: Skeleton, reach: float) -> None:
@@ -177,7 +179,7 @@ def _apart(heights: Sequence[float], *, least: float = 95.0) -> np.ndarray:
 def figure_walkers(
     walkers: Mapping[str, Walker],
     *,
-    views_deg: Sequence[float] = (0, 90),
+    azimuths_deg: Sequence[float] = (0, 90),
     phase: float = 0.25,
     skeleton: Skeleton = LINKS,
 ) -> Figure:
@@ -190,7 +192,7 @@ def figure_walkers(
     ----------
     walkers : mapping of str to Walker
         Title of each, and the walker; from left to right.
-    views_deg : sequence of float
+    azimuths_deg : sequence of float
         Views as `project` takes them, from above to below.
     phase : float
         Share of the stride at which the bodies are drawn, from the moment at which the first phase
@@ -216,13 +218,13 @@ def figure_walkers(
     if not walkers:
         raise ValueError("There is no walker to draw; give one or more, by title.")
     strides = {title: _one_stride(walker, phase) for title, walker in walkers.items()}
-    pictures = [[project(s, view_deg=view) for s in strides.values()] for view in views_deg]
+    pictures = [[project(s, azimuth_deg=view) for s in strides.values()] for view in azimuths_deg]
     seen = np.concatenate([picture.reshape(-1, 2) for row in pictures for picture in row])
     pitch = 2 * np.abs(seen[:, 0]).max() + 160
     bottom, top = seen[:, 1].min() - 40, seen[:, 1].max() + HEAD_MM
     story = top - bottom + 130
     figure = new_figure(
-        (len(walkers) * pitch + 100) / INCH_MM, (len(views_deg) * story + 170) / INCH_MM
+        (len(walkers) * pitch + 100) / INCH_MM, (len(azimuths_deg) * story + 170) / INCH_MM
     )
     axes = bare(panels(figure, 1, 1)[0][0])
     bodies = [skeleton.restricted_to(walker.markers) for walker in walkers.values()]
@@ -236,7 +238,7 @@ def figure_walkers(
         where = (column * pitch, top + 60)
         axes.text(*where, title, fontsize=USUAL, ha="center", color=INK, parse_math=False)
     axes.set_xlim(-pitch / 2 - 50, (len(walkers) - 0.5) * pitch + 50)
-    axes.set_ylim(bottom - (len(views_deg) - 1) * story - 10, top + 170)
+    axes.set_ylim(bottom - (len(azimuths_deg) - 1) * story - 10, top + 170)
     return figure
 
 

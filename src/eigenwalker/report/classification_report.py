@@ -397,7 +397,7 @@ def _films(folder: Path, name: str, walkers: Mapping[str, Walker]) -> list[Film]
             [walkers[title] for title in shown],
             folder / f"{name}-{style}.mp4",
             n_strides=2,
-            view_deg=30,
+            azimuth_deg=30,
             size_px=420,
             style=style,
             titles=shown,

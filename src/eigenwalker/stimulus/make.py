@@ -24,7 +24,7 @@ USUAL_S = 4.0
 def make_stimulus(
     figures: Walker | xr.DataArray | Figure | Iterable[Walker | xr.DataArray | Figure],
     *,
-    view_deg: float = 30.0,
+    azimuth_deg: float = 30.0,
     elevation_deg: float = 0.0,
     eye_distance_mm: float | None = None,
     duration_s: float | None = None,
@@ -41,7 +41,7 @@ def make_stimulus(
     ----------
     figures : Walker, trajectories, Figure, or several of them
         Who is seen. A `Figure` says where it stands and how it is joined too.
-    view_deg, elevation_deg : float
+    azimuth_deg, elevation_deg : float
         From where; 0 is the front, 90 in profile to the right.
     eye_distance_mm : float, optional
         From the eye to the middle of the scene, for a perspective picture.
@@ -65,7 +65,7 @@ def make_stimulus(
     Examples
     --------
     >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
-    >>> shown = make_stimulus(hop, view_deg=0, duration_s=1).then("invert")
+    >>> shown = make_stimulus(hop, azimuth_deg=0, duration_s=1).then("invert")
     >>> shown.play([0.25]).positions[0, 0].round(6).tolist()
     [0.0, 0.0, 10.0]
 
@@ -81,7 +81,7 @@ def make_stimulus(
     program = f"eigenwalker {__version__}"
     bare = Stimulus(
         figures=whole,
-        view=View((0.0, 0.0, 0.0), view_deg, elevation_deg),
+        view=View((0.0, 0.0, 0.0), azimuth_deg, elevation_deg),
         timing=Timing(duration_s, rate_hz),
         display=Display(1.0, *size_px, style=style, colour=colour, background=background),
         provenance={**(provenance or {}), "program": program},
