@@ -23,11 +23,11 @@ PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
 
 
 def study(seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Distances of eight groups in mm, and differences of which four groups tell something."""
+    """Distances of eight groups in mm, and differences of which four groups count."""
     rng = np.random.default_rng(seed)
     X = np.column_stack([pdist(rng.normal(scale=20, size=(N_WALKERS, 3))) for _ in range(8)])
-    told = X @ [0.0, 0, 0.36, 0.43, 0, 0, 0.02, 0.19]
-    return X, np.clip(told / told.mean() * 0.8 + rng.normal(scale=0.1, size=len(told)), 0, 1)
+    signal = X @ [0.0, 0, 0.36, 0.43, 0, 0, 0.02, 0.19]
+    return X, np.clip(signal / signal.mean() * 0.8 + rng.normal(scale=0.1, size=len(signal)), 0, 1)
 
 
 def slsqp(X: np.ndarray, y: np.ndarray, n_starts: int) -> float:

@@ -44,7 +44,7 @@ def test_lines_of_the_page_run_one_after_the_other(lab, monkeypatch):
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, str(PAGE), "exec"), names)
-    assert len(blocks) == 6
+    assert len(blocks) == 7
     assert names["metric"].predict(names["X"]).shape == (15,)
     assert (names["metric"].weights_ >= 0).all()
     assert names["found"].shares.sum() == pytest.approx(1)

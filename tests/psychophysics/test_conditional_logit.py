@@ -12,7 +12,7 @@ from sklearn.linear_model import LogisticRegression
 
 from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.psychophysics.choice_prediction import compare_by_choices, unseen_differences
+from eigenwalker.psychophysics.choice_prediction import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.conditional_logit import (
     bootstrap_choices,
     choice_probabilities,
@@ -70,7 +70,9 @@ def test_intervals_hold_planted_weights_about_as_often_as_they_say(mannequins):
     within, apart = [], []
     for seed in range(12):
         trials = study(told / told.std(), seed=seed, noise=0.5)
-        sampled = bootstrap_choices(X, trials, n_samples=120, seed=seed).intervals(X.columns)
+        sampled = bootstrap_choices(X, trials, n_samples=120, random_state=seed).intervals(
+            X.columns
+        )
         within.append((sampled.relative_low <= planted) & (planted <= sampled.relative_high))
         apart.append((sampled.relative_high - sampled.relative_low).mean())
     held = np.mean(within, axis=0)
@@ -87,7 +89,7 @@ def test_choices_are_foretold_where_shares_level_off(mannequins):
     linear = PerceptualMetric().fit(X, seen).predict(X)
     expected = expected_differences(X @ fit_choices(X, trials).weights, trials)
     assert np.corrcoef(seen, expected)[0, 1] > np.corrcoef(seen, linear)[0, 1] + 0.05
-    assert np.corrcoef(seen, unseen_differences(X, trials))[0, 1] > 0.93
+    assert np.corrcoef(seen, left_out_differences(X, trials))[0, 1] > 0.93
 
 
 def test_fit_agrees_with_another_solver():
@@ -158,7 +160,7 @@ def test_expected_differences_are_those_of_many_simulated_choices():
 def test_what_is_unseen_was_not_fitted_to():
     X = by_themselves(3)
     trials = study(X @ [3.0, 1, 0], seed=7, noise=0.5)
-    unseen = unseen_differences(X, trials)
+    unseen = left_out_differences(X, trials)
     row = PAIRS.get_loc((4, 11))
     there = np.array([{w for pair in shown for w in PAIRS[pair]} for shown in trials.shown])
     others = np.array([not ({4, 11} & walkers) for walkers in there])
@@ -229,7 +231,7 @@ def test_few_walkers_leave_none_unseen(n_walkers):
     columns = ["observer", *"abcd", "chosen_1", "chosen_2"]
     trials = read_trials(pd.DataFrame(rows, columns=columns), walkers=names)
     X = rng.uniform(size=(len(trials.pairs), 2))
-    assert np.isnan(unseen_differences(X, trials)).all()
+    assert np.isnan(left_out_differences(X, trials)).all()
     assert np.isnan(compare_by_choices({"fitted": X}, trials).cv_pearson).all()
 
 

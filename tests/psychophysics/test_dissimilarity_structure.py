@@ -8,9 +8,9 @@ from scipy.spatial.distance import pdist, squareform
 from sklearn.metrics import adjusted_rand_score
 
 from eigenwalker.psychophysics.dissimilarity_structure import (
+    cluster_memberships,
     clusters_of_walks,
     map_of_walks,
-    memberships,
     order_of_walks,
 )
 
@@ -39,7 +39,7 @@ def test_clusters_are_the_kinds():
 def test_memberships_are_shares_and_the_highest_is_the_cluster_s():
     values = table(apart=2.0)
     found = clusters_of_walks(values)
-    shares = memberships(values, found)
+    shares = cluster_memberships(values, found)
     np.testing.assert_allclose(shares.sum(axis=1), 1)
     assert np.mean(shares.argmax(axis=1) == found) > 0.9
 
@@ -47,7 +47,7 @@ def test_memberships_are_shares_and_the_highest_is_the_cluster_s():
 def test_memberships_go_with_one_over_the_squared_distance():
     values, found = table(apart=2.0), KIND
     middles = [values[each == KIND].mean(axis=0) for each in (0, 1)]
-    for row, shares in zip(values, memberships(values, found), strict=True):
+    for row, shares in zip(values, cluster_memberships(values, found), strict=True):
         away = [np.linalg.norm(row - middle) for middle in middles]
         assert shares[0] / shares[1] == pytest.approx((away[1] / away[0]) ** 2)
 

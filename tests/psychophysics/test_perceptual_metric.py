@@ -17,12 +17,12 @@ from eigenwalker.metric.clip_distances import pair_components
 from eigenwalker.metric.group_tables import by_group, group_table
 from eigenwalker.metric.published import PUBLISHED
 from eigenwalker.psychophysics.cross_validation import compare_metrics, goodness, leave_walkers_out
+from eigenwalker.psychophysics.fit_to_answers import fit_to_answers
 from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric
-from eigenwalker.psychophysics.reliability import bootstrap_weights, difference, split_half
+from eigenwalker.psychophysics.reliability import bootstrap_weights, split_half
 from eigenwalker.psychophysics.shape_search import fit_from_random_starts, search_shape
-from eigenwalker.psychophysics.trials import count_pairs
-from eigenwalker.report.metric_fit_report import fit_answers, in_words
-from eigenwalker.study.walks import Walks
+from eigenwalker.psychophysics.trials import count_pairs, share_not_chosen
+from eigenwalker.report.metric_fit_report import fit_sentences
 
 N_WALKERS, N_OBSERVERS, N_TRIALS = 21, 29, 63  # P1, P5
 PAIRS = list(itertools.combinations(range(N_WALKERS), 2))
@@ -77,7 +77,7 @@ def test_planted_weights_are_found_from_as_many_answers_as_the_paper_had(tempera
     within = []
     for seed in range(6):
         X, chosen, shown = study(seed, temperature)
-        metric = PerceptualMetric().fit(X, difference(chosen.sum(axis=0), shown.sum(axis=0)))
+        metric = PerceptualMetric().fit(X, share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0)))
         assert np.corrcoef(metric.relative_weights_, planted)[0, 1] >= 0.95
         fitted = bootstrap_weights(X, chosen, shown, pairs=PAIRS, n_samples=200)
         intervals = fitted.intervals([*range(8)])
@@ -119,7 +119,7 @@ def test_shares_of_trials_level_off_which_blurs_weights_of_groups_that_go_togeth
     found = []
     for seed in range(4):
         chosen, shown = answers(0.75 * told / told.mean(), seed=seed, temperature=0.1)
-        y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+        y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
         found.append(nearness(X, y, planted))
     assert least < np.mean(found) < 0.95
 
@@ -131,7 +131,7 @@ def test_with_the_mannequin_s_sternum_for_clavicles_weights_would_be_lost(manneq
     planted = planted_in(X, "positions-absolute")
     told = X.to_numpy() @ planted
     chosen, shown = answers(0.75 * told / told.mean(), seed=0, temperature=0.1)
-    assert nearness(X, difference(chosen.sum(axis=0), shown.sum(axis=0)), planted) < 0.6
+    assert nearness(X, share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0)), planted) < 0.6
     kept = group_table(mannequins, "positions-absolute")
     assert kept.attrs == {"left_out": ["clavicle"], "alike": []}
 
@@ -161,7 +161,7 @@ def test_fit_meets_the_conditions_of_the_one_optimum():
 
 def test_fit_agrees_with_another_solver():
     X, chosen, shown = study(4)
-    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
     bounds = ([-np.inf, *[0.0] * 8], np.inf)
     peer = lsq_linear(np.column_stack([np.ones(210), X]), y, bounds, tol=1e-14).x
     metric = PerceptualMetric().fit(X, y)
@@ -170,8 +170,8 @@ def test_fit_agrees_with_another_solver():
 
 def test_random_starts_end_at_the_same_optimum():
     X, chosen, shown = study(6)
-    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
-    found = fit_from_random_starts(X, y, n_starts=30, seed=1)
+    y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
+    found = fit_from_random_starts(X, y, n_starts=30, random_state=1)
     ours = goodness(y, PerceptualMetric().fit(X, y).predict(X))["rss"]
     assert ours <= found.rss.min() + 1e-12
     assert found.rss.min() == pytest.approx(ours, rel=1e-6)
@@ -229,7 +229,7 @@ def test_three_walkers_are_too_few_to_leave_two_out():
 
 def test_the_metric_observers_use_predicts_unseen_walkers_better_than_others():
     X, chosen, shown = study(11)
-    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
     noise = np.random.default_rng(0).uniform(size=(210, 1))
     compared = compare_metrics({"fitted": X, "all alike": X.mean(axis=1), "noise": noise}, y, PAIRS)
     assert compared.cv_pearson.idxmax() == "fitted"
@@ -239,7 +239,7 @@ def test_the_metric_observers_use_predicts_unseen_walkers_better_than_others():
 
 def test_unseen_pairs_are_predicted_by_weights_to_which_their_walkers_did_not_contribute():
     X, chosen, shown = study(14)
-    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
     unseen = np.empty(len(y))
     for row, pair in enumerate(PAIRS):
         others = [index for index, other in enumerate(PAIRS) if not set(pair) & set(other)]
@@ -253,7 +253,7 @@ def test_unseen_pairs_are_predicted_by_weights_to_which_their_walkers_did_not_co
 def test_no_metric_is_above_the_noise_ceiling_and_the_true_one_is_near():
     X, chosen, shown = study(12, temperature=0.2)
     truth = -np.exp(-(X @ PLANTED) * 0.75 / (X @ PLANTED).mean() / 0.2)
-    y = difference(chosen.sum(axis=0), shown.sum(axis=0))
+    y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
     found = split_half(chosen, shown)
     assert found.halves < found.whole < found.ceiling < 1
     assert np.corrcoef(truth, y)[0, 1] < found.ceiling + 0.02
@@ -300,7 +300,7 @@ def test_observers_of_opposite_minds_have_no_ceiling():
 )
 def test_where_nothing_can_be_correlated_it_is_said(chosen):
     shown = [[10, 10, 10, 0]] * 2 if chosen[0][2] else [[10, 10, 0, 5], [10, 10, 5, 0]]
-    with pytest.warns(UserWarning, match="cannot be told"):
+    with pytest.warns(UserWarning, match="2 observers"):
         found = split_half(chosen, shown)
     assert np.isnan(found).all()
 
@@ -414,7 +414,7 @@ def test_pairs_that_were_never_shown_together_are_left_out_of_the_fit_and_it_is_
     answers = trials(80)
     together = (answers[[*"abcd"]].isin(["w0", "w1"])).sum(axis=1) == 2
     with pytest.warns(UserWarning, match="1 of 15 pairs were never shown together, such as w0"):
-        found = fit_answers(Walks(renamed), answers[~together], "positions-absolute")
+        found = fit_to_answers(renamed, answers[~together], metric="positions-absolute")
     assert len(found.pairs) == 14
     assert ("w0", "w1") not in found.pairs.index
     assert np.isfinite(found.pairs.drop(columns="expected_unseen")).all(axis=None)
@@ -436,6 +436,6 @@ def test_what_speaks_against_a_fit_is_said(mannequins, liking, said):
         felt = {pair: apart[pair] - rng.gumbel() for pair in itertools.combinations(four, 2)}
         rows.append([f"o{trial % 12}", *four, *min(felt, key=felt.__getitem__)])
     table = pd.DataFrame(rows, columns=["observer", *"abcd", "chosen_1", "chosen_2"])
-    found = " ".join(in_words(fit_answers(Walks(renamed), table, "positions-absolute")))
+    found = " ".join(fit_sentences(fit_to_answers(renamed, table, metric="positions-absolute")))
     doubts = ["was the most different pair", "cannot be told from guessing", "too narrow"]
     assert [doubt for doubt in doubts if doubt in found] == ([said] if said else [])

@@ -75,7 +75,7 @@ def whole_report(film, words="as usual") -> Report:
 
 
 def test_the_page_is_one_file_that_parses(tmp_path, film):
-    path = write_report(tmp_path / "new" / "folder", whole_report(film))
+    path = write_report(whole_report(film), tmp_path / "new" / "folder")
     assert [file.name for file in path.parent.iterdir()] == ["report.html"]
     page = Page(path.read_text(encoding="utf-8"))
     assert page.open == []
@@ -203,7 +203,7 @@ def test_a_table_with_a_short_row_is_refused():
 def test_a_film_that_is_none_is_refused_and_leaves_no_page(tmp_path):
     report = Report("T", "L", [Section("S", [Film(tmp_path / "walk.doc", "c", "a")])])
     with pytest.raises(ValueError, match=r"walk\.doc"):
-        write_report(tmp_path, report)
+        write_report(report, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 import sys
 import warnings
@@ -108,9 +107,9 @@ def compare(
     _refuse_at_the_door(first, second, output, given)
     if clusters is not None and clusters < 1:
         raise ValueError(f"--clusters {clusters}: expected 1 or more.")
-    from eigenwalker.psychophysics.weights_file import metric_of
+    from eigenwalker.psychophysics.weights_file import load_metric
 
-    chosen = metric_of(metric)
+    chosen = load_metric(metric)
     told = {"mannequin": not own_bodies, "unit": unit, "rate_hz": rate}
     if second is not None:
         _compare_two(first, second, output, chosen, told)
@@ -244,28 +243,13 @@ def _compare_all(
 
 
 def _answers(path: Path, metric: GroupMetric) -> pd.DataFrame:
-    """Return observers' answers, refused before walks are read where they are none."""
-    import pandas as pd
-
+    """Return observers' answers; refused before any walk is read if they cannot be fitted to."""
     from eigenwalker.metric.published import PUBLISHED
-    from eigenwalker.psychophysics.trials import CHOSEN, SHOWN
+    from eigenwalker.psychophysics.trials import read_answers
 
     if metric.name not in PUBLISHED:
         raise ValueError("--answers finds weights of its own: name a published --metric.")
-    try:
-        table = pd.read_csv(path, dtype=str, sep=None, engine="python", encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(
-            f"The answers {path} are no text in UTF-8; save them as 'CSV UTF-8'."
-        ) from error
-    except (ValueError, OSError, csv.Error) as error:
-        why = str(getattr(error, "strerror", None) or error).strip()
-        raise ValueError(f"The answers {path} could not be read as CSV: {why}") from error
-    table.columns = [str(name).strip() for name in table.columns]
-    if lacking := [name for name in ("observer", *SHOWN, *CHOSEN) if name not in table]:
-        raise ValueError(
-            f"The answers {path} lack the columns {lacking}; they have {list(table)[:12]}."
-        )
+    table = read_answers(path)
     if table.observer.nunique() < 2:
         raise ValueError(
             f"The answers {path} are of {table.observer.nunique()} observer; intervals come from "
@@ -275,19 +259,23 @@ def _answers(path: Path, metric: GroupMetric) -> pd.DataFrame:
 
 
 def _fit(walks: Walks, answers: pd.DataFrame, output: Path | None, metric: GroupMetric) -> None:
+    from eigenwalker.psychophysics.fit_to_answers import fit_to_answers
     from eigenwalker.report.metric_fit_report import (
-        fit_answers,
-        in_words,
+        fit_sentences,
         weights_side_by_side,
-        write_fitted_metric,
+        write_metric_fit_report,
     )
+    from eigenwalker.study.walks import walker_space_distances
 
+    others = {"distance in walker space": walker_space_distances(walks)} if walks.vectors else {}
     with _bar("Fitting to answers") as progress:
-        found = fit_answers(walks, answers, metric.name, progress=progress)
-    print("\n".join(in_words(found)))
-    print(weights_side_by_side(found).to_string(float_format=lambda x: f"{x:.2f}"))
+        fit = fit_to_answers(
+            walks.clips, answers, metric=metric.name, others=others, progress=progress
+        )
+    print("\n".join(fit_sentences(fit)))
+    print(weights_side_by_side(fit).to_string(float_format=lambda x: f"{x:.2f}"))
     if output is not None:
-        print(f"Report: {write_fitted_metric(output, found)}")
+        print(f"Report: {write_metric_fit_report(fit, output)}")
 
 
 def _print_nearest(path: Path, query: PreparedClip, walks: Walks, metric: GroupMetric) -> None:

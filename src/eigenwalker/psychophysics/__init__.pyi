@@ -1,23 +1,31 @@
 from .choice_prediction import (
     compare_by_choices as compare_by_choices,
-    unseen_differences as unseen_differences,
+    left_out_differences as left_out_differences,
 )
 from .conditional_logit import (
     ChoiceFit as ChoiceFit,
     bootstrap_choices as bootstrap_choices,
+    choice_probabilities as choice_probabilities,
     expected_differences as expected_differences,
     fit_choices as fit_choices,
 )
 from .cross_validation import (
     compare_metrics as compare_metrics,
+    goodness as goodness,
     leave_walkers_out as leave_walkers_out,
 )
 from .dissimilarity_structure import (
+    cluster_memberships as cluster_memberships,
     clusters_of_walks as clusters_of_walks,
     map_of_walks as map_of_walks,
     order_of_walks as order_of_walks,
 )
-from .perceptual_metric import PerceptualMetric as PerceptualMetric
+from .fit_to_answers import MetricFit as MetricFit, fit_to_answers as fit_to_answers
+from .perceptual_metric import (
+    PerceptualMetric as PerceptualMetric,
+    Weights as Weights,
+    non_negative_fit as non_negative_fit,
+)
 from .reliability import (
     Bootstrap as Bootstrap,
     Reliability as Reliability,
@@ -34,5 +42,7 @@ from .trials import (
     PairCounts as PairCounts,
     Trials as Trials,
     count_pairs as count_pairs,
+    read_answers as read_answers,
     read_trials as read_trials,
 )
+from .weights_file import load_metric as load_metric, save_weights as save_weights

@@ -1,47 +1,43 @@
-"""Weights fitted to the choices themselves, and not to shares of them (P5, P14, A31).
+r"""Weights of a metric fitted to the choices themselves, not to shares of them.
 
 The paper fits a sum of distances to the share of times that each pair was not chosen. Where four
-walkers are shown and one of six pairs is chosen, that share depends on the other five, and levels
-off: a pair that differs much is never chosen, however much it differs. A model of the choice itself
-has no such limit. Here a pair is chosen the more likely, the less it differs from the other five
-(McFadden's conditional logit, 1974):
+walkers are shown and one of six pairs is chosen, that share depends on the other five pairs and
+levels off: a pair that differs much is never chosen, however much it differs. A model of the choice
+itself has no such limit. A pair is the more likely to be chosen, the less it differs from the
+others shown (McFadden 1974), with no weight below 0 as in the paper:
 
-    P(pair chosen) = exp(-d_pair) / sum of exp(-d) over the pairs shown,   d = sum_k w_k F(d_k)
+.. math:: P(i) = \frac{e^{-d_i}}{\sum_j e^{-d_j}}, \qquad d_i = \sum_k w_k F(d_{ik})
 
-with no w_k below 0, as in the paper. Its likelihood has one maximum.
+The likelihood has one maximum.
 """
 
 from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from eigenwalker.psychophysics.reliability import Bootstrap, times_drawn
-from eigenwalker.psychophysics.trials import Trials
+from eigenwalker.core.progress import Progress, ticked
+from eigenwalker.psychophysics.reliability import Bootstrap, draw_counts
+from eigenwalker.psychophysics.trials import Trials, share_not_chosen
 
-if TYPE_CHECKING:
-    from eigenwalker.core.progress import Progress
-
-OPEN = 0.5
-"""Log-likelihood, in nats, by less of which much more weight is worse: it is open upwards then."""
-
-MUCH = 10.0
-"""How many times as much that is, or, of a weight below one per unit of spread, how much."""
-
-_MOST_STEPS = 100
-_SAME = 1e-9
-"""Share of its values within which a column does not vary."""
+FLAT_NATS = 0.5
+"""Loss of log-likelihood below which a much larger weight fits as well: the weight is unbounded."""
+MUCH_LARGER = 10.0
+"""By how many times larger, or, of a weight below one per unit of spread, by how much."""
+_MAX_STEPS = 100
+_CONSTANT = 1e-9
+"""Share of its values within which a column counts as constant."""
 
 
 @dataclass(frozen=True, eq=False)
 class ChoiceFit:
-    """Weights with which a sum of distances tells best what observers chose.
+    """Weights with which a sum of distances best predicts what observers chose.
 
     Parameters
     ----------
@@ -60,20 +56,25 @@ class ChoiceFit:
 
     @property
     def relative_weights(self) -> np.ndarray:
-        """Weights divided by their sum; all 0 where no group tells anything."""
+        """Weights divided by their sum; all 0 where no group predicts anything."""
         total = self.weights.sum()
         return self.weights / total if total > 0 else self.weights
 
     def __repr__(self) -> str:
-        surprise = -self.log_likelihood / self.n_trials
-        return f"ChoiceFit({len(self.weights)} weights, {surprise:.3f} nats a trial)"
+        nats = -self.log_likelihood / self.n_trials
+        return f"ChoiceFit({len(self.weights)} weights, {nats:.3f} nats a trial)"
 
 
 def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None) -> ChoiceFit:
-    """Return the weights of joint groups that make what observers chose most likely.
+    r"""Return the weights of joint groups that make what observers chose most likely.
 
-    Newton's method, of which each step is a problem of non-negative least squares. Warns of weights
-    that the choices leave open upwards, as of a group that differs only in pairs never chosen.
+    A conditional logit whose weights are not negative:
+
+    .. math:: \max_{w \ge 0} \sum_t \log \frac{e^{-x_{c_t} w}}{\sum_{i \in S_t} e^{-x_i w}}
+
+    with x_i the row of X of pair i, S_t the pairs shown in trial t and c_t the one chosen. It is
+    found by Newton's method, of which each step is a problem of non-negative least squares. Warns
+    of weights without an upper bound, as of a group that differs only in pairs never chosen.
 
     Parameters
     ----------
@@ -93,6 +94,16 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     ValueError
         If X does not fit the pairs, or no trial counts.
 
+    See Also
+    --------
+    PerceptualMetric : The paper's fit, to shares of choices.
+    bootstrap_choices : Intervals of the weights.
+
+    References
+    ----------
+    McFadden (1974), Conditional logit analysis of qualitative choice behavior. Pražák et al.
+    (2010), section 5, whose weights are not negative either.
+
     Examples
     --------
     Of two pairs, the one that differs by 1 less is chosen three times of four, so that its odds
@@ -107,22 +118,22 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
 
     """
     times = np.ones(len(trials.chosen)) if counts is None else np.asarray(counts, dtype=float)
-    amiss = times.shape != trials.chosen.shape or not np.isfinite(times).all()
-    if amiss or times.min(initial=0) < 0 or not times.sum() > 0:
+    plain = times.shape == trials.chosen.shape and np.isfinite(times).all()
+    if not plain or times.min(initial=0) < 0 or not times.sum() > 0:
         raise ValueError(
             f"counts must be one number a trial, 0 or more and not all zero; got shape "
             f"{times.shape} for {len(trials.chosen)} trials, {times[~(times >= 0)][:5]} among them."
         )
-    problem = ChoiceProblem.of(X, trials)
-    found = problem.fit(times)
-    if still_open := problem.open_upwards(found, times):
+    problem = ChoiceProblem.from_trials(X, trials)
+    optimum = problem.fit(times)
+    if unbounded := problem.unbounded(optimum, times):
         warnings.warn(
-            f"The choices leave open how large the weights of the columns {still_open}, counted "
+            f"The choices leave open how large the weights of the columns {unbounded}, counted "
             "from 0, are: much more fits as well, as pairs that differ in them were hardly ever "
             "chosen.",
             stacklevel=2,
         )
-    return ChoiceFit(problem.weights(found), -found.surprise, float(times.sum()))
+    return ChoiceFit(problem.weights(optimum), -optimum.negative_log_likelihood, float(times.sum()))
 
 
 def bootstrap_choices(
@@ -130,10 +141,10 @@ def bootstrap_choices(
     trials: Trials,
     *,
     n_samples: int = 1000,
-    seed: int = 0,
+    random_state: int = 0,
     progress: Progress | None = None,
 ) -> Bootstrap:
-    """Return weights fitted anew to the choices of observers drawn with replacement.
+    """Return weights of `fit_choices` refitted to observers drawn with replacement.
 
     Observers are drawn rather than trials, since the answers of one observer belong together.
     Intervals of weights that are not 0 are a little narrow: in repeated simulations of the paper's
@@ -144,21 +155,25 @@ def bootstrap_choices(
     X, trials
         As for `fit_choices`; two observers or more.
     n_samples : int
-        How often to draw.
-    seed : int
-        The same seed draws the same.
+        Number of samples.
+    random_state : int
+        Seed of the random numbers.
     progress : callable, optional
         Called with the number of samples that are done, and of all.
 
     Returns
     -------
     Bootstrap
-        Its constants are 0: choices tell none.
+        Its constants are 0: a model of choices has none.
 
     Raises
     ------
     ValueError
         If X does not fit the pairs, or there is one observer only.
+
+    See Also
+    --------
+    bootstrap_weights : The same for weights fitted to shares of choices.
 
     """
     if len(trials.observers) < 2:
@@ -166,20 +181,18 @@ def bootstrap_choices(
             f"Intervals come from how observers differ; there are answers of "
             f"{len(trials.observers)} observer."
         )
-    problem = ChoiceProblem.of(X, trials)
+    problem = ChoiceProblem.from_trials(X, trials)
     start = problem.fit(np.ones(len(trials.chosen)))
     samples = []
-    drawn = times_drawn(np.random.default_rng(seed), len(trials.observers), n_samples)
-    for done, times in enumerate(drawn, start=1):
-        found = problem.fit(times[trials.observer].astype(float), start)
-        samples.append(problem.weights(found))
-        if progress is not None:
-            progress(done, n_samples)
+    draws = draw_counts(np.random.default_rng(random_state), len(trials.observers), n_samples)
+    for times in ticked(draws, n_samples, progress):
+        optimum = problem.fit(times[trials.observer].astype(float), start)
+        samples.append(problem.weights(optimum))
     return Bootstrap(np.array(samples), np.zeros(n_samples))
 
 
 def choice_probabilities(distances: ArrayLike, shown: np.ndarray) -> np.ndarray:
-    """Return how likely each pair shown is to be chosen as the most similar.
+    """Return the probability that each pair shown is chosen as the most similar.
 
     Parameters
     ----------
@@ -198,9 +211,7 @@ def choice_probabilities(distances: ArrayLike, shown: np.ndarray) -> np.ndarray:
     array([[0.571, 0.286, 0.143]])
 
     """
-    away = np.asarray(distances, dtype=float)[shown]
-    odds = np.exp(away.min(axis=1, keepdims=True) - away)
-    return odds / odds.sum(axis=1, keepdims=True)
+    return _softmax(np.asarray(distances, dtype=float)[shown])[0]
 
 
 def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
@@ -216,21 +227,26 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     Returns
     -------
     array of shape (pair,)
-        Share of times that a pair is shown and not chosen (P6); NaN if it is never shown.
+        Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
+
+    See Also
+    --------
+    count_pairs : The differences as observed.
 
     """
-    likely = choice_probabilities(distances, trials.shown)
+    probability = choice_probabilities(distances, trials.shown)
     n_pairs = len(trials.pairs)
-    chosen = np.bincount(trials.shown.ravel(), likely.ravel(), n_pairs)
-    shown = np.bincount(trials.shown.ravel(), minlength=n_pairs)
-    return 1 - np.divide(chosen, shown, out=np.full(n_pairs, np.nan), where=shown > 0)
+    return share_not_chosen(
+        np.bincount(trials.shown.ravel(), probability.ravel(), n_pairs),
+        np.bincount(trials.shown.ravel(), minlength=n_pairs),
+    )
 
 
-class _Found(NamedTuple):
-    """Weights of columns of unit spread, and minus the log-likelihood there."""
+class _Optimum(NamedTuple):
+    """Weights of columns of unit spread, and the negative log-likelihood there."""
 
     scaled: np.ndarray
-    surprise: float
+    negative_log_likelihood: float
 
 
 class ChoiceProblem(NamedTuple):
@@ -238,18 +254,18 @@ class ChoiceProblem(NamedTuple):
 
     Parameters
     ----------
-    apart : array of shape (trial, 6, group)
+    differences : array of shape (trial, 6, group)
     spread : array of shape (group,)
         By which the columns were divided; infinite for those that do not vary.
 
     """
 
-    apart: np.ndarray
+    differences: np.ndarray
     spread: np.ndarray
 
     @classmethod
-    def of(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
-        """Return the problem of fitting weights of a table to trials; refuse what does not fit."""
+    def from_trials(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
+        """Return the problem of fitting weights of a table to trials."""
         table = np.asarray(X, dtype=float)
         if table.ndim != 2 or len(table) != len(trials.pairs):
             raise ValueError(
@@ -258,64 +274,72 @@ class ChoiceProblem(NamedTuple):
             )
         if not np.isfinite(table).all():
             raise ValueError("The table of pairs by groups has numbers that are not finite.")
-        apart = table[trials.shown] - table[trials.chosen_pairs][:, None]
-        spread = np.sqrt((apart**2).mean(axis=(0, 1)))
-        spread[spread <= _SAME * np.abs(table).max(axis=0)] = np.inf
-        return cls(apart / spread, spread)
+        differences = table[trials.shown] - table[trials.chosen_pairs][:, None]
+        spread = np.sqrt((differences**2).mean(axis=(0, 1)))
+        spread[spread <= _CONSTANT * np.abs(table).max(axis=0)] = np.inf
+        return cls(differences / spread, spread)
 
-    def weights(self, found: _Found) -> np.ndarray:
+    def weights(self, optimum: _Optimum) -> np.ndarray:
         """Return weights per unit of the table's columns."""
-        return found.scaled / self.spread
+        return optimum.scaled / self.spread
 
-    def fit(self, times: np.ndarray, start: _Found | None = None) -> _Found:
-        """Return the weights of least surprise, trials counting so many times."""
-        kept = times > 0
-        apart, times = self.apart[kept], times[kept]
-        n_groups = apart.shape[2]
+    def fit(self, times: np.ndarray, start: _Optimum | None = None) -> _Optimum:
+        """Return the most likely weights, with trials that count so many times."""
+        counted = times > 0
+        differences, times = self.differences[counted], times[counted]
+        n_groups = differences.shape[2]
         weights = np.zeros(n_groups) if start is None else start.scaled
-        surprise, likely = _surprise(apart, times, weights)
-        for _ in range(_MOST_STEPS):
-            mean = np.einsum("tp,tpk->tk", likely, apart)
-            slope = -times @ mean
-            scaled = apart * np.sqrt(likely * times[:, None])[:, :, None]
+        loss, probability = _negative_log_likelihood(differences, times, weights)
+        for _ in range(_MAX_STEPS):
+            mean = np.einsum("tp,tpk->tk", probability, differences)
+            gradient = -times @ mean
+            scaled = differences * np.sqrt(probability * times[:, None])[:, :, None]
             scaled = scaled.reshape(-1, n_groups)
-            bend = scaled.T @ scaled - (mean * times[:, None]).T @ mean
-            bend[np.diag_indices(n_groups)] += 1e-9 * times.sum()
-            root = np.linalg.cholesky(bend)
-            target = root.T @ weights - solve_triangular(root, slope, lower=True)
-            way = nnls(root.T, target)[0] - weights
-            expected = slope @ way
-            if expected > -1e-10 * times.sum():
+            hessian = scaled.T @ scaled - (mean * times[:, None]).T @ mean
+            hessian[np.diag_indices(n_groups)] += 1e-9 * times.sum()
+            root = np.linalg.cholesky(hessian)
+            target = root.T @ weights - solve_triangular(root, gradient, lower=True)
+            step = nnls(root.T, target)[0] - weights
+            slope = gradient @ step
+            if slope > -1e-10 * times.sum():
                 break
-            step = 1.0
-            found, chances = _surprise(apart, times, weights + way)
-            while found > surprise + 1e-4 * step * expected and step > 1e-8:
-                step /= 2
-                found, chances = _surprise(apart, times, weights + step * way)
-            if found > surprise:  # no way down is left that numbers could tell
+            length = 1.0
+            tried, probability = _negative_log_likelihood(differences, times, weights + step)
+            while tried > loss + 1e-4 * length * slope and length > 1e-8:
+                length /= 2
+                tried, probability = _negative_log_likelihood(
+                    differences, times, weights + length * step
+                )
+            if tried > loss:  # rounding errors hide any further descent
                 break
-            weights, surprise, likely = weights + step * way, found, chances
-        return _Found(weights, surprise)
+            weights, loss = weights + length * step, tried
+        return _Optimum(weights, loss)
 
-    def open_upwards(self, found: _Found, times: np.ndarray) -> list[int]:
-        """Return groups of which ten times the weight would hardly be less likely."""
-        groups = np.flatnonzero(found.scaled).tolist()
+    def unbounded(self, optimum: _Optimum, times: np.ndarray) -> list[int]:
+        """Return groups of which a much larger weight would hardly be less likely."""
+        groups = np.flatnonzero(optimum.scaled).tolist()
 
-        def is_open(direction: np.ndarray) -> bool:
-            more = found.scaled + MUCH * direction / min(direction.max(), 1.0)
-            return _surprise(self.apart, times, more)[0] - found.surprise < OPEN
+        def is_flat(direction: np.ndarray) -> bool:
+            more = optimum.scaled + MUCH_LARGER * direction / min(direction.max(), 1.0)
+            loss = _negative_log_likelihood(self.differences, times, more)[0]
+            return loss - optimum.negative_log_likelihood < FLAT_NATS
 
-        if groups and is_open(found.scaled):  # all of them together
+        if groups and is_flat(optimum.scaled):  # all of them together
             return groups
-        return [group for group in groups if is_open(np.diag(found.scaled)[group])]
+        return [group for group in groups if is_flat(np.diag(optimum.scaled)[group])]
 
 
-def _surprise(
-    apart: np.ndarray, times: np.ndarray, weights: np.ndarray
+def _negative_log_likelihood(
+    differences: np.ndarray, times: np.ndarray, weights: np.ndarray
 ) -> tuple[float, np.ndarray]:
-    """Return minus the log-likelihood, and how likely each pair is in each trial."""
-    away = apart @ weights
-    least = away.min(axis=1, keepdims=True)
-    odds = np.exp(least - away)
+    """Return minus the log-likelihood, and the probability of each pair in each trial."""
+    probability, log_total = _softmax(differences @ weights)
+    return float(times @ log_total), probability
+
+
+def _softmax(distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return exp(-d) over its sum in each row, and the logarithm of that sum."""
+    least = distances.min(axis=1, keepdims=True)
+    odds = np.exp(least - distances)
     total = odds.sum(axis=1, keepdims=True)
-    return float(times @ (np.log(total) - least)[:, 0]), odds / total
+    return odds / total, (np.log(total) - least)[:, 0]

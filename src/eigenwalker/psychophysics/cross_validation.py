@@ -1,4 +1,4 @@
-"""How well metrics predict what observers see, of walkers they were not fitted to."""
+"""How well metrics predict perceived differences of walkers that they were not fitted to."""
 
 from __future__ import annotations
 
@@ -25,9 +25,12 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
     -------
     dict
         ``rss``, the sum of squared errors; ``rms``, the root of their mean; ``pearson`` and
-        ``spearman`` correlations, NaN if one of the two does not vary or there is no pair. Figure
-        5's "difference", said to be a norm, can only be a sum of squares, it seems over the whole
-        table (A27): then ``rss`` is half of it.
+        ``spearman`` correlations, NaN if one of the two does not vary or there is no pair.
+
+    References
+    ----------
+    Pražák et al. (2010), figure 5: its "difference" is called a norm, but can only be a sum of
+    squares over the whole table, of which ``rss`` is half.
 
     Examples
     --------
@@ -54,8 +57,7 @@ def leave_walkers_out(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return a split for each pair that leaves out both its walkers, with all pairs they are in.
 
-    Leaving pairs out alone would let a metric know the walkers from their other pairs. To be
-    given to scikit-learn as ``cv=leave_walkers_out(pairs)``.
+    Leaving pairs out alone would let a metric know the walkers from their other pairs.
 
     Parameters
     ----------
@@ -65,27 +67,28 @@ def leave_walkers_out(
     Returns
     -------
     list of pairs of arrays
-        Rows to fit to, and the one row to predict.
+        Rows to fit to, and the one row to predict: scikit-learn's ``cv=leave_walkers_out(pairs)``.
 
     Examples
     --------
     >>> import itertools
     >>> pairs = list(itertools.combinations("abcd", 2))
-    >>> fitted_to, predicted = leave_walkers_out(pairs)[0]
-    >>> [pairs[row] for row in fitted_to], [pairs[row] for row in predicted]
+    >>> train, test = leave_walkers_out(pairs)[0]
+    >>> [pairs[row] for row in train], [pairs[row] for row in test]
     ([('c', 'd')], [('a', 'b')])
 
     """
-    first, second = (np.array([str(pair[end]) for pair in pairs]) for end in (0, 1))
+    names = np.array([[str(walker) for walker in pair] for pair in pairs])
     splits = []
-    for row, (a, b) in enumerate(zip(first, second, strict=True)):
-        apart = ~(np.isin(first, [a, b]) | np.isin(second, [a, b]))
-        if not apart.any():
+    for row, pair in enumerate(names):
+        train = np.flatnonzero(~np.isin(names, pair).any(axis=1))
+        if not train.size:
+            a, b = map(str, pair)
             raise ValueError(
                 f"Every pair holds the walker {a!r} or {b!r}, so that none is left to fit to; "
                 "compare four walkers or more, each with each."
             )
-        splits.append((np.flatnonzero(apart), np.array([row])))
+        splits.append((train, np.array([row])))
     return splits
 
 
@@ -95,8 +98,8 @@ def compare_metrics(
     """Return how well several metrics predict the same differences.
 
     Each table gets the constant and the weights, none below 0, that fit best. A table of one
-    column, such as a published metric's distances (A28) or those of walkers in a `WalkerSpace`,
-    thereby keeps all but its constant and its factor.
+    column, such as a published metric's distances or those of walkers in a `WalkerSpace`, gets a
+    constant and a factor.
 
     Parameters
     ----------
@@ -113,17 +116,25 @@ def compare_metrics(
         Rows are metrics; columns ``n_weights`` (that are not 0), the four of `goodness`, and
         ``cv_rms``, ``cv_pearson``, ``cv_spearman`` of pairs whose two walkers were both left out.
 
+    See Also
+    --------
+    compare_by_choices : The same by trials.
+
+    References
+    ----------
+    Pražák et al. (2010), figure 5.
+
     """
     y = np.asarray(y, dtype=float)
     splits = leave_walkers_out(pairs)
     rows = {}
     for name, table in tables.items():
         X = np.asarray(table, dtype=float).reshape(len(y), -1)
-        fitted = PerceptualMetric().fit(X, y)
-        unseen = goodness(y, np.asarray(cross_val_predict(PerceptualMetric(), X, y, cv=splits)))
+        metric = PerceptualMetric().fit(X, y)
+        left_out = goodness(y, np.asarray(cross_val_predict(PerceptualMetric(), X, y, cv=splits)))
         rows[name] = {
-            "n_weights": int((fitted.weights_ > 0).sum()),
-            **goodness(y, fitted.predict(X)),
-            **{f"cv_{measure}": unseen[measure] for measure in ("rms", "pearson", "spearman")},
+            "n_weights": int((metric.weights_ > 0).sum()),
+            **goodness(y, metric.predict(X)),
+            **{f"cv_{measure}": left_out[measure] for measure in ("rms", "pearson", "spearman")},
         }
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("metric")

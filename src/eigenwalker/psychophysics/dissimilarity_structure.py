@@ -1,4 +1,4 @@
-"""What a table of differences tells: order, clusters, a map of walks, nearest walks (P7)."""
+"""The structure of a table of differences: order, clusters and a map of walks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sklearn.decomposition import PCA
 
 
 def order_of_walks(table: ArrayLike) -> np.ndarray:
-    """Return walks in the order of the first principal component of the table's rows (P7).
+    """Return walks in the order of the first principal component of the table's rows.
 
     Each row is a point in a space of as many dimensions as there are walks; in the paper this order
     tells women from men.
@@ -26,6 +26,10 @@ def order_of_walks(table: ArrayLike) -> np.ndarray:
         Which walk comes first, second and so on; of the two directions that in which the first
         walk of the table comes in the first half.
 
+    References
+    ----------
+    Pražák et al. (2010), section 4 and figure 4.
+
     Examples
     --------
     >>> place = np.array([0.0, 2.0, 0.5, 1.5])
@@ -33,28 +37,34 @@ def order_of_walks(table: ArrayLike) -> np.ndarray:
     [0, 2, 3, 1]
 
     """
-    rows = _checked(table)
+    rows = _check_table(table)
     scores = PCA(n_components=1, svd_solver="full").fit_transform(rows)[:, 0]
     scores *= -1 if scores[0] > np.median(scores) else 1
     return np.argsort(scores, kind="stable")
 
 
-def clusters_of_walks(table: ArrayLike, n_clusters: int = 2, *, seed: int = 0) -> np.ndarray:
-    """Return to which cluster each walk belongs: k-means on the rows of the table (P7).
+def clusters_of_walks(
+    table: ArrayLike, n_clusters: int = 2, *, random_state: int = 0
+) -> np.ndarray:
+    """Return the cluster of each walk: k-means on the rows of the table.
 
     Parameters
     ----------
     table : array of shape (walk, walk)
         Differences, symmetric.
     n_clusters : int
-        As in the paper 2, which fell together with the walkers' sex.
-    seed : int
-        Of the random starts.
+        As in the paper 2, which agreed with the walkers' sex.
+    random_state : int
+        Seed of the random starts.
 
     Returns
     -------
     array of int of shape (walk,)
         Numbers from 0, in the order in which `order_of_walks` comes to them.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4 and figure 3.
 
     Examples
     --------
@@ -63,19 +73,19 @@ def clusters_of_walks(table: ArrayLike, n_clusters: int = 2, *, seed: int = 0) -
     [0, 1, 0, 1]
 
     """
-    rows = _checked(table)
+    rows = _check_table(table)
     if not 1 <= n_clusters <= len(rows):
         raise ValueError(f"n_clusters={n_clusters}: expected 1 to {len(rows)}, as there are walks.")
-    found = KMeans(n_clusters, n_init=20, random_state=seed).fit_predict(rows)  # pyright: ignore[reportArgumentType] - the stub knows the default, a word, alone
-    met = pd.unique(found[order_of_walks(rows)])
-    return np.argsort(met)[found]
+    clusters = KMeans(n_clusters, n_init=20, random_state=random_state).fit_predict(rows)  # pyright: ignore[reportArgumentType] - the stub knows the default, a word, alone
+    in_order = pd.unique(clusters[order_of_walks(rows)])
+    return np.argsort(in_order)[clusters]
 
 
-def memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
+def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     """Return how much each walk belongs to each cluster, as the curves of the paper's figure 3.
 
     K-means knows whole members only, the figure shows graded ones. As in fuzzy c-means with
-    exponent 2 a share goes with 1 over the squared distance from the cluster's middle (A32).
+    exponent 2, a share is proportional to 1 over the squared distance from the cluster's centre.
 
     Parameters
     ----------
@@ -89,51 +99,71 @@ def memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     array of shape (walk, cluster)
         Shares; they sum to 1.
 
+    References
+    ----------
+    Pražák et al. (2010), figure 3. Bezdek (1981), Pattern recognition with fuzzy objective
+    function algorithms.
+
+    Examples
+    --------
+    >>> place = np.array([0.0, 2.0, 0.5, 1.5])
+    >>> table = np.abs(place[:, None] - place)
+    >>> cluster_memberships(table, clusters_of_walks(table))[0].round(3).tolist()
+    [0.971, 0.029]
+
     """
-    rows, clusters = _checked(table), np.asarray(clusters)
-    middles = np.stack([rows[clusters == each].mean(axis=0) for each in range(clusters.max() + 1)])
-    away = ((rows[:, None] - middles) ** 2).sum(axis=2)
-    near = 1 / np.maximum(away, 1e-12 * max(away.max(), 1e-300))
-    return near / near.sum(axis=1, keepdims=True)
+    rows, clusters = _check_table(table), np.asarray(clusters)
+    centres = np.stack([rows[clusters == each].mean(axis=0) for each in range(clusters.max() + 1)])
+    squared = ((rows[:, None] - centres) ** 2).sum(axis=2)
+    nearness = 1 / np.maximum(squared, 1e-12 * max(squared.max(), 1e-300))
+    return nearness / nearness.sum(axis=1, keepdims=True)
 
 
 def map_of_walks(table: ArrayLike, n_dimensions: int = 2) -> np.ndarray:
-    """Return places of walks whose distances are as near as can be to their differences.
+    r"""Return positions of walks whose distances are as near as possible to their differences.
 
-    Classical scaling (Torgerson 1952): exact where the differences are distances in a plane.
+    Classical scaling: exact where the differences are distances in a plane. The positions are the
+    leading eigenvectors of the doubly centred squares of the table D, times the roots of their
+    eigenvalues:
+
+    .. math:: B = -\tfrac{1}{2} J D^{(2)} J, \qquad J = I - \tfrac{1}{n} 1 1^T
 
     Parameters
     ----------
     table : array of shape (walk, walk)
         Differences, symmetric, 0 on the diagonal.
     n_dimensions : int
-        Of the map.
+        Dimensions of the map.
 
     Returns
     -------
     array of shape (walk, n_dimensions)
         Centred; the widest dimension first, signs so that the walk furthest out is positive.
 
+    References
+    ----------
+    Torgerson (1952), Multidimensional scaling: I. Theory and method.
+
     Examples
     --------
     >>> corners = np.array([[0, 0], [3, 0], [3, 4.0]])
-    >>> apart = np.linalg.norm(corners[:, None] - corners, axis=2)
-    >>> places = map_of_walks(apart)
-    >>> np.allclose(np.linalg.norm(places[:, None] - places, axis=2), apart)
+    >>> table = np.linalg.norm(corners[:, None] - corners, axis=2)
+    >>> points = map_of_walks(table)
+    >>> np.allclose(np.linalg.norm(points[:, None] - points, axis=2), table)
     True
 
     """
-    squared = _checked(table) ** 2
-    middle = squared.mean(axis=0)
-    products = -0.5 * (squared - middle - middle[:, None] + squared.mean())
+    squared = _check_table(table) ** 2
+    mean = squared.mean(axis=0)
+    products = -0.5 * (squared - mean - mean[:, None] + squared.mean())
     values, vectors = np.linalg.eigh(products)
     widest = np.argsort(-values)[:n_dimensions]
-    places = vectors[:, widest] * np.sqrt(np.maximum(values[widest], 0.0))
-    signs = np.sign(places[np.abs(places).argmax(axis=0), np.arange(places.shape[1])])
-    return places * np.where(signs == 0, 1.0, signs)
+    points = vectors[:, widest] * np.sqrt(np.maximum(values[widest], 0.0))
+    signs = np.sign(points[np.abs(points).argmax(axis=0), np.arange(points.shape[1])])
+    return points * np.where(signs == 0, 1.0, signs)
 
 
-def _checked(table: ArrayLike) -> np.ndarray:
+def _check_table(table: ArrayLike) -> np.ndarray:
     values = np.asarray(table, dtype=float)
     if values.ndim != 2 or values.shape[0] != values.shape[1] or len(values) < 2:
         raise ValueError(

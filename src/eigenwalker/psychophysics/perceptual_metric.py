@@ -1,4 +1,4 @@
-"""Perceived difference from distances of joint groups (Pražák et al. 2010, eqs. 1 to 3)."""
+"""Perceived difference from distances of joint groups (Pražák et al. 2010, eq. 1 to 3)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ _validated: Callable[..., Any] = validation.validate_data
 
 
 class PerceptualMetric(RegressorMixin, BaseEstimator):
-    """Predicts how different observers find two walks: ``c + sum w_k F(d_k)``, no w_k below 0.
+    r"""How different two walks look, as a weighted sum of distances of joint groups.
 
-    The metric of Pražák et al. (2010): F(d_k) is how far joint group k is apart in the mean of the
-    registered frames, and the difference is the share of times a pair was not chosen as the most
-    similar (P6). For a given F the model is linear, so the best weights are found at once and for
-    sure by non-negative least squares; the paper's 1000 random starts end where this does (A30).
-    The constant is free: it is the difference of two walks that are not the same though their
-    distance is 0 (A38).
+    .. math:: d(a, b) = c + \sum_k w_k F(d_k), \qquad w_k \ge 0
+
+    F(d_k) is how far joint group k is apart in the mean of the registered frames, and the
+    difference d is the share of times that a pair was not chosen as the most similar. For a given F
+    the model is linear, so the best weights are exact, by non-negative least squares; the paper's
+    1000 random starts end at the same ones. The constant is free: it is the difference of two walks
+    that are not the same although their distance is 0.
 
     Parameters
     ----------
@@ -38,9 +39,20 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
     constant_ : float
         c.
     relative_weights_ : array of shape (group,)
-        Weights divided by their sum, as figure 5 has them; all 0 where no group tells anything.
+        Weights divided by their sum, as figure 5 has them; all 0 where no group predicts anything.
     normalisation_ : float
-        1 over the sum of the weights (A28).
+        1 over the sum of the weights.
+
+    See Also
+    --------
+    fit_choices : Weights fitted to the choices themselves; better where shares level off.
+    group_table : Makes X of walks.
+    count_pairs : Makes y of observers' answers.
+
+    References
+    ----------
+    Pražák, McDonnell, Kavan & O'Sullivan (2010), A perception based metric for comparing human
+    locomotion, eq. 1 to 3, section 5 and figure 5.
 
     Examples
     --------
@@ -65,9 +77,13 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         X : array of shape (pair, group)
             F(d_k), in the mean along the registered path.
         y : array of shape (pair,)
-            Perceived differences. A walk and itself is no pair (A38).
+            Perceived differences. A walk and itself is no pair.
         sample_weight : array of shape (pair,), optional
-            How much each pair counts, such as how often it was shown; the paper's count alike.
+            How much each pair counts, such as how often it was shown; in the paper all the same.
+
+        Returns
+        -------
+        self
 
         """
         plain = _is_plain(X, 2) and _is_plain(y, 1) and np.shape(X)[0] == np.shape(y)[0]
@@ -85,7 +101,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         return self
 
     def predict(self, X: ArrayLike) -> np.ndarray:
-        """Return the perceived difference of each pair."""
+        """Return the perceived difference of each pair, of shape (pair,)."""
         check_is_fitted(self)
         table = _validated(self, X, dtype=np.float64, reset=False)
         return self.constant_ + table @ self.weights_
@@ -93,12 +109,12 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()
         if tags.regressor_tags is not None:
-            tags.regressor_tags.poor_score = True  # on data that ask for weights below 0
+            tags.regressor_tags.poor_score = True  # on data that need weights below 0
         return tags
 
 
 def _is_plain(values: ArrayLike, n_dimensions: int) -> bool:
-    """Return whether these are numbers as they should be, which need none of the longer checks."""
+    """Return whether these are finite float64 arrays, which need none of the longer checks."""
     return (
         type(values) is np.ndarray
         and values.dtype == np.float64
@@ -146,24 +162,32 @@ def non_negative_fit(
     fit_constant : bool
         Whether there is a constant; 0 otherwise.
 
+    Returns
+    -------
+    Weights
+
+    See Also
+    --------
+    PerceptualMetric : The same as a scikit-learn estimator, with all checks.
+
     Examples
     --------
-    >>> fitted = non_negative_fit(np.array([[0.0], [1.0], [2.0]]), np.array([1.0, 3.0, 5.0]))
-    >>> fitted.weights.round(6).tolist(), round(fitted.constant, 6)
+    >>> fit = non_negative_fit(np.array([[0.0], [1.0], [2.0]]), np.array([1.0, 3.0, 5.0]))
+    >>> fit.weights.round(6).tolist(), round(fit.constant, 6)
     ([2.0], 1.0)
 
     """
-    middle, level = np.zeros(X.shape[1]), 0.0
+    x_mean, y_mean = np.zeros(X.shape[1]), 0.0
     if sample_weight is None:
         if fit_constant:
-            middle, level = X.sum(axis=0) / len(y), y.sum() / len(y)
-        centred, told = X - middle, y - level
+            x_mean, y_mean = X.sum(axis=0) / len(y), y.sum() / len(y)
+        design, target = X - x_mean, y - y_mean
     else:
         total, root = sample_weight.sum(), np.sqrt(sample_weight)
         if fit_constant:
-            middle, level = sample_weight @ X / total, sample_weight @ y / total
-        centred, told = root[:, None] * (X - middle), root * (y - level)
-    size = np.sqrt(np.einsum("pk,pk->k", centred, centred))
+            x_mean, y_mean = sample_weight @ X / total, sample_weight @ y / total
+        design, target = root[:, None] * (X - x_mean), root * (y - y_mean)
+    size = np.sqrt(np.einsum("pk,pk->k", design, design))
     size[size == 0] = 1.0
-    weights = nnls(centred / size, told)[0] / size
-    return Weights(weights, float(level - middle @ weights))
+    weights = nnls(design / size, target)[0] / size
+    return Weights(weights, float(y_mean - x_mean @ weights))

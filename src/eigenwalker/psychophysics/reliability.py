@@ -1,4 +1,4 @@
-"""What so many answers can tell: intervals of the weights, and how well any metric could do."""
+"""How much answers tell: intervals of fitted weights, and how well any metric could predict."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit
+from eigenwalker.psychophysics.trials import share_not_chosen
 
-LEAST_PAIRS = 3
-"""Different pairs of walkers that a sample needs, to tell anything of weights."""
-_MOST_DRAWS = 50
+MIN_PAIRS = 3
+"""Different pairs of walkers that a sample needs to say anything about weights."""
+_MAX_ROUNDS = 50
+"""Rounds of drawing before too few samples hold enough pairs."""
 
 
 class Bootstrap(NamedTuple):
@@ -30,16 +32,16 @@ class Bootstrap(NamedTuple):
         return np.divide(self.weights, total, out=np.zeros_like(self.weights), where=total > 0)
 
     def intervals(self, names: ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
-        """Return for each group the weight, relative too, that so many samples lie about.
+        """Return percentile intervals of each group's weight and relative weight.
 
-        A percentile interval of a weight near 0 begins at 0: no weight can be less.
+        An interval of a weight near 0 begins at 0: no weight can be less.
 
         Parameters
         ----------
         names : sequence of str
             The groups.
         level : float
-            Share of the samples within.
+            Share of the samples within the interval.
 
         Returns
         -------
@@ -70,17 +72,17 @@ def bootstrap_weights(
     *,
     pairs: Sequence[tuple[object, object]] | None = None,
     n_samples: int = 1000,
-    seed: int = 0,
+    random_state: int = 0,
 ) -> Bootstrap:
-    """Return weights fitted anew to observers, and walkers, drawn with replacement.
+    """Return weights of `PerceptualMetric` refitted to observers, and walkers, drawn anew.
 
-    Observers are drawn rather than answers, since those of one observer belong together; walkers
-    rather than pairs, for the same reason. With walkers the intervals are wider: they then tell
-    what might have come out with other walkers too, and where the metric does not quite fit.
+    Observers are drawn with replacement rather than answers, since the answers of one observer
+    belong together; walkers rather than pairs, for the same reason. With walkers the intervals are
+    wider: they then cover other walkers too, and where the metric does not quite fit.
 
     Neither is calibrated. A walker drawn twice makes pairs count four times, so with walkers the
-    samples spread wider than studies do that are repeated, by about a half; with observers alone
-    they spread less than half as much as repeated studies with other walkers.
+    samples spread wider than repeated studies do, by about a half; with observers alone they
+    spread less than half as much as repeated studies with other walkers.
 
     Parameters
     ----------
@@ -89,51 +91,55 @@ def bootstrap_weights(
     chosen, shown : array of shape (observer, pair)
         How often each observer chose a pair as the most similar, and was shown it.
     pairs : sequence of pairs, optional
-        The two walkers of each pair; left out, walkers stay as they are.
+        The two walkers of each pair; left out, only observers are drawn.
     n_samples : int
-        How often to draw.
-    seed : int
-        The same seed draws the same.
+        Number of samples.
+    random_state : int
+        Seed of the random numbers.
 
     Returns
     -------
     Bootstrap
         Pairs that the observers drawn were never shown are left out of that sample; samples of
-        fewer than `LEAST_PAIRS` different pairs are drawn anew.
+        fewer than `MIN_PAIRS` different pairs are drawn again.
 
     Raises
     ------
     ValueError
-        If counts cannot be, or there are too few walkers or pairs to draw from.
+        If counts are impossible, or there are too few walkers or pairs to draw from.
+
+    See Also
+    --------
+    bootstrap_choices : The same for weights fitted to choices.
 
     Examples
     --------
     >>> X = np.array([[0.0], [1.0], [2.0]])
     >>> shown = np.full((5, 3), 10)
-    >>> fitted = bootstrap_weights(X, [[6, 4, 2]] * 5, shown, n_samples=10)
-    >>> fitted.intervals(["calf"])[["low", "high"]].round(6).values.tolist()
+    >>> samples = bootstrap_weights(X, [[6, 4, 2]] * 5, shown, n_samples=10)
+    >>> samples.intervals(["calf"])[["low", "high"]].round(6).values.tolist()
     [[0.2, 0.2]]
 
     """
     X, chosen, shown = (np.asarray(each, dtype=float) for each in (X, chosen, shown))
     _check_counts(chosen, shown, n_pairs=len(X))
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(random_state)
     fits: list[Weights] = []
-    for _ in range(_MOST_DRAWS):
-        times = times_drawn(rng, len(shown), n_samples)
-        differences = difference(times @ chosen, times @ shown)
+    for _ in range(_MAX_ROUNDS):
+        times = draw_counts(rng, len(shown), n_samples)
+        differences = share_not_chosen(times @ chosen, times @ shown)
         counts = np.ones_like(differences)
         if pairs is not None:
             counts = _counts_of_pairs(pairs, rng, n_samples)
         for y, count in zip(differences, counts, strict=True):
-            kept = np.isfinite(y) & (count > 0)
-            if kept.sum() >= LEAST_PAIRS and len(fits) < n_samples:
-                fits.append(non_negative_fit(X[kept], y[kept], sample_weight=count[kept]))
+            seen = np.isfinite(y) & (count > 0)
+            if seen.sum() >= MIN_PAIRS and len(fits) < n_samples:
+                fits.append(non_negative_fit(X[seen], y[seen], sample_weight=count[seen]))
         if len(fits) == n_samples:
             break
     else:
         raise ValueError(
-            f"Only {len(fits)} of {_MOST_DRAWS * n_samples} samples hold {LEAST_PAIRS} different "
+            f"Only {len(fits)} of {_MAX_ROUNDS * n_samples} samples hold {MIN_PAIRS} different "
             f"pairs, of {len(X)} pairs; four walkers or more, each shown with each, are needed."
         )
     return Bootstrap(
@@ -141,8 +147,8 @@ def bootstrap_weights(
     )
 
 
-def times_drawn(rng: np.random.Generator, n: int, n_samples: int) -> np.ndarray:
-    """Return how often each of n is among n drawn with replacement, (sample, n)."""
+def draw_counts(rng: np.random.Generator, n: int, n_samples: int) -> np.ndarray:
+    """Return how often each of n is among n drawn with replacement, of shape (sample, n)."""
     return rng.multinomial(n, np.full(n, 1 / n), size=n_samples)
 
 
@@ -150,14 +156,16 @@ def _counts_of_pairs(
     pairs: Sequence[tuple[object, object]], rng: np.random.Generator, n_samples: int
 ) -> np.ndarray:
     """Return how often each pair of two different walkers is among those drawn, (sample, pair)."""
-    walkers, at = np.unique([[str(end) for end in pair] for pair in pairs], return_inverse=True)
-    times = times_drawn(rng, len(walkers), n_samples)
-    first, second = at.reshape(-1, 2).T
+    walkers, numbers = np.unique(
+        [[str(walker) for walker in pair] for pair in pairs], return_inverse=True
+    )
+    times = draw_counts(rng, len(walkers), n_samples)
+    first, second = numbers.reshape(-1, 2).T
     return (times[:, first] * times[:, second]).astype(float)
 
 
 class Reliability(NamedTuple):
-    """How well halves of the observers agree, all of them, and the best a fit to them can do."""
+    """How well halves of the observers agree, all of them, and the best that a fit can reach."""
 
     halves: float
     whole: float
@@ -165,36 +173,38 @@ class Reliability(NamedTuple):
 
 
 def split_half(
-    chosen: ArrayLike, shown: ArrayLike, *, n_splits: int = 200, seed: int = 0
+    chosen: ArrayLike, shown: ArrayLike, *, n_splits: int = 200, random_state: int = 0
 ) -> Reliability:
-    """Return how reliable a table of differences is, and the noise ceiling of a metric.
+    r"""Return how reliable a table of perceived differences is, and the ceiling of any metric.
 
-    Observers are split into random halves and the tables of the halves correlated over pairs; the
-    mean correlation r is that of half the data. All observers together would agree with as many
-    others by 2 r / (1 + r) (Spearman and Brown), or not at all where r is below 0. Since half of
-    that unreliability is not the metric's to explain, even the true differences correlate with the
-    table by its square root only. What is expected of choices, knowing what else each trial showed
-    (`expected_differences`), can come nearer.
+    Observers are split into random halves and the tables of the halves correlated over pairs. From
+    the mean correlation r of halves, that of all observers with as many others is estimated
+    (Spearman and Brown), or 0 where r is below 0:
+
+    .. math:: r_{whole} = \frac{2 r}{1 + r}
+
+    Half of that unreliability is not the metric's to explain, so even the true differences
+    correlate with the table only by the square root of it: the ceiling. Choices predicted knowing
+    what else each trial showed (`expected_differences`) can come nearer.
 
     Parameters
     ----------
     chosen, shown : array of shape (observer, pair)
         How often each observer chose a pair as the most similar, and was shown it.
     n_splits : int
-        Random splits.
-    seed : int
-        The same seed splits alike.
+        Number of random splits.
+    random_state : int
+        Seed of the random numbers.
 
     Returns
     -------
     Reliability
-        Correlations: ``halves`` (r), ``whole``, and ``ceiling``, which are 0 where halves do not
-        agree at all; NaN, with a warning, where halves have no differences that could be
-        correlated.
+        Correlations: ``halves`` (r), ``whole`` and ``ceiling``; NaN, with a warning, where halves
+        have no differences that could be correlated.
 
     Examples
     --------
-    Four observers who are of one mind:
+    Four observers who answer alike:
 
     >>> shown = np.full((4, 3), 10)
     >>> round(split_half([[6, 4, 2]] * 4, shown, n_splits=5).ceiling, 6)
@@ -203,48 +213,41 @@ def split_half(
     """
     chosen, shown = np.asarray(chosen, dtype=float), np.asarray(shown, dtype=float)
     _check_counts(chosen, shown)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(random_state)
     half = len(shown) // 2
-    agreement = []
+    correlations = []
     for _ in range(n_splits):
         order = rng.permutation(len(shown))
         first, second = (
-            difference(chosen[part].sum(axis=0), shown[part].sum(axis=0))
+            share_not_chosen(chosen[part].sum(axis=0), shown[part].sum(axis=0))
             for part in (order[:half], order[half : 2 * half])
         )
         both = np.isfinite(first) & np.isfinite(second)
-        if both.sum() >= LEAST_PAIRS and np.ptp(first[both]) > 0 and np.ptp(second[both]) > 0:
-            agreement.append(np.corrcoef(first[both], second[both])[0, 1])
-    if not agreement:
+        if both.sum() >= MIN_PAIRS and np.ptp(first[both]) > 0 and np.ptp(second[both]) > 0:
+            correlations.append(np.corrcoef(first[both], second[both])[0, 1])
+    if not correlations:
         warnings.warn(
-            f"How far halves of the {len(shown)} observers agree cannot be told: no two halves saw "
-            f"{LEAST_PAIRS} pairs alike, of which they chose some more often than others.",
+            f"How far halves of the {len(shown)} observers agree is unknown: no two halves saw "
+            f"{MIN_PAIRS} pairs in common, of which they chose some more often than others.",
             stacklevel=2,
         )
         return Reliability(np.nan, np.nan, np.nan)
-    halves = float(np.mean(agreement))
-    agreeing = max(halves, 0.0)
-    whole = 2 * agreeing / (1 + agreeing)
+    halves = float(np.mean(correlations))
+    whole = 2 * max(halves, 0.0) / (1 + max(halves, 0.0))
     return Reliability(halves, whole, float(np.sqrt(whole)))
 
 
-def difference(chosen: np.ndarray, shown: np.ndarray) -> np.ndarray:
-    """Return the share of times that pairs were shown and not chosen (P6); NaN if never shown."""
-    never = np.full(np.shape(shown), np.nan)
-    return 1 - np.divide(chosen, shown, out=never, where=np.asarray(shown) > 0)
-
-
 def _check_counts(chosen: np.ndarray, shown: np.ndarray, n_pairs: int | None = None) -> None:
-    amiss = []
+    problem = ""
     if chosen.ndim != 2 or chosen.shape != shown.shape:
-        amiss.append(f"chosen has shape {chosen.shape} and shown {shown.shape}")
+        problem = f"chosen has shape {chosen.shape} and shown {shown.shape}"
     elif not (np.isfinite(chosen) & np.isfinite(shown) & (chosen >= 0) & (chosen <= shown)).all():
-        amiss.append("some pairs were chosen more often than shown, or counts are below 0 or NaN")
+        problem = "some pairs were chosen more often than shown, or counts are below 0 or NaN"
     elif len(shown) < 2:
-        amiss.append(f"there are answers of {len(shown)} observer")
+        problem = f"there are answers of {len(shown)} observer"
     elif n_pairs not in (None, shown.shape[1]):
-        amiss.append(f"they count {shown.shape[1]} pairs, and X has {n_pairs}")
-    if amiss:
+        problem = f"they count {shown.shape[1]} pairs, and X has {n_pairs}"
+    if problem:
         raise ValueError(
-            f"Expected counts of shape (observer, pair), of two observers or more: {amiss[0]}."
+            f"Expected counts of shape (observer, pair), of two observers or more: {problem}."
         )

@@ -1,4 +1,4 @@
-"""The one number of a shape of F, found around the exact fit; and the paper's random starts."""
+"""The one number of a shape of F, searched for around exact fits; the paper's random starts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fi
 
 
 class ShapeFit(NamedTuple):
-    """The best parameter of a shape, the weights there, and the errors on the way to it."""
+    """The best parameter of a shape, the weights there, and the errors of all values tried."""
 
     parameter: float
     weights: np.ndarray
@@ -34,9 +34,8 @@ def search_shape(
     """Return the power of F, or the scale of its sigmoid, with which the metric fits best.
 
     Weights are exact for each value tried (`non_negative_fit`), so that one number alone is
-    searched for: on a grid of equal ratios, which no second valley escapes that is wider than its
-    steps, then by Brent's method about the best of them. Near 0.3 the paper found powers that fit
-    best, but its search over weights and power at once did not end reliably (P9).
+    searched for: on a grid of equal ratios, which finds every minimum wider than its steps, then
+    by Brent's method around the best of them.
 
     Parameters
     ----------
@@ -52,15 +51,20 @@ def search_shape(
     Returns
     -------
     ShapeFit
-        ``rss`` is the sum of squared errors. A parameter at a bound says that the data do not tell
-        it: ever smaller powers are a logarithm, ever larger scales of a sigmoid F(d) = d.
+        ``rss`` is the sum of squared errors. A parameter at a bound is not determined by the data:
+        ever smaller powers are a logarithm, ever larger scales of a sigmoid F(d) = d.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5: a power near 0.3 fitted best, but the search over weights and
+    power at once did not end reliably.
 
     Examples
     --------
     >>> d = np.random.default_rng(0).uniform(10, 200, (40, 2))
     >>> y = 0.1 + 0.05 * d[:, 0] ** 0.4
-    >>> found = search_shape(lambda n: d**n, y, bounds=(0.05, 3))
-    >>> round(found.parameter, 4), found.weights.round(4).tolist()
+    >>> shape = search_shape(lambda n: d**n, y, bounds=(0.05, 3))
+    >>> round(shape.parameter, 4), shape.weights.round(4).tolist()
     (0.4, [0.05, 0.0])
 
     """
@@ -73,26 +77,26 @@ def search_shape(
     tried = np.geomspace(*bounds, n_grid)
     rss = np.array([_fit(columns(value), y)[1] for value in tried])
     best = int(rss.argmin())
-    around = np.log(tried[[max(best - 1, 0), min(best + 1, n_grid - 1)]])
-    found = minimize_scalar(
+    neighbours = np.log(tried[[max(best - 1, 0), min(best + 1, n_grid - 1)]])
+    refined = minimize_scalar(
         lambda log: _fit(columns(np.exp(log)), y)[1],
-        bounds=tuple(around),
+        bounds=tuple(neighbours),
         method="bounded",
         options={"xatol": 1e-7},
     )
-    parameter = float(np.exp(found.x)) if found.fun < rss[best] else float(tried[best])
+    parameter = float(np.exp(refined.x)) if refined.fun < rss[best] else float(tried[best])
     (weights, constant), error = _fit(columns(parameter), y)
     return ShapeFit(parameter, weights, constant, error, tried, rss)
 
 
 def _fit(X: np.ndarray, y: np.ndarray) -> tuple[Weights, float]:
-    fitted = non_negative_fit(X, y)
-    residual = y - fitted.constant - X @ fitted.weights
-    return fitted, float(residual @ residual)
+    fit = non_negative_fit(X, y)
+    residual = y - fit.constant - X @ fit.weights
+    return fit, float(residual @ residual)
 
 
 class RandomStarts(NamedTuple):
-    """The best weights that descent found, and the sum of squared errors from each start."""
+    """The best weights that descent reached, and the sum of squared errors from each start."""
 
     weights: np.ndarray
     constant: float
@@ -100,11 +104,11 @@ class RandomStarts(NamedTuple):
 
 
 def fit_from_random_starts(
-    X: ArrayLike, y: ArrayLike, *, n_starts: int = 1000, seed: int = 0
+    X: ArrayLike, y: ArrayLike, *, n_starts: int = 1000, random_state: int = 0
 ) -> RandomStarts:
-    """Return the metric fitted as the paper did (P10): gradient descent from random weights.
+    """Return the metric fitted as in the paper: gradient descent from random weights.
 
-    There for comparison; `PerceptualMetric` finds the same optimum at once (A30).
+    For comparison only; `PerceptualMetric` finds the same optimum directly.
 
     Parameters
     ----------
@@ -113,34 +117,41 @@ def fit_from_random_starts(
     y : array of shape (pair,)
         Perceived differences.
     n_starts : int
-        How often to start.
-    seed : int
-        The same seed gives the same starts.
+        Number of starts.
+    random_state : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    RandomStarts
+
+    References
+    ----------
+    Pražák et al. (2010), section 5: 1000 random starts.
 
     Examples
     --------
     >>> X = np.random.default_rng(0).uniform(size=(30, 3))
     >>> y = 0.2 + X @ [0.5, 0.0, 0.1]
-    >>> found = fit_from_random_starts(X, y, n_starts=5)
-    >>> found.weights.round(3).tolist(), round(found.constant, 3)
+    >>> descent = fit_from_random_starts(X, y, n_starts=5)
+    >>> descent.weights.round(3).tolist(), round(descent.constant, 3)
     ([0.5, 0.0, 0.1], 0.2)
 
     """
     X, y = np.asarray(X, dtype=float), np.asarray(y, dtype=float)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(random_state)
     size = np.linalg.norm(X, axis=0)
-    design = np.column_stack([np.ones(len(y)), X / np.where(size > 0, size, 1.0)])
+    size[size == 0] = 1.0
+    design = np.column_stack([np.ones(len(y)), X / size])
 
-    def error(c_and_w: np.ndarray) -> tuple[float, np.ndarray]:
-        residual = design @ c_and_w - y
+    def error(constant_and_weights: np.ndarray) -> tuple[float, np.ndarray]:
+        residual = design @ constant_and_weights - y
         return float(residual @ residual), 2 * design.T @ residual
 
-    limits = [(None, None), *[(0, None)] * X.shape[1]]
-    how = {"ftol": 1e-15, "gtol": 1e-10, "maxiter": 10_000, "maxfun": 100_000}
-    scale = np.linalg.norm(y)
-    starts = scale * rng.uniform(size=(n_starts, design.shape[1]))
+    bounds = [(None, None), *[(0, None)] * X.shape[1]]
+    options = {"ftol": 1e-15, "gtol": 1e-10, "maxiter": 10_000, "maxfun": 100_000}
+    starts = np.linalg.norm(y) * rng.uniform(size=(n_starts, design.shape[1]))
     with one_blas_thread():  # more threads slow so small a problem down
-        ends = [minimize(error, at, jac=True, bounds=limits, options=how) for at in starts]
+        ends = [minimize(error, at, jac=True, bounds=bounds, options=options) for at in starts]
     best = min(ends, key=lambda end: end.fun).x
-    weights = best[1:] / np.where(size > 0, size, 1.0)
-    return RandomStarts(weights, float(best[0]), np.array([end.fun for end in ends]))
+    return RandomStarts(best[1:] / size, float(best[0]), np.array([end.fun for end in ends]))

@@ -1,21 +1,24 @@
-"""Which pairs observers chose as the most similar, trial by trial and counted (P5, P6)."""
+"""Answers of observers: which pairs of walkers each trial showed, and which pair was chosen."""
 
 from __future__ import annotations
 
+import csv
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from eigenwalker.psychophysics.reliability import difference
+SHOWN = ["a", "b", "c", "d"]
+CHOSEN = ["chosen_1", "chosen_2"]
+COLUMNS = ["observer", *SHOWN, *CHOSEN]
 
-_WHOLE = re.compile(r"^(\d+)\.0$")
-
-SHOWN = ("a", "b", "c", "d")
-CHOSEN = ("chosen_1", "chosen_2")
+_WHOLE_NUMBER = re.compile(r"^(\d+)\.0$")
+_MAX_NAMES = 20
+"""Names listed in a message."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +28,7 @@ class PairCounts:
     Parameters
     ----------
     pairs : MultiIndex
-        The two walkers of each pair, in the order of `itertools.combinations` over sorted names.
+        The two walkers of each pair, in the order of `itertools.combinations` over their names.
     observers : tuple
         The observers.
     chosen, shown : array of shape (observer, pair)
@@ -47,7 +50,7 @@ class PairCounts:
     @property
     def differences(self) -> pd.Series:
         """The share of times that each pair was shown and not chosen; NaN if never shown."""
-        shares = difference(self.chosen.sum(axis=0), self.shown.sum(axis=0))
+        shares = share_not_chosen(self.chosen.sum(axis=0), self.shown.sum(axis=0))
         return pd.Series(shares, index=self.pairs, name="difference")
 
 
@@ -62,12 +65,12 @@ class Trials:
     observers : tuple
         Their names.
     observer : array of int of shape (trial,)
-        Whose trial it was, as a number in `observers`.
+        The observer of each trial, as a position in `observers`.
     shown : array of int of shape (trial, 6)
         The pairs of the four walkers shown, as rows of `pairs`. Other experiments may show more
         pairs or fewer.
     chosen : array of int of shape (trial,)
-        Which of those shown was chosen, from 0.
+        Which of the pairs shown was chosen, counted from 0.
 
     """
 
@@ -79,20 +82,20 @@ class Trials:
 
     def __post_init__(self) -> None:
         n_trials = len(self.shown)
-        amiss = []
+        problems = []
         if self.shown.ndim != 2 or not n_trials:
-            amiss.append(f"shown has shape {self.shown.shape}")
+            problems.append(f"shown has shape {self.shown.shape}")
         for name, length in (("observer", len(self.observers)), ("chosen", self.shown.shape[-1])):
             numbers = getattr(self, name)
             if numbers.shape != (n_trials,):
-                amiss.append(f"{name} has shape {numbers.shape}")
+                problems.append(f"{name} has shape {numbers.shape}")
             elif n_trials and not 0 <= numbers.min() <= numbers.max() < length:
-                amiss.append(f"{name} goes from {numbers.min()} to {numbers.max()} of {length}")
+                problems.append(f"{name} goes from {numbers.min()} to {numbers.max()} of {length}")
         if n_trials and not 0 <= self.shown.min() <= self.shown.max() < len(self.pairs):
-            amiss.append(f"shown names the pairs {self.shown.min()} to {self.shown.max()}")
-        if amiss:
+            problems.append(f"shown names the pairs {self.shown.min()} to {self.shown.max()}")
+        if problems:
             raise ValueError(
-                f"Expected trials of {len(self.pairs)} pairs, one row each: {'; '.join(amiss)}."
+                f"Expected trials of {len(self.pairs)} pairs, one row each: {'; '.join(problems)}."
             )
 
     def __repr__(self) -> str:
@@ -107,13 +110,71 @@ class Trials:
         return self.shown[np.arange(len(self.shown)), self.chosen]
 
 
+def read_answers(path: str | Path) -> pd.DataFrame:
+    r"""Return a table of observers' answers from a CSV file, all cells as text.
+
+    Parameters
+    ----------
+    path : path
+        Text in UTF-8, separated by commas, semicolons or tabs, with the columns that
+        `read_trials` takes.
+
+    Returns
+    -------
+    DataFrame
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or lacks columns.
+
+    See Also
+    --------
+    read_trials, fit_to_answers
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from pathlib import Path
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "answers.csv")
+    ...     n_characters = file.write_text(
+    ...         "observer;a;b;c;d;chosen_1;chosen_2\nEva;w1;w2;w3;w4;w2;w4\n"
+    ...     )
+    ...     read_answers(file).iloc[0].tolist()
+    ['Eva', 'w1', 'w2', 'w3', 'w4', 'w2', 'w4']
+
+    """
+    try:
+        table = pd.read_csv(path, dtype=str, sep=None, engine="python", encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(
+            f"The answers {path} are no text in UTF-8; save them as 'CSV UTF-8'."
+        ) from error
+    except (ValueError, OSError, csv.Error) as error:
+        reason = str(getattr(error, "strerror", None) or error).strip()
+        raise ValueError(f"The answers {path} could not be read as CSV: {reason}") from error
+    table.columns = [str(name).strip() for name in table.columns]
+    if missing := [name for name in COLUMNS if name not in table]:
+        raise ValueError(
+            f"The answers {path} lack the columns {missing}; they have {list(table)[:12]}."
+        )
+    return table
+
+
 def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = None) -> Trials:
     """Return answers trial by trial, checked.
 
     Parameters
     ----------
-    answers, walkers
-        As for `count_pairs`.
+    answers : DataFrame
+        One row a trial: ``observer``; the four walkers shown, ``a`` to ``d``; and the two chosen
+        as the most similar, ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not
+        count.
+    walkers : sequence of str, optional
+        All walkers in the order of pairs wanted, such as that of a `group_table`; left out, those
+        that were shown, sorted. Answers call them by these names, by file names without suffix,
+        or, as ``walker 3`` of a population, by number.
 
     Returns
     -------
@@ -122,7 +183,13 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     Raises
     ------
     ValueError
-        As `count_pairs` does.
+        If a column or an observer is missing, a trial shows a walker twice, none, or one that is
+        not known, or walkers were chosen that it did not show; or `walkers` names one twice. Lines
+        are counted as in a file whose first line is the headings.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4: four walkers a trial, the most similar pair is chosen.
 
     Examples
     --------
@@ -135,35 +202,47 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     [('w2', 'w4')]
 
     """
-    columns = ["observer", *SHOWN, *CHOSEN]
-    if missing := [name for name in columns if name not in answers]:
+    if missing := [name for name in COLUMNS if name not in answers]:
         raise ValueError(
-            f"Answers need the columns {columns}; {missing} are missing from {list(answers)}."
+            f"Answers need the columns {COLUMNS}; {missing} are missing from {list(answers)}."
         )
-    given = answers[columns].notna().to_numpy()
-    kept = given[:, -2:].all(axis=1)
-    answered, lines = pd.DataFrame(answers[kept]), 2 + np.flatnonzero(kept)
-    _refuse_empty(given[kept], columns, lines)
-    shown, chosen = (_names_in(answered, names) for names in (SHOWN, CHOSEN))
-    names = sorted(set(shown.ravel().tolist()))
-    if walkers is not None:
-        names = [as_name(each) for each in walkers]
-    if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise ValueError(f"Each walker is to be named once; {twice[:20]} come more than once.")
-    _check_trials(shown, chosen, lines, set(names))
-    number = {name: index for index, name in enumerate(names)}
-    seen, picked = (np.vectorize(number.__getitem__)(table) for table in (shown, chosen))
-    observers, who = np.unique(_names_in(answered, ["observer"])[:, 0], return_inverse=True)
-    rows, columns = np.triu_indices(len(names), 1)
-    place = np.zeros((len(names), len(names)), dtype=int)
-    place[rows, columns] = place[columns, rows] = np.arange(len(rows))
-    six = np.stack([place[seen[:, i], seen[:, j]] for i, j in combinations(range(4), 2)], axis=1)
+    table = answers[COLUMNS].set_axis(pd.RangeIndex(2, len(answers) + 2))  # lines of a file
+    table = table[table[CHOSEN].notna().all(axis=1)]
+    if (empty := table.isna()).any(axis=None):
+        line, column = empty.stack().idxmax()
+        raise ValueError(
+            f"Line {line} of the answers has an empty cell in the column {column!r}; an "
+            "answered trial needs its observer and the four walkers shown."
+        )
+    names = [walker_name(each) for each in walkers or ()]
+    full_name = _full_names(names)
+    shown, chosen = (
+        table[columns].map(walker_name).map(lambda cell: full_name.get(cell, cell)).to_numpy(str)
+        for columns in (SHOWN, CHOSEN)
+    )
+    if walkers is None:
+        names = sorted(set(shown.ravel().tolist()))
+    if repeated := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(
+            f"Each walker is to be named once; {repeated[:_MAX_NAMES]} come more than once."
+        )
+    _check_trials(shown, chosen, table.index, set(names))
+    first, second = np.triu_indices(len(names), 1)
+    pair_of = np.zeros((len(names), len(names)), dtype=int)
+    pair_of[first, second] = pair_of[second, first] = np.arange(len(first))
+    a_to_d, two = (
+        pd.Index(names).get_indexer(each.ravel()).reshape(each.shape) for each in (shown, chosen)
+    )
+    pairs = np.stack([pair_of[a_to_d[:, i], a_to_d[:, j]] for i, j in combinations(range(4), 2)], 1)
+    observers, observer = np.unique(
+        table.observer.map(walker_name).to_numpy(str), return_inverse=True
+    )
     return Trials(
         pairs=pd.MultiIndex.from_tuples(combinations(names, 2), names=["first", "second"]),
         observers=tuple(observers.tolist()),
-        observer=who,
-        shown=six,
-        chosen=(six == place[picked[:, 0], picked[:, 1]][:, None]).argmax(axis=1),
+        observer=observer,
+        shown=pairs,
+        chosen=(pairs == pair_of[two[:, 0], two[:, 1]][:, None]).argmax(axis=1),
     )
 
 
@@ -174,24 +253,24 @@ def count_pairs(
 
     Parameters
     ----------
-    answers : DataFrame
-        One row a trial: ``observer``; the four walkers shown, ``a`` to ``d``; and the two chosen,
-        ``chosen_1`` and ``chosen_2``. Trials without an answer (NaN) do not count (A34). Or
-        `Trials`, which have been read.
+    answers : DataFrame or Trials
+        As `read_trials` takes or returns them.
     walkers : sequence of str, optional
-        All walkers in the order of pairs wanted, such as that of a `group_table`; left out, those
-        that were shown, sorted. Numbers may stand for names.
+        As `read_trials` takes them.
 
     Returns
     -------
     PairCounts
+        Its `differences` are what `PerceptualMetric` is fitted to.
 
     Raises
     ------
     ValueError
-        If a column or an observer is missing, a trial shows a walker twice, none, or one that is
-        not known, or walkers were chosen that it did not show; or `walkers` names one twice. Lines
-        are counted as in a file whose first line is the headings.
+        As `read_trials` does.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4: the table of perceived differences.
 
     Examples
     --------
@@ -208,39 +287,32 @@ def count_pairs(
 
     """
     trials = answers if isinstance(answers, Trials) else read_trials(answers, walkers=walkers)
-    counts = np.zeros((2, len(trials.observers), len(trials.pairs)))
-    np.add.at(counts[0], (trials.observer[:, None], trials.shown), 1)
-    np.add.at(counts[1], (trials.observer, trials.chosen_pairs), 1)
-    return PairCounts(trials.pairs, trials.observers, chosen=counts[1], shown=counts[0])
+    chosen, shown = np.zeros((2, len(trials.observers), len(trials.pairs)))
+    np.add.at(shown, (trials.observer[:, None], trials.shown), 1)
+    np.add.at(chosen, (trials.observer, trials.chosen_pairs), 1)
+    return PairCounts(trials.pairs, trials.observers, chosen, shown)
 
 
-def as_name(said: object) -> str:
+def share_not_chosen(chosen: np.ndarray, shown: np.ndarray) -> np.ndarray:
+    """Return the share of times that pairs were shown and not chosen; NaN if never shown."""
+    never = np.full(np.shape(shown), np.nan)
+    return 1 - np.divide(chosen, shown, out=never, where=np.asarray(shown) > 0)
+
+
+def walker_name(cell: object) -> str:
     """Return a walker's name; 3.0, as columns of numbers with an empty cell are written, is 3."""
-    return _WHOLE.sub(r"\1", str(said).strip())
+    return _WHOLE_NUMBER.sub(r"\1", str(cell).strip())
 
 
-def _names_in(answers: pd.DataFrame, columns: Sequence[str]) -> np.ndarray:
-    return np.column_stack([answers[name].map(as_name).to_numpy(dtype=str) for name in columns])
+def _full_names(names: list[str]) -> dict[str, str]:
+    """Return the name of each walker by what answers may call it: name, file stem or number."""
+    stems = [Path(name).stem for name in names]
+    full = {stem: name for stem, name in zip(stems, names, strict=True) if stems.count(stem) == 1}
+    full |= {name.removeprefix("walker "): name for name in names}
+    return full | {name: name for name in names}
 
 
-def _few(names: Sequence[str], most: int = 20) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{list(names[:most])}{more}"
-
-
-def _refuse_empty(given: np.ndarray, columns: list[str], lines: np.ndarray) -> None:
-    if given.all():
-        return
-    row, column = np.argwhere(~given)[0]
-    raise ValueError(
-        f"Line {lines[row]} of the answers has an empty cell in the column {columns[column]!r}; an "
-        "answered trial needs its observer and the four walkers shown."
-    )
-
-
-def _check_trials(
-    shown: np.ndarray, chosen: np.ndarray, lines: np.ndarray, known: set[str]
-) -> None:
+def _check_trials(shown: np.ndarray, chosen: np.ndarray, lines: pd.Index, known: set[str]) -> None:
     if not len(shown):
         raise ValueError("There is no answered trial.")
     for line, four, two in zip(lines, shown.tolist(), chosen.tolist(), strict=True):
@@ -248,10 +320,11 @@ def _check_trials(
             raise ValueError(
                 f"Line {line} of the answers shows {four}; expected four different walkers."
             )
-        if not set(four) <= known:
+        if unknown := sorted(set(four) - known):
+            more = f" and {len(known) - _MAX_NAMES} more" if len(known) > _MAX_NAMES else ""
             raise ValueError(
-                f"Line {line} of the answers shows {sorted(set(four) - known)}, which are not "
-                f"among the walkers {_few(sorted(known))}."
+                f"Line {line} of the answers shows {unknown}, which are not among the walkers "
+                f"{sorted(known)[:_MAX_NAMES]}{more}."
             )
         if len(set(two)) < 2 or not set(two) <= set(four):
             raise ValueError(

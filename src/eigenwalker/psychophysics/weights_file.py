@@ -1,4 +1,4 @@
-"""Metrics by name, or from the file of weights that a fit to answers leaves."""
+"""Metrics by name, or from a file of weights that were fitted to answers."""
 
 from __future__ import annotations
 
@@ -12,72 +12,92 @@ WEIGHTS_NAME, BY_CHOICES_NAME = "weights.csv", "weights-by-choices.csv"
 _COLUMNS = ("group", "weight", "metric")
 
 
-def write_weights(path: Path, weights: pd.DataFrame, metric: str) -> None:
-    """Write fitted weights so that `metric_of` finds the metric in the file again.
+def save_weights(weights: pd.DataFrame, path: str | Path, *, metric: str) -> Path:
+    """Write fitted weights to a file of which `load_metric` makes a metric again.
 
     Parameters
     ----------
-    path : path
     weights : DataFrame of groups
-        With a column ``weight``.
+        With a column ``weight``, such as `MetricFit.by_choices`.
+    path : path
+        Ends in ``.csv``.
     metric : str
         The published metric whose component and function F were fitted.
 
+    Returns
+    -------
+    Path
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> weights = pd.DataFrame({"weight": [0.2, 0.8]}, index=["head", "forearm"])
+    >>> with TemporaryDirectory() as folder:
+    ...     path = save_weights(weights, f"{folder}/ours.csv", metric="positions-sigmoid")
+    ...     load_metric(path).group_weights
+    {'head': 0.2, 'forearm': 0.8}
+
     """
     weights.assign(metric=metric).to_csv(path, index_label="group")
+    return Path(path)
 
 
-def metric_of(told: str) -> GroupMetric:
+def load_metric(name_or_path: str | Path) -> GroupMetric:
     """Return a published metric by its name, or a fitted one from its file.
 
     Parameters
     ----------
-    told : str
-        A name of `PUBLISHED`, or a path that ends in ``.csv``, such as the
-        ``weights-by-choices.csv`` of
-        ``eigenwalker compare --answers``.
+    name_or_path : str or path
+        A name of `PUBLISHED`, or a file that ends in ``.csv``, as `save_weights` and
+        ``eigenwalker compare --answers`` write it.
+
+    Returns
+    -------
+    GroupMetric
+        What `clip_distance` and the like take as ``metric=``.
 
     Raises
     ------
     ValueError
         If there is no such metric, or the file holds none.
 
+    References
+    ----------
+    Pražák et al. (2010), figure 5: the published weights.
+
     Examples
     --------
-    >>> metric_of("positions-sigmoid").by
+    >>> load_metric("positions-sigmoid").by
     'positions'
 
     """
-    if told in PUBLISHED:
-        return PUBLISHED[told]
-    if not told.lower().endswith(".csv"):
+    name = str(name_or_path)
+    if name in PUBLISHED:
+        return PUBLISHED[name]
+    if not name.lower().endswith(".csv"):
         raise ValueError(
-            f"The metric {told!r} is not known; give one of {list(PUBLISHED)}, or the "
+            f"The metric {name!r} is not known; give one of {list(PUBLISHED)}, or the "
             f"{WEIGHTS_NAME} or {BY_CHOICES_NAME} of a fit to answers."
         )
-    return _fitted(Path(told))
-
-
-def _fitted(path: Path) -> GroupMetric:
     try:
-        table = pd.read_csv(path)
+        table = pd.read_csv(name)
     except (ValueError, OSError) as error:
-        why = str(getattr(error, "strerror", None) or error).strip()
-        raise ValueError(f"The metric {path} could not be read as CSV: {why}") from error
-    if lacking := [column for column in _COLUMNS if column not in table]:
+        reason = str(getattr(error, "strerror", None) or error).strip()
+        raise ValueError(f"The metric {name} could not be read as CSV: {reason}") from error
+    if missing := [column for column in _COLUMNS if column not in table]:
         raise ValueError(
-            f"{path} holds no fitted metric: it lacks the columns {lacking}; expected the "
+            f"{name} holds no fitted metric: it lacks the columns {missing}; expected the "
             f"{WEIGHTS_NAME} or {BY_CHOICES_NAME} that 'eigenwalker compare --answers' writes."
         )
     names = set(map(str, table.metric))
     if len(names) != 1 or not names <= set(PUBLISHED):
         raise ValueError(
-            f"{path} names the metrics {sorted(names)}; expected one of {list(PUBLISHED)}."
+            f"{name} names the metrics {sorted(names)}; expected one of {list(PUBLISHED)}."
         )
     published = PUBLISHED[names.pop()]
     weights = pd.to_numeric(table.weight, errors="coerce").to_numpy(dtype=float)
     return GroupMetric(
-        path.stem,
+        Path(name).stem,
         published.by,
         published.shape,
         dict(zip(map(str, table.group), weights.tolist(), strict=True)),

@@ -1,2 +1,15 @@
-from .blocks import Report as Report
+from .blocks import (
+    Block as Block,
+    Cell as Cell,
+    Code as Code,
+    Figure as Figure,
+    Film as Film,
+    Items as Items,
+    Link as Link,
+    Report as Report,
+    Section as Section,
+    Table as Table,
+    Text as Text,
+)
 from .html_report import write_report as write_report
+from .metric_fit_report import write_metric_fit_report as write_metric_fit_report

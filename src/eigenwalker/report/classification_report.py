@@ -140,7 +140,7 @@ def write_main_job(
         ],
         beside=beside,
     )
-    return write_report(folder, report), found
+    return write_report(report, folder), found
 
 
 def _capital(words: str) -> str:

@@ -6,7 +6,6 @@ import base64
 import io
 import itertools
 import math
-import os
 import re
 import warnings
 from functools import singledispatch
@@ -19,6 +18,7 @@ import av
 import matplotlib as mpl
 import matplotlib.figure
 
+from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.report.blocks import Block, Cell, Code, Figure, Film, Items, Report, Table, Text
 
 FILMS = {".mp4": "video/mp4", ".webm": "video/webm", ".gif": "image/gif"}
@@ -33,7 +33,7 @@ _NUMBER = re.compile(r"-|(<= )?[+-]?\d+(\.\d+)?(e[+-]?\d+)?( %)?")
 _UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
 
-def write_report(folder: str | Path, report: Report) -> Path:
+def write_report(report: Report, folder: str | Path) -> Path:
     """Write a report into a folder as ``report.html`` and return the page's path.
 
     Figures and films are part of the page, which works from the disk and without a network. All
@@ -41,10 +41,10 @@ def write_report(folder: str | Path, report: Report) -> Path:
 
     Parameters
     ----------
+    report : Report
+        Its title, sections and blocks.
     folder : path
         Made where it does not exist.
-    report : Report
-        What to say.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def write_report(folder: str | Path, report: Report) -> Path:
     >>> from tempfile import TemporaryDirectory
     >>> from eigenwalker.report.blocks import Report
     >>> with TemporaryDirectory() as folder:
-    ...     page = write_report(folder, Report("<b>", "One walker."))
+    ...     page = write_report(Report("<b>", "One walker."), folder)
     ...     "&lt;b&gt;" in page.read_text()
     True
 
@@ -69,12 +69,8 @@ def write_report(folder: str | Path, report: Report) -> Path:
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     page = folder / "report.html"
-    unfinished = folder / ".report.html.part"
-    try:
+    with atomic_write(page) as unfinished:
         unfinished.write_text(render_report(report), encoding="utf-8")
-        os.replace(unfinished, page)
-    finally:
-        unfinished.unlink(missing_ok=True)
     return page
 
 

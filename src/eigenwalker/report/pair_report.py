@@ -70,7 +70,7 @@ def write_two_walks(
         Section("How this was done", [Items(_method(found)), Text(CITE)]),
     ]
     lead = " ".join([*in_words(found, names, reference), *remarks_on_both(found, names)])
-    return write_report(folder, Report(f"{names[0]} and {names[1]}", lead, sections))
+    return write_report(Report(f"{names[0]} and {names[1]}", lead, sections), folder)
 
 
 def in_words(

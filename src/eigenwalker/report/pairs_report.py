@@ -17,9 +17,9 @@ from eigenwalker.plotting.difference_tables import (
     short_names,
 )
 from eigenwalker.psychophysics.dissimilarity_structure import (
+    cluster_memberships,
     clusters_of_walks,
     map_of_walks,
-    memberships,
     order_of_walks,
 )
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
@@ -192,7 +192,7 @@ def write_all_pairs(
             sections.append(Section(title, [_listed(said)]))
     sections.append(Section("How this was done", [Items(_method(walks, metric)), Text(CITE)]))
     lead = " ".join(summary(table, metric))
-    return write_report(folder, Report(f"{len(names)} walks compared", lead, sections))
+    return write_report(Report(f"{len(names)} walks compared", lead, sections), folder)
 
 
 def _listed(said: dict[str, str]) -> Items:
@@ -245,7 +245,7 @@ def _each_walk(
 ) -> Table:
     values = table.to_numpy()
     alone = values + np.diag(np.full(len(values), np.inf))
-    belongs = memberships(table, clusters)
+    belongs = cluster_memberships(table, clusters)
     rows = []
     for walk in order[:MOST_ROWS]:
         nearest = int(alone[walk].argmin())

@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import xarray as xr
+from scipy.spatial.distance import pdist
 
+from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.progress import Progress
 from eigenwalker.io.capture_file import RateAssumed
 from eigenwalker.io.read import read_mocap
@@ -151,6 +153,23 @@ def walks_of_population(
     return Walks(clips, labels, flagged=flagged, vectors=vectors)
 
 
+def walker_space_distances(walks: Walks) -> np.ndarray:
+    """Return how far walkers of a population are apart in their `WalkerSpace`.
+
+    Parameters
+    ----------
+    walks : Walks
+        As `walks_of_population` gives them.
+
+    Returns
+    -------
+    array of shape (pair,)
+        Pairs in the order of `itertools.combinations`.
+
+    """
+    return pdist(WalkerSpace().fit_transform(np.stack(list(walks.vectors.values()))))
+
+
 def _refuse_continuous(values: pd.Series) -> None:
     """Refuse a trait whose values are no classes, so that walks could be of the same one."""
     kinds = values.nunique()
@@ -165,7 +184,7 @@ def _refuse_continuous(values: pd.Series) -> None:
 
 
 def walks_of_folder(
-    folder: Path,
+    folder: str | Path,
     *,
     trait_from_name: str | None = None,
     with_flagged: bool = False,
@@ -178,7 +197,7 @@ def walks_of_folder(
 
     Parameters
     ----------
-    folder : Path
+    folder : path
         Where to look.
     trait_from_name : str, optional
         Pattern over names with a named group, which is the label: ``walk_(?P<style>[a-z]+)_``.
@@ -195,6 +214,7 @@ def walks_of_folder(
         If the folder holds no captures, or the pattern makes no sense.
 
     """
+    folder = Path(folder)
     table = listed(folder, None, trait_from_name)
     named = [column for column in table if column != FILE]
     clips: dict[str, PreparedClip] = {}
