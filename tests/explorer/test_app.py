@@ -99,7 +99,7 @@ def test_a_capture_becomes_a_walker_of_the_population(client, people, capture_fi
     vector = people.vector(walker_from_file(capture_file)[0])
     assert (told["name"], told["verdict"], told["flag"]) == ("walk.c3d", "use", "")
     np.testing.assert_allclose(told["vector"], vector, atol=1e-9)
-    assert re.match(r"\d+ strides in 6 s at 0\.\d\d Hz", told["told"][0])
+    assert re.match(r"\d+ strides in 6 s at 0\.\d\d Hz", told["messages"][0])
     assert told["measures"]["frequency_hz"] == pytest.approx(people.walker(vector).frequency_hz)
 
 
@@ -164,8 +164,8 @@ def test_captures_sent_together_become_a_population(client, tmp_path):
         "Captures 0.c3d, 1.c3d and 2 more",
         "people.nc",
     )
-    assert answer["told"][0].startswith("bad.c3d: refused.")
-    assert answer["told"][-1].endswith("eigenwalker fit FOLDER -o people.nc")
+    assert answer["messages"][0].startswith("bad.c3d: refused.")
+    assert answer["messages"][-1].endswith("eigenwalker fit FOLDER -o people.nc")
 
 
 @pytest.mark.parametrize(("route", "name"), [("capture", "task.json"), ("population", "people.nc")])

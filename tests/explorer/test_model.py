@@ -96,8 +96,8 @@ def test_no_walker_is_nearer_to_the_average_than_itself(people, model):
 
 def test_the_page_tells_where_a_walker_lies_along_a_trait(people, model):
     axis = ew.trait_axis(people, "weight")
-    told = next(t["told"] for t in model["traits"] if t["name"] == "weight_kg")
-    found = told["offset"] + people.X @ told["gradient"]
+    projection = next(t["projection"] for t in model["traits"] if t["name"] == "weight_kg")
+    found = projection["offset"] + people.X @ projection["gradient"]
     np.testing.assert_allclose(found, axis.positions(people.X), atol=1e-6)
 
 

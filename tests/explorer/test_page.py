@@ -298,8 +298,8 @@ def test_a_link_to_a_capture_says_that_it_does_not_hold_it(visit):
 def test_the_hills_show_where_somebody_is_and_the_thumb_how_far_one_was_led(visit, model):
     there = visit("w=27&still")
     assert there.page.get_by_role("slider", name="Sex").input_value() == "0"
-    told = model["traits"][0]["told"]
-    score = told["offset"] + np.dot(told["gradient"], model["walkers"][27]["vector"])
+    projection = model["traits"][0]["projection"]
+    score = projection["offset"] + np.dot(projection["gradient"], model["walkers"][27]["vector"])
     assert there.page.locator(".mark").inner_text() == f"this walker +{score:.1f}"
     there.page.get_by_role("button", name="Reset all").click()
     there.page.locator(".mark").wait_for(state="hidden")

@@ -64,7 +64,8 @@ def computed(model: dict[str, Any], state: dict[str, Any]) -> dict[str, Any]:
         "distance": place.distance,
         "percentile": place.percentile,
         "positions": {
-            trait["name"]: trait["told"]["offset"] + float(vector @ trait["told"]["gradient"])
+            trait["name"]: trait["projection"]["offset"]
+            + float(vector @ trait["projection"]["gradient"])
             for trait in model["traits"]
         },
     }

@@ -38,7 +38,7 @@ async function take({ files, folder }: Brought): Promise<void> {
       const opened = await openFiles(bundle, visit?.held ?? null, folder);
       const walks = show(opened, name);
       const mind = opened.kind === "model" ? warnings(opened.held.model) : [];
-      const told = [...mind, ...opened.told];
+      const told = [...mind, ...opened.messages];
       if (told.length > 0) notices.told([walks, ...told]);
       else notices.news(walks);
     } catch (error) {

@@ -9,8 +9,8 @@ import { hasServer, readCapture, readPopulation } from "./server";
 
 /** What files turned out to be. */
 export type Opened =
-  | { readonly kind: "model"; readonly held: Held; readonly told: readonly string[] }
-  | { readonly kind: "own"; readonly own: Own; readonly told: readonly string[] };
+  | { readonly kind: "model"; readonly held: Held; readonly messages: readonly string[] }
+  | { readonly kind: "own"; readonly own: Own; readonly messages: readonly string[] };
 
 /** A model, and the name under which the server keeps its population; empty where it does not. */
 export interface Held {
@@ -60,22 +60,22 @@ export async function openFiles(files: readonly File[], held: Held | null, folde
   }
   const captures = files.filter(({ name }) => !BESIDE.test(name));
   if (people || captures.length > 1) {
-    const { model, told } = await readPopulation(files);
+    const { model, messages } = await readPopulation(files);
     const opened = heldIn(model);
-    if (people) return { kind: "model", held: opened, told };
+    if (people) return { kind: "model", held: opened, messages };
     const made = { ...opened.model, captures: callIt(captures, folder) };
-    return { kind: "model", held: { ...opened, model: made }, told };
+    return { kind: "model", held: { ...opened, model: made }, messages };
   }
   return openCapture(files, held);
 }
 
 async function openCapture(files: readonly File[], held: Held | null): Promise<Opened> {
-  const told = "The server does not keep the population shown here; drop its .nc file first.";
-  if (!held?.population) throw new CannotOpen(told);
+  const message = "The server does not keep the population shown here; drop its .nc file first.";
+  if (!held?.population) throw new CannotOpen(message);
   const capture = await readCapture(files, held.population);
   const [came, wanted] = [capture.vector.length, held.model.average.length];
   if (came !== wanted) throw new CannotOpen(`${capture.name} came as ${came} numbers; walkers here have ${wanted}.`);
-  return { kind: "own", own: { name: capture.name, vector: capture.vector }, told: capture.told };
+  return { kind: "own", own: { name: capture.name, vector: capture.vector }, messages: capture.messages };
 }
 
 async function openText(file: File, model: Model | null): Promise<Opened> {
@@ -87,10 +87,10 @@ async function openText(file: File, model: Model | null): Promise<Opened> {
   const format = content && typeof content === "object" && "format" in content ? content.format : null;
   try {
     if (format === "eigenwalker model") {
-      return { kind: "model", held: { ...heldIn(content), population: "" }, told: [] };
+      return { kind: "model", held: { ...heldIn(content), population: "" }, messages: [] };
     }
     if (format === "eigenwalker stimulus" && model) {
-      return { kind: "own", own: ownOf(model, readStimulus(content), file.name), told: [] };
+      return { kind: "own", own: ownOf(model, readStimulus(content), file.name), messages: [] };
     }
   } catch (error) {
     if (error instanceof NoStimulus) throw new CannotOpen(`${file.name} is no stimulus: ${error.message}`);

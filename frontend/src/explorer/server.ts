@@ -3,7 +3,7 @@
 export interface Capture {
   readonly name: string;
   readonly vector: readonly number[];
-  readonly told: readonly string[];
+  readonly messages: readonly string[];
 }
 
 /** Said by the server or of it; the message is a sentence to show. */
@@ -16,7 +16,7 @@ export const hasServer = (): boolean =>
 /** A model that is not yet checked, and what became of the captures it was made of. */
 export interface Population {
   readonly model: unknown;
-  readonly told: readonly string[];
+  readonly messages: readonly string[];
 }
 
 /** A capture, and the files it needs beside it, as a walker of a population that the server keeps. */
@@ -32,7 +32,7 @@ export async function readPopulation(files: readonly File[]): Promise<Population
   if (!answer || typeof answer !== "object" || !("model" in answer)) {
     throw new ServerSays(`The server's answer about ${files[0]?.name} is no population.`);
   }
-  return { model: answer.model, told: "told" in answer && areSentences(answer.told) ? answer.told : [] };
+  return { model: answer.model, messages: "messages" in answer && areSentences(answer.messages) ? answer.messages : [] };
 }
 
 /** One file by its name; several by names and sizes, one after the other. */
@@ -42,8 +42,8 @@ function sent(files: readonly File[]): Record<string, string> {
   return { files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
 }
 
-const areSentences = (told: unknown): told is string[] =>
-  Array.isArray(told) && told.every((sentence) => typeof sentence === "string");
+const areSentences = (messages: unknown): messages is string[] =>
+  Array.isArray(messages) && messages.every((sentence) => typeof sentence === "string");
 
 /** A film of a stimulus. */
 export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif"): Promise<Blob> {
@@ -69,10 +69,10 @@ async function complaint(answer: Response): Promise<string> {
 
 function isCapture(answer: unknown): answer is Capture {
   if (!answer || typeof answer !== "object") return false;
-  const { name, vector, told } = answer as Record<string, unknown>;
+  const { name, vector, messages } = answer as Record<string, unknown>;
   return (
     typeof name === "string" &&
     Array.isArray(vector) && vector.every(Number.isFinite) &&
-    areSentences(told)
+    areSentences(messages)
   );
 }

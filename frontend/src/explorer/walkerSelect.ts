@@ -34,7 +34,7 @@ export function who(session: Session, open: () => void): Part {
   const steps = make("div", { class: "row" },
     button("Previous", () => next(-1)),
     button("Next", () => next(1)),
-    button("Anyone", () => walk(Math.floor(Math.random() * walkers.length))),
+    button("Random walker", () => walk(Math.floor(Math.random() * walkers.length))),
   );
   const bring = make("p", { class: "note" },
     "Your own: drop a capture anywhere on this page, or ",

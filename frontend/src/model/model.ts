@@ -38,7 +38,7 @@ export interface Trait {
   /** One standard deviation of the walkers along the trait, of the columns of each part (A12). */
   readonly steps: Readonly<Record<Kind, Readonly<Record<string, Numbers>>>>;
   /** Where a walker lies along it: offset + gradient . vector. */
-  readonly told: { readonly gradient: Numbers; readonly offset: number };
+  readonly projection: { readonly gradient: Numbers; readonly offset: number };
   /** Mean walkers of two classes (M5). */
   readonly means: { readonly negative: Numbers; readonly positive: Numbers } | null;
 }

@@ -36,13 +36,13 @@ function scoresOf(model: Model, standardised: readonly number[]): number[] {
 }
 
 /** Where a walker lies along a trait, in standard deviations from the average. */
-export function positionOf({ told }: Trait, vector: ArrayLike<number>): number {
-  return told.gradient.reduce((sum, slope, i) => sum + slope * vector[i]!, told.offset);
+export function positionOf({ projection }: Trait, vector: ArrayLike<number>): number {
+  return projection.gradient.reduce((sum, slope, i) => sum + slope * vector[i]!, projection.offset);
 }
 
 /** Where every point of the cloud lies along a trait, which its eigenwalkers tell. */
 export function positionsInCloud({ average, eigenwalkers, cloud }: Model, trait: Trait): number[] {
   const middle = positionOf(trait, average);
-  const slopes = eigenwalkers.map(({ vector }) => positionOf(trait, vector) - trait.told.offset);
+  const slopes = eigenwalkers.map(({ vector }) => positionOf(trait, vector) - trait.projection.offset);
   return cloud.scores.map((scores) => scores.reduce((sum, z, i) => sum + z * slopes[i]!, middle));
 }

@@ -114,7 +114,7 @@ function trait(size: number, model: Pick<Model, "layout">): is.Reader<Trait> {
     positive: is.text,
     two_classes: is.truth,
     steps: is.record({ discriminant: steps, mean_difference: steps }),
-    told: is.record({ gradient: is.numbers(size), offset: is.number() }),
+    projection: is.record({ gradient: is.numbers(size), offset: is.number() }),
     means: is.orNull(is.record({ negative: is.numbers(size), positive: is.numbers(size) })),
   });
 }

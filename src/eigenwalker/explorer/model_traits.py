@@ -92,7 +92,7 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
     asked = trait_contrast(population, name)
     whole = spaces.axis(asked, "all")
     label, unit = _label_and_unit(asked)
-    told = {
+    model = {
         "name": name,
         "column": asked.trait,
         "label": label,
@@ -102,14 +102,14 @@ def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
         "two_classes": asked.two_classes,
         "n": len(asked.rows),
         "steps": _steps(spaces, asked),
-        "told": _told(whole, population.X.shape[1]),
+        "projection": _projection(whole, population.X.shape[1]),
     }
     if asked.two_classes:
-        told["means"] = {
+        model["means"] = {
             "negative": _mean(population, asked.rows[asked.y < 0]),
             "positive": _mean(population, asked.rows[asked.y > 0]),
         }
-    return told
+    return model
 
 
 def _pole(population: Population, asked: Contrast, pole: str) -> str:
@@ -144,7 +144,7 @@ def _steps(spaces: _Spaces, asked: Contrast) -> dict[str, dict[str, list]]:
     return steps
 
 
-def _told(axis: TraitAxis, n_features: int) -> dict[str, Any]:
+def _projection(axis: TraitAxis, n_features: int) -> dict[str, Any]:
     """Where a walker lies along the axis, as a linear function of its features."""
     offset = float(axis.positions(np.zeros((1, n_features)))[0])
     gradient = axis.positions(np.eye(n_features)) - offset

@@ -81,7 +81,7 @@ def capture(folder: Path, asked: Asked) -> Asked:
         "vector": vector.tolist(),
         "verdict": facts["verdict"],
         "flag": facts[FLAG],
-        "told": _told(facts),
+        "messages": _messages(facts),
         "measures": {
             str(name): None if math.isnan(value) else value
             for name, value in walker_measures(made).items()
@@ -89,20 +89,20 @@ def capture(folder: Path, asked: Asked) -> Asked:
     }
 
 
-def _told(facts: dict) -> list[str]:
+def _messages(facts: dict) -> list[str]:
     """What is to be known of a capture, in sentences."""
     strides, seconds = round(facts["strides"]), facts["duration_s"]
-    told = [
+    messages = [
         f"{strides} strides in {seconds:.0f} s at {facts['frequency_hz']:.2f} Hz; the sines of "
         f"this walker hold {100 * facts['r2']:.0f} % of its movement."
     ]
     if facts["flag"]:
-        told.append(str(facts["flag"]))
+        messages.append(str(facts["flag"]))
     if facts["rebuilt"]:
-        told.append(f"Rebuilt: {facts['rebuilt']}.")
+        messages.append(f"Rebuilt: {facts['rebuilt']}.")
     if facts["unit_guessed"]:
-        told.append(f"The file names no unit; {facts['unit']} was guessed from the height.")
-    return told
+        messages.append(f"The file names no unit; {facts['unit']} was guessed from the height.")
+    return messages
 
 
 def population(folder: Path, asked: Asked) -> Asked:
@@ -110,7 +110,7 @@ def population(folder: Path, asked: Asked) -> Asked:
     from eigenwalker.population.population import Population
 
     path = sent_to(folder) / asked["files"][0]
-    return {"model": _model(Population.load(path), folder, path.stem), "told": []}
+    return {"model": _model(Population.load(path), folder, path.stem), "messages": []}
 
 
 def study(folder: Path, asked: Asked) -> Asked:
@@ -120,16 +120,18 @@ def study(folder: Path, asked: Asked) -> Asked:
     captures = sent_to(folder)
     found = fit_folder(captures, traits=_traits_table(captures), n_jobs=1)
     out = found.files[found.files["status"] != "used"]
-    told = [f"{row.file}: {row.status}. {row.reason}" for row in out.itertuples()]
-    told += [f"{name}: not in the table of traits." for name in found.unlisted[:20]]
+    messages = [f"{row.file}: {row.status}. {row.reason}" for row in out.itertuples()]
+    messages += [f"{name}: not in the table of traits." for name in found.unlisted[:20]]
     if found.population is None:
-        raise ValueError(f"None of {len(found.files)} captures could be used. {' '.join(told[:5])}")
-    told.append(
+        raise ValueError(
+            f"None of {len(found.files)} captures could be used. {' '.join(messages[:5])}"
+        )
+    messages.append(
         "This population is kept until the server ends; for Python, write it to a file first: "
         f"eigenwalker fit FOLDER -o {PEOPLE}"
     )
     used = [str(name) for name in found.population.traits["file"]]
-    return {"model": _model(found.population, folder, _named(used)), "told": told}
+    return {"model": _model(found.population, folder, _named(used)), "messages": messages}
 
 
 def _named(files: list[str]) -> str:
