@@ -9,15 +9,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.write_stimulus import write_stimulus
+from eigenwalker.stimulus import Stimulus, write_stimulus
 
 DOCS = Path(__file__).parent
 PICTURES = DOCS / "images" / "gallery"
 SETTING = """\
 import eigenwalker as ew
-from eigenwalker.stimulus import Figure, make_stimulus
-from eigenwalker.stimulus.walker_information import with_information
+from eigenwalker.stimulus import Figure, make_stimulus, with_information
 
 people = ew.load_population()
 average = people.walker(people.average)
@@ -360,9 +358,8 @@ def page() -> str:
             SETTING.rstrip(),
             "```",
             "",
-            'Each line gives a stimulus; `.save("stim.json")` keeps it, '
-            "`eigenwalker.stimulus.write_stimulus.write_stimulus`",
-            "makes it a film. The options do the same, as in",
+            'Each line gives a stimulus; `ew.write_stimulus(shown, "stim.json")` writes the file,',
+            "and `.mp4` or `.gif` in place of `.json` a film. The options do the same, as in",
             "",
             "```sh",
             COMMAND.format("--invert", "invert.gif"),

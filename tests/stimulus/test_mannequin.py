@@ -13,11 +13,19 @@ from matplotlib.image import imread
 from eigenwalker.core.skeleton import JOINTS, Skeleton
 from eigenwalker.datasets.built_in import load_population
 from eigenwalker.plotting.encoding import rgb
-from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades, hulls_of, mannequins, places_px
+from eigenwalker.stimulus.drawing import (
+    FIRST_FULL,
+    composite_mannequin,
+    drawn_frames,
+    drawn_shades,
+    hulls_of,
+    mannequin_shades,
+    mannequins,
+    places_px,
+)
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.make import make_stimulus
 from eigenwalker.stimulus.mannequin import Hulls, body_heights, hulls_at, mannequin_of
-from eigenwalker.stimulus.mannequin_palette import FIRST_FULL, put_wood, wood_shades
 from eigenwalker.stimulus.schema import View
 from eigenwalker.stimulus.solids import LIGHT, Lit, Look, brightness, draw_hulls
 from eigenwalker.stimulus.stimulus import Stimulus
@@ -233,7 +241,7 @@ def test_masks_and_limb_dots_stay_dots(average):
 
 
 def test_shades_are_the_ground_the_dots_and_the_wood():
-    shades = wood_shades("#103060", "#ff8800")
+    shades = mannequin_shades("#103060", "#ff8800")
     assert shades.shape == (256, 3)
     assert shades[0].tolist() == list(rgb("#103060"))
     assert shades[15].tolist() == list(rgb("#ff8800"))
@@ -244,8 +252,8 @@ def test_shades_are_the_ground_the_dots_and_the_wood():
 def test_half_covered_is_half_way_to_the_ground():
     canvas = np.zeros((1, 2), np.uint8)
     cover = np.array([[0.6, 1.0]])
-    put_wood(canvas, Lit((slice(0, 1), slice(0, 2)), cover, 0.5 * cover))
-    edge, wood = wood_shades("#ffffff", "#ffffff")[canvas[0], 0]
+    composite_mannequin(canvas, Lit((slice(0, 1), slice(0, 2)), cover, 0.5 * cover))
+    edge, wood = mannequin_shades("#ffffff", "#ffffff")[canvas[0], 0]
     assert wood == pytest.approx(127.5, abs=1)
     assert edge == pytest.approx(0.4 * 255 + 0.6 * 127.5, abs=4)
 

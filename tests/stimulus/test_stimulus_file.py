@@ -16,6 +16,7 @@ from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.make import make_stimulus
 from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.write_stimulus import write_stimulus
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +37,7 @@ def test_a_file_comes_back_to_the_bit(plain, tmp_path):
     made = plain.then("scramble", seed=3).then("invert").sized(
         5, viewing_distance_mm=570, px_per_cm=38
     )  # fmt: skip
-    path = made.save(tmp_path / "stim.json")
+    path = write_stimulus(made, tmp_path / "stim.json")
     again = Stimulus.load(path)
     assert again.to_json() == made.to_json()
     time = np.linspace(0, 4, 7)
@@ -58,7 +59,7 @@ def test_sampled_trajectories_come_back_with_their_gaps(tmp_path):
     values[3:7, 1] = np.nan
     walk = label_trajectories(values, markers=["one", "two"], rate_hz=100)
     made = make_stimulus(Figure(walk, repeat=True))
-    again = Stimulus.load(made.save(tmp_path / "walk.json"))
+    again = Stimulus.load(write_stimulus(made, tmp_path / "walk.json"))
     np.testing.assert_allclose(again.play().positions, made.play().positions, atol=1e-9)
     assert (again.play().visible == made.play().visible).all()
     np.testing.assert_allclose(made.play([0.02]).positions[0], values[2], atol=1e-6)

@@ -14,10 +14,9 @@ from eigenwalker.core.walker import Walker
 from eigenwalker.datasets.built_in import load_population
 from eigenwalker.plotting.projection import observer_axes, project
 from eigenwalker.stimulus.figure import Figure
-from eigenwalker.stimulus.make import make_stimulus
+from eigenwalker.stimulus.make import make_stimulus, with_information
 from eigenwalker.stimulus.moving_dots import parents_of
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.walker_information import with_information
 
 TIME = np.arange(0, 2.5, 0.04)
 INDEX = {name: JOINTS.index(name) for name in JOINTS.markers}

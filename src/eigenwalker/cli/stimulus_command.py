@@ -171,7 +171,7 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
 
 
 def _walker(population: Population, options: dict[str, Any]) -> Walker:
-    from eigenwalker.stimulus.walker_information import with_information
+    from eigenwalker.stimulus.make import with_information
 
     vector = _moved(population, start_vector(population, options["start_from"]), options["trait"])
     if options["information"]:

@@ -126,3 +126,23 @@ JOINTS = Skeleton(
     },
 )
 """The 15 joints of Troje (2002, fig. 1), J3 and J4, in the project's order."""
+
+_DRAWN_PARTS = ("heel", "toe", "hand")
+LINKS = Skeleton(
+    markers=(*JOINTS.markers, *(name for part in _DRAWN_PARTS for name in _both_sides(part))),
+    segments=(
+        *JOINTS.segments,
+        *(
+            (f"{side}_{one}", f"{side}_{other}")
+            for side in ("left", "right")
+            for one, other in (
+                ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"), ("wrist", "hand")
+            )
+        ),
+    ),
+    pairs=(*JOINTS.pairs, *((f"left_{part}", f"right_{part}") for part in _DRAWN_PARTS)),
+)  # fmt: skip
+"""What pictures join: the 15 joints, and feet and hands where they are known.
+
+Restrict it to the markers at hand: ``LINKS.restricted_to(walker.markers)``.
+"""

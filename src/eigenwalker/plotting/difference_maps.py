@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.plotting.difference_tables import short_names
-from eigenwalker.plotting.links import LINKS
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
     BLUE,

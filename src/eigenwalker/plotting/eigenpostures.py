@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
-from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.links import LINKS
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
     BLUE,

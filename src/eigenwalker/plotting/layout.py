@@ -10,10 +10,9 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.links import LINKS
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.raster import draw_discs, draw_lines, lettering
 
@@ -21,6 +20,8 @@ Style = Literal["dots", "sticks"]
 STYLES = ("dots", "sticks")
 DOT_MM = 36.0
 """Diameter of a dot of the point-light display, at the scale of the walker."""
+DEFAULT_DURATION_S = 4.0
+"""Seconds of a film or stimulus of walkers whose duration is left open."""
 STICK_MM = 22.0
 HEAD_MM = 170.0
 """Diameter of a stick figure's head, drawn about the marker of that name."""

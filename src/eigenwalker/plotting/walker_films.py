@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.encoding import (
@@ -20,14 +20,11 @@ from eigenwalker.plotting.encoding import (
     frame_delays,
     shades_between,
 )
-from eigenwalker.plotting.layout import STYLES, Style, positions_at, stage
-from eigenwalker.plotting.links import LINKS
+from eigenwalker.plotting.layout import DEFAULT_DURATION_S, STYLES, Style, positions_at, stage
 
 Background = Literal["dark", "light"]
 COLOURS = {"dark": ("#000000", "#ffffff"), "light": ("#ffffff", "#191919")}
 """Of the ground and of the walker."""
-USUAL_S = 4.0
-"""Seconds of a film whose duration is left open."""
 
 
 def write_film(
@@ -180,7 +177,7 @@ def _moments(
     else:
         if duration_s is None:
             captured = [np.ptp(w.time.values) for w in shown if not isinstance(w, Walker)]
-            duration_s = float(min(captured, default=USUAL_S))
+            duration_s = float(min(captured, default=DEFAULT_DURATION_S))
         lasts = [duration_s] * len(shown)
     delays = frame_delays(duration_s, rate_hz, form, whole=n_strides is not None)
     starts = np.concatenate([[0.0], np.cumsum([float(delay) for delay in delays[:-1]])])

@@ -9,20 +9,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eigenwalker.core.skeleton import Skeleton
-from eigenwalker.plotting.encoding import shades_between
+from eigenwalker.plotting.encoding import rgb, shades_between
 from eigenwalker.plotting.raster import draw_discs, draw_lines
 from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
-from eigenwalker.stimulus.mannequin_palette import put_wood, wood_shades
 from eigenwalker.stimulus.player import Played
-from eigenwalker.stimulus.solids import Look, draw_hulls
+from eigenwalker.stimulus.solids import Lit, Look, draw_hulls
 
 if TYPE_CHECKING:
     from eigenwalker.stimulus.stimulus import Stimulus
 
-STICK = 0.6
+STICK_PER_DOT = 0.6
 """Width of a stick beside the diameter of a dot."""
-LOST_SD = 3.6
+BLOB_REACH_SD = 3.6
 """Standard deviations beyond which a blob gives less light than an 8-bit pixel shows."""
+
+SPECULAR = 0.1
+"""How much of white light a mannequin's surface throws back, whatever its colour."""
+DOTS, EDGES, BRIGHT, FULL = 15, 4, 24, 144
+"""Shades of dots' edges; of a mannequin's edges, and how bright; of what it covers wholly."""
+FIRST_EDGE = 1 + DOTS
+FIRST_FULL = FIRST_EDGE + EDGES * BRIGHT
 
 
 def places_px(stimulus: Stimulus, played: Played) -> np.ndarray:
@@ -81,13 +87,13 @@ def drawn_frames(
             draw_discs(canvas, places_now[dots], radius=stimulus.display.dot_px / 2)
         if bodies:
             hulls = hulls_of(stimulus, bodies, played, moment)
-            put_wood(canvas, draw_hulls(hulls, look_of(stimulus, shape)))
+            composite_mannequin(canvas, draw_hulls(hulls, look_of(stimulus, shape)))
         yield canvas
 
 
 def drawn_shades(stimulus: Stimulus) -> np.ndarray:
     """Return the colours of what `drawn_frames` yields: array of shape (256, 3), 0 to 255."""
-    shades = wood_shades if mannequins(stimulus) else shades_between
+    shades = mannequin_shades if mannequins(stimulus) else shades_between
     return shades(stimulus.display.background, stimulus.display.colour)
 
 
@@ -125,17 +131,60 @@ def look_of(stimulus: Stimulus, shape: tuple[int, int]) -> Look:
 def _draw_sticks(canvas: np.ndarray, places: np.ndarray, skeleton: Skeleton, dot_px: float) -> None:
     pairs = [(skeleton.index(one), skeleton.index(other)) for one, other in skeleton.segments]
     start, end = np.transpose(pairs)
-    draw_lines(canvas, places[start], places[end], width=max(STICK * dot_px, 1.0))
+    draw_lines(canvas, places[start], places[end], width=max(STICK_PER_DOT * dot_px, 1.0))
 
 
 def _draw_blobs(canvas: np.ndarray, places: np.ndarray, sd_px: float) -> None:
     """Add up the light of Gaussian blobs, 1 at most, and keep what is brighter than before."""
     light = np.zeros(canvas.shape, np.float32)
     rows, columns = (np.arange(size, dtype=np.float32) for size in canvas.shape)
+    reach = BLOB_REACH_SD * sd_px
     for x, y in places[np.isfinite(places).all(axis=1)]:
-        down = slice(*np.clip([y - LOST_SD * sd_px, y + LOST_SD * sd_px + 1], 0, None).astype(int))
-        along = slice(*np.clip([x - LOST_SD * sd_px, x + LOST_SD * sd_px + 1], 0, None).astype(int))
+        down, along = (
+            slice(*np.clip([place - reach, place + reach + 1], 0, None).astype(int))
+            for place in (y, x)
+        )
         tall = np.exp(-((rows[down] - y) ** 2) / (2 * sd_px**2))
         wide = np.exp(-((columns[along] - x) ** 2) / (2 * sd_px**2))
         light[down, along] += tall[:, None] * wide
     np.maximum(canvas, np.rint(255 * np.minimum(light, 1)).astype(np.uint8), out=canvas)
+
+
+def lit_colour(ink: str) -> np.ndarray:
+    """Return red, green and blue, 0 to 255, of a mannequin of this colour in full light."""
+    return np.array(rgb(ink)) + SPECULAR * (255 - np.array(rgb(ink)))
+
+
+def mannequin_shades(ground: str, ink: str) -> np.ndarray:
+    """Return the shades of a picture with mannequins: array of shape (256, 3), red, green, blue.
+
+    The ground; dots that cover it more and more; edges, four covers in 24 steps of light; what is
+    covered wholly, in 144 steps of light.
+    """
+    dark = np.array(rgb(ground), dtype=float)
+    dots = shades_between(ground, ink)[np.rint(np.linspace(0, 255, DOTS + 1)).astype(int)]
+    few = np.linspace(0, 1, BRIGHT)[:, None] * lit_colour(ink)
+    edges = [dark + share * (few - dark) for share in np.arange(1, EDGES + 1) / (EDGES + 1)]
+    return np.concatenate([dots, *edges, np.linspace(0, 1, FULL)[:, None] * lit_colour(ink)])
+
+
+def composite_mannequin(canvas: np.ndarray, lit: Lit) -> None:
+    """Put mannequins on a canvas of dots' covers, which gets the numbers of shades, in place.
+
+    Parameters
+    ----------
+    canvas : array of uint8 of shape (row, column)
+        How much each pixel is covered with dots, 0 to 255; dots are before mannequins.
+    lit : Lit
+        The mannequins.
+
+    """
+    before = canvas[lit.box] > 127
+    if canvas.any():
+        canvas[:] = np.rint(canvas * np.float32(DOTS / 255))
+    light = np.clip(lit.light / np.maximum(lit.cover, 1e-6), 0, 1)
+    share = np.rint(lit.cover * (EDGES + 1)).astype(np.int16)
+    edge = FIRST_EDGE + (share - 1) * BRIGHT + np.rint(light * (BRIGHT - 1)).astype(np.int16)
+    full = FIRST_FULL + np.rint(light * (FULL - 1)).astype(np.int16)
+    shades = np.where(before, DOTS, np.where(share > EDGES, full, edge))
+    np.copyto(canvas[lit.box], shades.astype(np.uint8), where=share > 0)

@@ -12,10 +12,9 @@ import numpy as np
 import xarray as xr
 from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
 
-from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.trajectories import check_trajectories, label_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.links import LINKS
 from eigenwalker.stimulus.moving_dots import MovingDots, sampled, walking
 from eigenwalker.stimulus.transform_types import (
     MAX_MARKERS,

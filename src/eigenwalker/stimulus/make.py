@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.layout import DOT_MM
+from eigenwalker.plotting.layout import DEFAULT_DURATION_S, DOT_MM
 from eigenwalker.plotting.projection import observer_axes
+from eigenwalker.population.population import Population
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
 from eigenwalker.stimulus.stimulus import Stimulus
 
 FILLED = 0.84
 """Share of the picture that figures fill where no size is asked for."""
-USUAL_S = 4.0
+Information = Literal["full", "structure", "dynamics"]
 
 
 def make_stimulus(
@@ -77,7 +79,9 @@ def make_stimulus(
         raise ValueError("There is nobody to show; give one figure or more.")
     if duration_s is None:
         walks = [figure.motion for figure in whole if isinstance(figure.motion, xr.DataArray)]
-        duration_s = min((float(np.ptp(walk.time.values)) for walk in walks), default=USUAL_S)
+        duration_s = min(
+            (float(np.ptp(walk.time.values)) for walk in walks), default=DEFAULT_DURATION_S
+        )
     program = f"eigenwalker {__version__}"
     bare = Stimulus(
         figures=whole,
@@ -107,3 +111,65 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
     scale = float((room / extent).min())
     display = replace(bare.display, px_per_mm=scale, dot_px=max(DOT_MM * scale, 2.0))
     return replace(bare, view=view, display=display)
+
+
+def with_information(
+    population: Population, walker: int | np.ndarray, information: Information
+) -> Walker:
+    """Return a walker as one of the three stimuli of Troje (2002), experiment.
+
+    ``"full"``: all its own. ``"structure"``: its own mean posture p0; eigenpostures, phases and
+    frequency are the population's averages. ``"dynamics"``: its own eigenpostures, phases and
+    frequency on the population's mean posture (the mean, A16, which is printed without 1/m). Sizes
+    are divided out first, of eigenpostures too (eq. 12, A17), so that all are equally tall.
+
+    Parameters
+    ----------
+    population : Population
+        Whose averages stand in. Flagged walkers shape none.
+    walker : int, or array of shape (feature,)
+        Number of a walker of it, or any point of its feature space.
+    information : {"full", "structure", "dynamics"}
+        What the stimulus may tell.
+
+    Returns
+    -------
+    Walker
+
+    Examples
+    --------
+    >>> people = ew.load_population()
+    >>> shown = with_information(people, 3, "structure")
+    >>> bool(shown.frequency_hz == people.average[people.feature_names.index("frequency_hz")])
+    True
+
+    """
+    alike = population.size_normalised()
+    if isinstance(walker, int | np.integer):
+        if not 0 <= walker < len(population):
+            raise ValueError(
+                f"The population has walkers 0 to {len(population) - 1}, not {walker}."
+            )
+        own = alike.X[walker]
+    else:
+        own = _normalised(population, np.asarray(walker, dtype=float))
+    match information:
+        case "full":
+            return alike.walker(own)
+        case "structure":
+            return alike.walker(alike.hybrid(structure=own, dynamics=alike.average))
+        case "dynamics":
+            return alike.walker(alike.hybrid(structure=alike.average, dynamics=own))
+    raise ValueError(
+        f"information={information!r} is not known; choose 'full', 'structure' or 'dynamics'."
+    )
+
+
+def _normalised(population: Population, vector: np.ndarray) -> np.ndarray:
+    """A point of the feature space with its size divided out of all postures (eq. 12)."""
+    mean = population.average[population.layout.columns("structure")]
+    posture = vector[population.layout.columns("structure")]
+    size = posture @ mean / (mean @ mean)
+    scaled = vector.copy()
+    scaled[population.layout.columns("postures")] /= size
+    return scaled

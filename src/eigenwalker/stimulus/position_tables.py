@@ -1,4 +1,4 @@
-"""Where every dot is in every frame, as numbers: CSV, NPZ, and MAT for Psychtoolbox."""
+"""Where every dot is in every frame: CSV, NPZ, MAT for Psychtoolbox, a PsychoPy script."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from scipy.io import savemat
 
+from eigenwalker.plotting.encoding import rgb
 from eigenwalker.stimulus.drawing import places_px
 from eigenwalker.stimulus.stimulus import Stimulus
 
@@ -97,8 +98,6 @@ def write_mat(stimulus: Stimulus, path: Path) -> None:
     display = stimulus.display
     middle = np.array([display.width_px, display.height_px]) / 2
     about = np.where(arrays["visible"][..., None], arrays["px"] - middle, np.nan)
-    rgb = [[int(name[i : i + 2], 16) for i in (1, 3, 5)] for name in (
-        display.colour, display.background)]  # fmt: skip
     content = {
         **arrays,
         "dots": arrays["dots"].astype(object),
@@ -107,9 +106,65 @@ def write_mat(stimulus: Stimulus, path: Path) -> None:
         "xy": about.transpose(2, 1, 0),
         "dot_px": display.dot_px,
         "rate_hz": stimulus.timing.rate_hz,
-        "colour": np.array(rgb[0], dtype=float),
-        "background": np.array(rgb[1], dtype=float),
+        "colour": np.array(rgb(display.colour), dtype=float),
+        "background": np.array(rgb(display.background), dtype=float),
         "stimulus": stimulus.to_json(),
     }
     with path.open("wb") as file:
         savemat(file, content, do_compression=True)
+
+
+SCRIPT = '''"""Shows {name} in PsychoPy; made by {program}. Needs {table} beside this file.
+
+Each refresh shows the frame that is due by the clock, so that a screen of any rate keeps the tempo.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from psychopy import core, event, visual
+
+frames = np.load(Path(__file__).with_name({table!r}))
+xy = frames["px"] - np.array([{width}, {height}]) / 2
+xy[..., 1] *= -1  # PsychoPy counts upwards
+opacities = frames["visible"].astype(float)
+
+win = visual.Window(
+    size=({width}, {height}), units="pix", color={background!r}, colorSpace="hex", fullscr=False
+)
+dots = visual.ElementArrayStim(
+    win,
+    units="pix",
+    nElements=xy.shape[1],
+    elementTex=None,
+    elementMask="circle",
+    sizes={dot_px!r},
+    colors={colour!r},
+    colorSpace="hex",
+)
+clock = core.Clock()
+while clock.getTime() < {duration!r} and not event.getKeys():
+    frame = min(int(clock.getTime() * {rate!r}), len(xy) - 1)
+    dots.xys = np.nan_to_num(xy[frame])
+    dots.opacities = opacities[frame]
+    dots.draw()
+    win.flip()
+win.close()
+'''
+
+
+def psychopy_script(stimulus: Stimulus, table: Path) -> str:
+    """Return a script that shows a stimulus, whose positions are in an ``.npz`` beside it."""
+    display = stimulus.display
+    return SCRIPT.format(
+        name=table.stem,
+        program=stimulus.provenance.get("program", "eigenwalker"),
+        table=table.name,
+        width=display.width_px,
+        height=display.height_px,
+        background=display.background,
+        colour=display.colour,
+        dot_px=display.dot_px,
+        duration=stimulus.timing.duration_s,
+        rate=stimulus.timing.rate_hz,
+    )

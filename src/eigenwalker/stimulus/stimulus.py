@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -12,10 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
-from eigenwalker.stimulus.json_text import MAX_BYTES, parsed, plain, written
 from eigenwalker.stimulus.moving_dots import MovingDots
 from eigenwalker.stimulus.player import Played, in_picture, play, scene
 from eigenwalker.stimulus.schema import (
@@ -28,6 +27,9 @@ from eigenwalker.stimulus.schema import (
     checked,
 )
 from eigenwalker.stimulus.transform_defaults import Situation, resolve_transform
+
+MAX_BYTES = 64_000_000
+"""Size of a stimulus file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,18 +184,11 @@ class Stimulus:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the file, with all defaults filled in."""
-        return plain(self.file.to_dict())
+        return _plain(self.file.to_dict())
 
     def to_json(self) -> str:
         """Return the text of the file: one figure and one transform a line."""
-        return written(self.to_dict())
-
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the stimulus to a JSON file, which appears whole, and return its path."""
-        path = Path(path)
-        with atomic_write(path) as unfinished:
-            unfinished.write_text(self.to_json(), encoding="utf-8")
-        return path
+        return _text(self.to_dict())
 
     @classmethod
     def from_dict(cls, content: Any) -> Stimulus:
@@ -225,7 +220,7 @@ class Stimulus:
             If it is no JSON, or no stimulus.
 
         """
-        return cls.from_dict(parsed(text))
+        return cls.from_dict(_parsed(text))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Stimulus:
@@ -249,3 +244,62 @@ class Stimulus:
             fault = str(error).rstrip(".").removeprefix("This is no stimulus: ")
             found = f"a file that is none ({fault})"
             raise UnreadableFile(path.name, "a stimulus", found, "make it again") from None
+
+
+def _text(content: dict[str, Any]) -> str:
+    """Return content as JSON: one part a line, and one figure and one transform a line."""
+    lines = []
+    for name, part in content.items():
+        if isinstance(part, list) and part:
+            items = ",\n  ".join(map(_compact, part))
+            lines.append(f'"{name}": [\n  {items}\n]')
+        else:
+            lines.append(f'"{name}": {_compact(part)}')
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _plain(content: Any) -> Any:
+    """Return content as JSON would give it back: lists, and None where a sample is missing."""
+    if isinstance(content, dict):
+        return {name: _plain(part) for name, part in content.items()}
+    if isinstance(content, list | tuple):
+        return [_plain(part) for part in content]
+    if isinstance(content, np.ndarray):
+        values = content.astype(object)
+        values[np.isnan(content)] = None
+        return values.tolist()
+    return content
+
+
+def _parsed(text: str) -> Any:
+    """Return the content of a text of JSON.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, is nested without end, has a name twice or a number that is not finite.
+
+    """
+    if len(text) > MAX_BYTES:
+        raise ValueError(f"A stimulus has {MAX_BYTES} letters at most; this has {len(text)}.")
+    try:
+        return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_twice)
+    except RecursionError:
+        raise ValueError("A stimulus is not nested that deeply.") from None
+    except ValueError as error:
+        raise ValueError(f"This is no JSON of a stimulus: {error}.") from None
+
+
+def _compact(part: Any) -> str:
+    return json.dumps(part, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
+
+
+def _refuse_constant(name: str) -> Any:
+    raise ValueError(f"it has a number {name}, and numbers must be finite")
+
+
+def _refuse_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    kept = dict(pairs)
+    if len(kept) < len(pairs):
+        raise ValueError("an object has one name twice")
+    return kept

@@ -1,4 +1,4 @@
-"""One function for all that a stimulus is written as: the suffix decides."""
+"""Writing a stimulus as a file; the suffix decides the format."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.progress import Progress
 from eigenwalker.io.write import write_mocap
-from eigenwalker.stimulus import films, position_tables as tables
+from eigenwalker.stimulus import films, position_tables
 from eigenwalker.stimulus.animation import animated
 from eigenwalker.stimulus.gltf import write_glb
 from eigenwalker.stimulus.html_page import stand_alone_page
-from eigenwalker.stimulus.psychopy_script import write_psychopy
 from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.svg import svg_drawing
 
 
 def write_stimulus(
@@ -67,43 +68,44 @@ def write_stimulus(
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix and suffix not in WRITERS and suffix not in FILMS:
-        known = [*FILMS, *WRITERS]
-        raise ValueError(f"{path.name!r} must end in one of {known} to hold a stimulus.")
+    if suffix and suffix not in SUFFIXES:
+        raise ValueError(f"{path.name!r} must end in one of {SUFFIXES} to hold a stimulus.")
     if not path.parent.is_dir():
         raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
-    if suffix in FILMS:
-        films.write_film(stimulus, path, progress)
-    elif not suffix:
+    if not suffix:
         films.write_frames(stimulus, path, progress)
-    else:
-        WRITERS[suffix](stimulus, path)
+        return path
+    with atomic_write(path) as unfinished:
+        if suffix in FILMS:
+            films.write_stimulus_film(stimulus, unfinished, progress)
+        elif suffix == ".py":
+            table = path.with_suffix(".npz")
+            write_stimulus(stimulus, table)
+            _write_text(position_tables.psychopy_script(stimulus, table), unfinished)
+        else:
+            WRITERS[suffix](stimulus, unfinished)
     return path
 
 
-def _write_bvh(stimulus: Stimulus, path: Path) -> None:
-    write_mocap(animated(stimulus).walk, path)
+def _write_text(text: str, path: Path) -> None:
+    path.write_text(text, encoding="utf-8")
 
 
 def _write_glb(stimulus: Stimulus, path: Path) -> None:
-    moving = animated(stimulus)
-    write_glb(moving.walk, path, about={**stimulus.provenance, "feet": str(moving.slide)})
-
-
-def _write_html(stimulus: Stimulus, path: Path) -> None:
-    path.write_text(stand_alone_page(stimulus), encoding="utf-8")
+    animation = animated(stimulus)
+    write_glb(animation.walk, path, about={**stimulus.provenance, "feet": str(animation.slide)})
 
 
 FILMS = (".mp4", ".webm", ".gif")
 WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
-    ".json": Stimulus.save,
+    ".json": lambda stimulus, path: _write_text(stimulus.to_json(), path),
     ".png": films.write_png,
-    ".svg": films.write_svg,
-    ".csv": tables.write_csv,
-    ".npz": tables.write_npz,
-    ".mat": tables.write_mat,
-    ".py": write_psychopy,
-    ".html": _write_html,
-    ".bvh": _write_bvh,
+    ".svg": lambda stimulus, path: _write_text(svg_drawing(stimulus), path),
+    ".csv": position_tables.write_csv,
+    ".npz": position_tables.write_npz,
+    ".mat": position_tables.write_mat,
+    ".html": lambda stimulus, path: _write_text(stand_alone_page(stimulus), path),
+    ".bvh": lambda stimulus, path: write_mocap(animated(stimulus).walk, path),
     ".glb": _write_glb,
 }
+SUFFIXES = [*FILMS, *WRITERS, ".py"]
