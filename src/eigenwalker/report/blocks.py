@@ -1,4 +1,4 @@
-"""What a report says, before anything is said about how it looks."""
+"""The content of a report, apart from how it looks."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import matplotlib.figure
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph of plain words."""
+    """A paragraph of plain text."""
 
-    words: str
+    text: str
 
 
 @dataclass(frozen=True)
 class Items:
-    """A list of plain words, one point each."""
+    """A list of plain text, one point each."""
 
     items: Sequence[str]
 
@@ -42,7 +42,7 @@ class Table:
     Parameters
     ----------
     caption : str
-        What the table tells, in a sentence.
+        The content of the table, in a sentence.
     columns : sequence of str
         Names of all columns.
     rows : sequence of sequences
@@ -65,7 +65,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure, a sentence that says what to see in it, and words for those who cannot see it."""
+    """A matplotlib figure, a caption that says what to see in it, and text for screen readers."""
 
     figure: matplotlib.figure.Figure
     caption: str
@@ -74,7 +74,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Film:
-    """A film in a file (MP4, WebM or GIF), a sentence on it, and words for those who cannot see."""
+    """A film in a file (MP4, WebM or GIF), its caption, and text for screen readers."""
 
     path: Path
     caption: str
@@ -86,7 +86,7 @@ Block = Text | Items | Code | Table | Figure | Film
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands under it."""
+    """A heading and the blocks under it."""
 
     title: str
     blocks: Sequence[Block]
@@ -94,18 +94,18 @@ class Section:
 
 @dataclass(frozen=True)
 class Link:
-    """Words that lead to a page beside the report.
+    """A link to a page beside the report.
 
     Parameters
     ----------
-    words : str
-        What one comes to.
+    text : str
+        The text of the link.
     file : str
         Name of a file in the report's folder.
 
     """
 
-    words: str
+    text: str
     file: str
 
     def __post_init__(self) -> None:
@@ -115,7 +115,11 @@ class Link:
 
 @dataclass(frozen=True)
 class Report:
-    """A title, a lead that tells the main result, and sections; perhaps a link to a page beside it.
+    """A title, a lead with the main result, sections, and perhaps a link to a page beside it.
+
+    See Also
+    --------
+    write_report : Makes a page of it.
 
     Examples
     --------
