@@ -21,13 +21,14 @@ import uvicorn
 from fastapi import FastAPI
 
 import eigenwalker as ew
-from eigenwalker.explorer import tasks, upload
+from eigenwalker.explorer import app as explorer_app, tasks
 from eigenwalker.explorer.app import make_app
-from eigenwalker.explorer.upload import safe_name
 from eigenwalker.simulation.people import simulate_population
 from eigenwalker.study.walker_from_file import walker_from_file
+from eigenwalker.web import upload
 from eigenwalker.web.host_check import HEADERS
 from eigenwalker.web.run import address_of, listening_socket
+from eigenwalker.web.upload import safe_name
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +72,7 @@ def capture_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(autouse=True)
 def nothing_is_left(app: FastAPI, client: httpx.Client) -> Iterator[None]:
     yield
-    left = [path for path in app.state.workshop.folder.iterdir() if path.suffix != ".nc"]
+    left = [path for path in app.state.task_runner.folder.iterdir() if path.suffix != ".nc"]
     assert left == []
 
 
@@ -251,7 +252,7 @@ def test_films_of_more_dots_than_can_be_computed_are_refused_before_they_are(cli
 
 
 def test_more_than_it_takes_is_cut_off(client, monkeypatch):
-    monkeypatch.setattr(upload, "MOST_BYTES", 2_000_000)
+    monkeypatch.setattr(upload, "MAX_BYTES", 2_000_000)
     answer = client.post("/api/capture?name=a.c3d", content=iter([b"x" * 500_000] * 9))
     assert (answer.status_code, answer.json()["detail"]) == (
         413,
@@ -259,15 +260,21 @@ def test_more_than_it_takes_is_cut_off(client, monkeypatch):
     )
 
 
-def test_a_reader_that_hangs_or_breaks_down_is_ended(client, monkeypatch):
-    for task, said in (
-        (tasks.Task("capture", 0), "takes more than 0 s"),
-        (tasks.Task("no such task", 20), "breaks down over it (status 1)"),
-    ):
-        monkeypatch.setattr(tasks, "CAPTURE", task)
-        answer = client.post("/api/capture?name=a.c3d", content=b"x")
-        assert answer.status_code == 422
-        assert said in answer.json()["detail"]
+def test_a_task_that_takes_too_long_is_ended(client, monkeypatch):
+    monkeypatch.setitem(explorer_app.SECONDS, "capture", 0)
+    answer = client.post("/api/capture?name=a.c3d", content=b"x")
+    assert answer.status_code == 422
+    assert "takes more than 0 s" in answer.json()["detail"]
+
+
+def test_a_task_that_breaks_down_is_refused(client, monkeypatch):
+    def capture(folder: str) -> bytes:
+        raise AssertionError("The child finds no function of this name, which is a local one.")
+
+    monkeypatch.setattr(tasks, "capture", capture)
+    answer = client.post("/api/capture?name=a.c3d", content=b"x")
+    assert answer.status_code == 422
+    assert "breaks down over it (status 1)" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize(

@@ -42,6 +42,6 @@ def serve(
             if host not in LOOPBACK:
                 warning = "Everyone who can reach this machine can use it; there is no password."
                 print(warning, file=sys.stderr)
-            run(app, bound, when_ready=announce, on_exit=app.state.workshop.close)
+            run(app, bound, when_ready=announce, on_exit=app.state.task_runner.close)
     except KeyboardInterrupt:
         return

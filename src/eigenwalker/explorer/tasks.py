@@ -1,116 +1,185 @@
-"""Work that the server has done by child processes, one at a time."""
+"""What the server lets a child process do: one task on one folder (see `io.sandbox`).
+
+Captures and populations come from anywhere, and films take long; here they may crash, hang or ask
+for all the memory there is. The folder holds the settings of the task, ``task.json``, and the files
+that were sent, ``sent``.
+"""
 
 from __future__ import annotations
 
-import asyncio
 import json
-import os
-import shutil
-import sys
-import tempfile
+import math
+import warnings
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from eigenwalker.explorer import tasks_child as child_side
+SETTINGS = "task.json"
+PEOPLE = "people.nc"
+"""Where a task leaves the population that its model is of."""
 
-MOST_MEMORY = 4 * 2**30
-"""Bytes that a child may ask for, where the system can limit that (Linux)."""
-
-
-class Refused(ValueError):  # noqa: N818 - the name says what happened
-    """What was sent cannot be used; the message says why."""
+Answer = dict[str, Any]
 
 
-class Ending(Exception):  # noqa: N818 - the name says what happens
-    """The server is about to end."""
+def files_of(folder: str | Path) -> Path:
+    """Return the folder in a task's folder for the files that were sent; made if need be."""
+    files = Path(folder, "sent")
+    files.mkdir(exist_ok=True)
+    return files
 
 
-class Task(NamedTuple):
-    """Something that a child does: its name there, and how long it may take."""
+def _task(function: Callable[[Path, Answer], Answer]) -> Callable[[str], bytes]:
+    """Return a function of a folder and its settings as one of the folder, with JSON as result."""
 
-    name: str
-    seconds: int
+    @wraps(function)
+    def task(folder: str) -> bytes:
+        settings = json.loads(Path(folder, SETTINGS).read_text(encoding="utf-8"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            answer = function(Path(folder), settings)
+        return json.dumps(answer, allow_nan=False).encode()
+
+    return task
 
 
-CAPTURE = Task("capture", 90)
-POPULATION = Task("population", 90)
-STUDY = Task("study", 900)
-FILM = Task("film", 180)
+@_task
+def capture(folder: Path, settings: Answer) -> Answer:
+    """Return a capture as a point of a population's space."""
+    from eigenwalker.gait.appearance import walker_measures
+    from eigenwalker.io.read import is_capture
+    from eigenwalker.population.population import FLAG, Population
+    from eigenwalker.study.walker_from_file import walker_from_file
+
+    files = [files_of(folder) / name for name in settings["files"]]
+    captures = [path for path in files if is_capture(path)] or files[:1]
+    if len(captures) > 1:
+        named = ", ".join(path.name for path in captures[:3])
+        raise ValueError(f"{len(captures)} captures came ({named}); one at a time is compared.")
+    people = Population.load(Path(settings["population"]))
+    first = people.walkers[0]
+    walker, facts = walker_from_file(
+        captures[0],
+        form=first.form,
+        n_harmonics=max(len(first.harmonics) // 2, 1),
+        unit=settings["unit"],
+        rate_hz=settings["rate_hz"],
+    )
+    vector = people.vector(walker)
+    made = people.walker(vector)
+    return {
+        "name": captures[0].name,
+        "vector": vector.tolist(),
+        "verdict": facts["verdict"],
+        "flag": facts[FLAG],
+        "messages": _messages(facts),
+        "measures": {
+            str(name): None if math.isnan(value) else value
+            for name, value in walker_measures(made).items()
+        },
+    }
 
 
-class Workshop:
-    """A folder for work in progress, and the children that do it.
+def _messages(facts: dict) -> list[str]:
+    """What is to be known of a capture, in sentences."""
+    strides, seconds = round(facts["strides"]), facts["duration_s"]
+    messages = [
+        f"{strides} strides in {seconds:.0f} s at {facts['frequency_hz']:.2f} Hz; the sines of "
+        f"this walker hold {100 * facts['r2']:.0f} % of its movement."
+    ]
+    if facts["flag"]:
+        messages.append(str(facts["flag"]))
+    if facts["rebuilt"]:
+        messages.append(f"Rebuilt: {facts['rebuilt']}.")
+    if facts["unit_guessed"]:
+        messages.append(f"The file names no unit; {facts['unit']} was guessed from the height.")
+    return messages
 
-    Used as a context manager: the folder and all that is in it are removed at the end.
+
+@_task
+def population(folder: Path, settings: Answer) -> Answer:
+    """Return the model of a population's file."""
+    from eigenwalker.population.population import Population
+
+    path = files_of(folder) / settings["files"][0]
+    return {"model": _model(Population.load(path), folder, path.stem), "messages": []}
+
+
+@_task
+def study(folder: Path, settings: Answer) -> Answer:
+    """Return the model of a population made of captures, and why some are not in it."""
+    from eigenwalker.study.fit_folder import fit_folder
+
+    captures = files_of(folder)
+    fitted = fit_folder(captures, traits=_traits_table(captures), n_jobs=1)
+    not_used = fitted.files[fitted.files["status"] != "used"]
+    messages = [f"{row.file}: {row.status}. {row.reason}" for row in not_used.itertuples()]
+    messages += [f"{name}: not in the table of traits." for name in fitted.unlisted[:20]]
+    if fitted.population is None:
+        raise ValueError(
+            f"None of {len(fitted.files)} captures could be used. {' '.join(messages[:5])}"
+        )
+    messages.append(
+        "This population is kept until the server ends; for Python, write it to a file first: "
+        f"eigenwalker fit FOLDER -o {PEOPLE}"
+    )
+    used = [str(name) for name in fitted.population.traits["file"]]
+    return {"model": _model(fitted.population, folder, _named(used)), "messages": messages}
+
+
+def _named(files: list[str]) -> str:
+    """Return a title for a population made of captures.
+
+    Examples
+    --------
+    >>> _named(["ada.c3d", "ben.c3d"]), _named([f"{number}.c3d" for number in range(9)])
+    ('Captures ada.c3d and ben.c3d', 'Captures 0.c3d, 1.c3d and 7 more')
+
     """
-
-    def __init__(self) -> None:
-        self._turn = asyncio.Semaphore(1)
-        self._child: asyncio.subprocess.Process | None = None
-        self._closed = False
-
-    def __enter__(self) -> Workshop:
-        self.folder = Path(tempfile.mkdtemp(prefix="eigenwalker-"))
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        shutil.rmtree(self.folder, ignore_errors=True)
-
-    def close(self) -> None:
-        """End the work in progress and begin none."""
-        self._closed = True
-        if self._child is not None and self._child.returncode is None:
-            self._child.kill()
-
-    def bench(self) -> tempfile.TemporaryDirectory[str]:
-        """Return a folder for one piece of work, which removes itself."""
-        return tempfile.TemporaryDirectory(dir=self.folder, ignore_cleanup_errors=True)
-
-    async def done(self, task: Task, bench: Path, asked: dict[str, Any]) -> dict[str, Any]:
-        """Return what a child makes of what is asked, waiting for those who came before.
-
-        Raises
-        ------
-        Refused
-            If what was sent cannot be used, or takes too much time or memory.
-        Ending
-            If the server ends meanwhile.
-
-        """
-        (bench / child_side.ASKED).write_text(json.dumps(asked), encoding="utf-8")
-        async with self._turn:
-            status = 0 if self._closed else await self._run(task, bench)
-        if self._closed:
-            raise Ending("The server was ended.")
-        if status == child_side.REFUSED:
-            raise Refused(_answer(bench))
-        if status == child_side.TOO_LARGE:
-            raise Refused(f"This needs more than {MOST_MEMORY / 2**30:g} GiB of memory.")
-        if status:
-            raise Refused(f"This cannot be used: its reader breaks down over it (status {status}).")
-        return _answer(bench)
-
-    async def _run(self, task: Task, bench: Path) -> int:
-        """Return the exit status of a child, which ends with whoever waits for it."""
-        self._child = child = await asyncio.create_subprocess_exec(
-            sys.executable, "-P", child_side.__file__,
-            task.name, str(bench), str(task.seconds), str(MOST_MEMORY),
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.DEVNULL,
-            stderr=asyncio.subprocess.DEVNULL,
-            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-        )  # fmt: skip
-        if self._closed:  # while the child was made
-            child.kill()
-        try:
-            return await asyncio.wait_for(child.wait(), task.seconds)
-        except TimeoutError:
-            raise Refused(f"This takes more than {task.seconds} s, which is too long.") from None
-        finally:
-            if child.returncode is None:
-                child.kill()
-                await child.wait()
+    first, rest = files[:2], len(files) - 2
+    if rest > 0:
+        return f"Captures {', '.join(first)} and {rest} more"
+    return f"{'Captures' if rest == 0 else 'Capture'} {' and '.join(first)}"
 
 
-def _answer(bench: Path) -> Any:
-    return json.loads((bench / child_side.ANSWER).read_text(encoding="utf-8"))
+def _traits_table(captures: Path) -> Path | None:
+    from eigenwalker.io.read import is_capture
+
+    tables = [path for path in sorted(captures.glob("*.csv")) if not is_capture(path)]
+    if len(tables) > 1:
+        raise ValueError(f"{len(tables)} tables of traits came; one is enough.")
+    return tables[0] if tables else None
+
+
+def _model(people: Any, folder: Path, title: str) -> Answer:
+    from eigenwalker.explorer.model import page_model
+
+    people.save(folder / PEOPLE)
+    return page_model(people, title=title, source=PEOPLE)
+
+
+@_task
+def film(folder: Path, settings: Answer) -> Answer:
+    """Make a film of a stimulus, and return the name of its file."""
+    from eigenwalker.stimulus.stimulus import Stimulus
+    from eigenwalker.stimulus.write_stimulus import write_stimulus
+
+    stimulus = Stimulus.load(files_of(folder) / "stimulus.json")
+    display = stimulus.display
+    pixels = f"{display.width_px} x {display.height_px} pixels"
+    _check_length(stimulus, display.width_px * display.height_px, pixels, settings["max_pixels"])
+    dots = stimulus.file.dots_computed
+    _check_length(stimulus, dots, f"{dots} dots to compute", settings["max_dots"])
+    path = write_stimulus(stimulus, folder / f"film.{settings['format']}")
+    return {"file": path.name}
+
+
+def _check_length(stimulus: Any, each: int, content: str, limit: float) -> None:
+    """Refuse films of more than so much in all their frames, before any is drawn."""
+    seconds, rate_hz = stimulus.timing.duration_s, stimulus.timing.rate_hz
+    if each * seconds * rate_hz > limit:
+        raise ValueError(
+            f"A film of {seconds:g} s with {content} at {rate_hz:g} Hz is too long here; up to "
+            f"{limit / (each * rate_hz):.2g} s are made. Longer ones are written by write_stimulus "
+            "in Python."
+        )

@@ -1,4 +1,4 @@
-"""Who may ask the server, and what every answer says of itself."""
+"""Which requests a server answers, and what headers every answer has."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ HEADERS = {
 }
 
 
-class Guard:
-    """Answers only those who call the server by its own name, and pages that it gave out itself.
+class HostCheck:
+    """Answers only requests to the server's own name, from pages that it gave out itself.
 
-    A page of somebody else may make a browser send requests to this machine, and may have its own
-    name lead here (DNS rebinding). Both tell in the headers ``Origin`` and ``Host``.
+    Any page may make a browser send requests to this machine, and may have its own name lead here
+    (DNS rebinding). The headers ``Origin`` and ``Host`` show both.
 
     Parameters
     ----------
     app : ASGI application
     host : str
-        What the server listens at. Where that is every address of the machine, it may be called by
-        any of them in numbers, or by the machine's name.
+        What the server listens at. Where that is every address of the machine, requests to any
+        address in numbers, or to the machine's name, are answered.
 
     """
 
@@ -47,38 +47,28 @@ class Guard:
             await self.app(scope, receive, send)
             return
 
-        async def told(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 MutableHeaders(scope=message).update(HEADERS)
             await send(message)
 
         refusal = self._refusal(Headers(scope=scope))
         answer = self.app if refusal is None else JSONResponse({"detail": refusal}, 403)
-        await answer(scope, receive, told)
+        await answer(scope, receive, send_with_headers)
 
     def _refusal(self, headers: Headers) -> str | None:
-        host = headers.get("host", "")
-        if not self._is_mine(host):
+        host = headers.get("host", "").lower()
+        name = host[1:].partition("]")[0] if host.startswith("[") else host.partition(":")[0]
+        if name not in self.names and not (self.anywhere and _is_address(name)):
             return "This server is not called that; open the address that it printed."
-        origin = headers.get("origin")
-        if origin is not None and origin.lower() != f"http://{host.lower()}":
-            return "Pages of other places may not ask this server."
-        if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
+        origin = headers.get("origin", f"http://{host}").lower()
+        site = headers.get("sec-fetch-site", "none")
+        if origin != f"http://{host}" or site not in ("none", "same-origin"):
             return "Pages of other places may not ask this server."
         return None
 
-    def _is_mine(self, host: str) -> bool:
-        name = _without_port(host).lower()
-        return name in self.names or (self.anywhere and _is_number(name))
 
-
-def _without_port(host: str) -> str:
-    if host.startswith("["):
-        return host[1:].partition("]")[0]
-    return host.partition(":")[0]
-
-
-def _is_number(name: str) -> bool:
+def _is_address(name: str) -> bool:
     try:
         ipaddress.ip_address(name)
     except ValueError:

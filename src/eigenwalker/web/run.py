@@ -1,26 +1,70 @@
-"""A server that runs until it is told to stop."""
+"""A server of pages: its application, its socket, its start, and its end on an interrupt."""
 
 from __future__ import annotations
 
 import contextlib
 import socket
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from types import FrameType
+from typing import Any
 
 import uvicorn
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.middleware.gzip import GZipMiddleware
 
-from eigenwalker.web.host_check import WILDCARDS
+from eigenwalker.web.host_check import WILDCARDS, HostCheck
+from eigenwalker.web.task_runner import Ending
+from eigenwalker.web.upload import TooLarge
 
-USUAL_PORT = 8640
-"""Taken where it is free, so that an address that was kept still leads to the page."""
+DEFAULT_PORT = 8640
+"""Taken where it is free, so that a bookmarked address still leads to the page."""
+MAX_CONCURRENT = 50
+"""Requests; more are answered with 503."""
 
-MOST_AT_ONCE = 50
-"""Requests; more are told to come back later."""
+
+def new_app(lifespan: Any, *, host: str) -> FastAPI:
+    """Return an application without routes, which refuses in sentences (``detail``).
+
+    Parameters
+    ----------
+    lifespan : asynchronous context manager of the application
+        What is open while it serves.
+    host : str
+        What it listens at; see `HostCheck`.
+
+    """
+    app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
+    app.add_middleware(GZipMiddleware, minimum_size=2000)
+    app.add_middleware(HostCheck, host=host)
+    for error, status, sentence in (
+        (Exception, 500, "This went wrong here; the terminal says how."),
+        (404, 404, "There is nothing of that name here."),
+        (Ending, 503, None),
+        (TooLarge, 413, None),
+        (ValueError, 422, None),
+        (RequestValidationError, 422, None),
+    ):
+        app.add_exception_handler(error, _answer_with(status, sentence))
+    return app
+
+
+def _answer_with(
+    status: int, sentence: str | None
+) -> Callable[[Request, Exception], Awaitable[JSONResponse]]:
+    async def answer(_: Request, error: Exception) -> JSONResponse:
+        detail = str(error) if sentence is None else sentence
+        if isinstance(error, RequestValidationError):
+            wrong = ", ".join(str(each["loc"][-1]) for each in error.errors())
+            detail = f"The request is not as it should be: {wrong}."
+        return JSONResponse({"detail": detail}, status)
+
+    return answer
 
 
 def listening_socket(host: str, port: int | None) -> socket.socket:
-    """Return a socket that listens: at the port, or where none is asked for at a free one.
+    """Return a socket that listens at a port, by default the usual one or any that is free.
 
     Raises
     ------
@@ -28,16 +72,16 @@ def listening_socket(host: str, port: int | None) -> socket.socket:
         If the port is taken, or the host is not this machine.
 
     """
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
     if port is not None:
-        return _bound(host, port, family)
+        return _bound(host, port)
     try:
-        return _bound(host, USUAL_PORT, family)
+        return _bound(host, DEFAULT_PORT)
     except OSError:
-        return _bound(host, 0, family)
+        return _bound(host, 0)
 
 
-def _bound(host: str, port: int, family: socket.AddressFamily) -> socket.socket:
+def _bound(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)
     except (OSError, OverflowError) as error:
@@ -64,7 +108,7 @@ def run(
         log_level="warning",
         server_header=False,
         timeout_graceful_shutdown=1,
-        limit_concurrency=MOST_AT_ONCE,
+        limit_concurrency=MAX_CONCURRENT,
         ws="none",
     )
     when_ready()
@@ -73,7 +117,7 @@ def run(
 
 
 class _Server(uvicorn.Server):
-    """A server that ends its work as soon as it is told to end itself."""
+    """A server that ends its jobs as soon as it is interrupted."""
 
     def __init__(self, config: uvicorn.Config, on_exit: Callable[[], None]) -> None:
         super().__init__(config)
