@@ -109,22 +109,3 @@ def test_progress_goes_on_within_an_input_and_ends_at_all(trait: str, of_persons
     n = 6 if of_persons else 12
     total = 2 * (2 * n + n * (n - 1) // 2)
     assert told == [(done, total) for done in range(1, total + 1)]
-
-
-def test_the_table_in_words_says_where_p_ends_and_what_is_missing() -> None:
-    people = planted("structure", 2.0)
-    found = classify(people, "sex", inputs=[INPUTS[2], INPUTS[9]], n_permutations=19)
-    words = found.table_in_words().set_index("input")
-    assert words["p"]["structure (p0)"] == "<= 0.05"
-    assert words["separated at n"]["size alone"] == "-"
-    assert found.table()["p"].min() == 1 / 20
-    assert "2 inputs" in found.many_inputs
-    assert "unequal" not in found.chance
-
-
-def test_classes_of_unequal_size_are_mentioned() -> None:
-    people = planted("structure", 2.0).select(np.arange(3, 24))
-    found = classify(people, "sex", inputs=INPUTS[9:10], n_permutations=0)
-    assert "(female 9, male 12), and the discriminant has no constant" in found.chance
-    assert found.table_in_words()["p"].tolist() == ["-"]
-    assert found.many_inputs == ""

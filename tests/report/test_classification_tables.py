@@ -11,9 +11,12 @@ import eigenwalker as ew
 from eigenwalker.analysis.classification import INPUTS, classify
 from eigenwalker.population.population import Population
 from eigenwalker.report.classification_tables import (
+    chance_sentence,
     gait_table,
     missed_table,
+    multiple_inputs_sentence,
     plausibility_table,
+    printed_results,
     results_table,
 )
 
@@ -68,3 +71,22 @@ def test_missed_walkers_are_named_with_their_class(people) -> None:
     named = replace(people, traits=people.traits.assign(file=files))
     assert named.names[:2] == ["walker 0", "1.c3d"]
     assert results_table(found).columns[0] == "input"
+
+
+def test_the_printed_table_says_where_p_ends_and_what_is_missing() -> None:
+    people = ew.simulate_population(12, 12, seed=0, sex_effect=3)
+    found = classify(people, "sex", inputs=[INPUTS[2], INPUTS[11]], n_permutations=19)
+    words = printed_results(found).set_index("input")
+    assert words["p"]["structure (p0)"] == "<= 0.05"
+    assert words["separated at n"]["frequency alone"] == "-"
+    assert found.table()["p"].min() == 1 / 20
+    assert "2 inputs" in multiple_inputs_sentence(found)
+    assert "unequal" not in chance_sentence(found)
+
+
+def test_classes_of_unequal_size_are_mentioned() -> None:
+    people = ew.simulate_population(12, 12, seed=0, sex_effect=3).select(np.arange(3, 24))
+    found = classify(people, "sex", inputs=INPUTS[9:10], n_permutations=0)
+    assert "(female 9, male 12), and the discriminant has no constant" in chance_sentence(found)
+    assert printed_results(found)["p"].tolist() == ["-"]
+    assert multiple_inputs_sentence(found) == ""

@@ -1,6 +1,9 @@
 from .classification import (
+    INPUTS as INPUTS,
+    N_PANELS as N_PANELS,
     Classification as Classification,
     Input as Input,
+    InputResult as InputResult,
     Regression as Regression,
     classify as classify,
     regress as regress,

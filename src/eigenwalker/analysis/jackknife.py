@@ -1,19 +1,18 @@
-"""How well a discriminant separates walkers, and how well it tells new ones (J19 to J24)."""
+"""How well a discriminant separates walkers, and how well it predicts walkers left out."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.stats import ConstantInputWarning, pearsonr
+from sklearn.metrics import r2_score, root_mean_squared_error
 
-from eigenwalker.analysis._leave_out import (
-    LeaveOut,
-    checked_classes,
-    checked_trait,
-    discriminant_sums,
-)
+from eigenwalker.analysis._leave_out import LeaveOutSVD, discriminant_sums
+from eigenwalker.analysis._task import Task, class_task, number_task
 from eigenwalker.analysis.discriminant import Order
 from eigenwalker.analysis.walker_space import Scale
 from eigenwalker.core.blas_threads import one_blas_thread
@@ -21,20 +20,7 @@ from eigenwalker.core.progress import Progress, ticked
 
 
 @dataclass(frozen=True, eq=False)
-class JackknifeCurves:
-    """Errors of a classifier of walkers over the number of its components (J fig. 4).
-
-    Parameters
-    ----------
-    y : array of shape (walker,)
-        r: -1 or +1.
-    trained : array of shape (walker, component)
-        The sum of eq. 11 over 1, 2, ... components, with all walkers trained on.
-    held_out : array of shape (walker, component)
-        The same for each walker by what the others taught.
-
-    """
-
+class _Curves:
     y: np.ndarray
     trained: np.ndarray
     held_out: np.ndarray
@@ -43,6 +29,30 @@ class JackknifeCurves:
     def n_components(self) -> np.ndarray:
         """1, 2, ...: the abscissa of the curves."""
         return np.arange(1, self.held_out.shape[1] + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class JackknifeCurves(_Curves):
+    """Errors of a classifier of walkers over the number of its components.
+
+    Parameters
+    ----------
+    y : array of shape (walker,)
+        The classes: -1 or +1.
+    trained : array of shape (walker, component)
+        The sum of eq. 11 over 1, 2, ... components, for the walkers trained on.
+    held_out : array of shape (walker, component)
+        The same for each walker left out, by a discriminant trained on the others.
+
+    See Also
+    --------
+    jackknife_curves : Makes them.
+
+    References
+    ----------
+    Troje (2002), fig. 4.
+
+    """
 
     @property
     def separation(self) -> np.ndarray:
@@ -56,7 +66,7 @@ class JackknifeCurves:
 
     @property
     def misclassified(self) -> np.ndarray:
-        """Which walkers are misclassified when left out: shape (walker, component) (J27)."""
+        """Which walkers are misclassified when left out: shape (walker, component)."""
         return self.confidence <= 0
 
     @property
@@ -68,7 +78,8 @@ class JackknifeCurves:
     def best_n(self) -> int:
         """Fewest components with the fewest errors on walkers left out.
 
-        Chosen on the curve itself, so the errors there flatter: see `nested_leave_one_out`.
+        It is chosen on the curve itself, so the errors there are too few: see
+        `nested_leave_one_out`.
         """
         return int(self.generalisation.argmin()) + 1
 
@@ -79,9 +90,73 @@ class JackknifeCurves:
 
     @property
     def separating_n(self) -> int | None:
-        """Fewest components that tell all walkers trained on apart; None if no number does."""
+        """Fewest components that separate all walkers trained on; None if no number does."""
         full = np.flatnonzero(self.separation == 0)
         return int(full[0]) + 1 if full.size else None
+
+
+@dataclass(frozen=True, eq=False)
+class RegressionCurves(_Curves):
+    """How well a trait that is a number is predicted, over the number of components.
+
+    Parameters
+    ----------
+    y : array of shape (walker,)
+        The trait.
+    trained : array of shape (walker, component)
+        Prediction by 1, 2, ... components, for the walkers trained on.
+    held_out : array of shape (walker, component)
+        The same for each walker left out, by a discriminant trained on the others.
+
+    See Also
+    --------
+    regression_curves : Makes them.
+
+    """
+
+    @property
+    def rmse(self) -> np.ndarray:
+        """Root mean square error on walkers left out, in units of the trait."""
+        rmse = root_mean_squared_error(self._traits, self.held_out, multioutput="raw_values")
+        return np.asarray(rmse)
+
+    @property
+    def r2(self) -> np.ndarray:
+        """Share of variance predicted on walkers left out; below 0 where the mean does better."""
+        return np.asarray(r2_score(self._traits, self.held_out, multioutput="raw_values"))
+
+    @property
+    def trained_r2(self) -> np.ndarray:
+        """Share of variance predicted on walkers trained on."""
+        return np.asarray(r2_score(self._traits, self.trained, multioutput="raw_values"))
+
+    @property
+    def correlation(self) -> np.ndarray:
+        """Correlation of trait and prediction over walkers left out; NaN where all are alike.
+
+        Without any relation it is below 0: leaving a walker out moves the mean of the others away
+        from it.
+        """
+        return np.array([correlation(self.y, column) for column in self.held_out.T])
+
+    @property
+    def best_n(self) -> int:
+        """Fewest components with the least error on walkers left out.
+
+        It is chosen on the curve itself, so the error there is too small: see `nested_regression`.
+        """
+        return int(self.rmse.argmin()) + 1
+
+    @property
+    def _traits(self) -> np.ndarray:
+        return np.broadcast_to(self.y[:, None], self.held_out.shape)
+
+
+def correlation(a: np.ndarray, b: np.ndarray) -> float:
+    """Return Pearson's correlation of two arrays; NaN where one does not vary."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConstantInputWarning)
+        return float(pearsonr(a, b)[0])
 
 
 def jackknife_curves(
@@ -97,9 +172,11 @@ def jackknife_curves(
 ) -> JackknifeCurves:
     """Return the separation and generalisation curves of a classifier of walkers.
 
-    Each walker is left out in turn; average, standardisation, eigenwalkers (eq. 9), discriminant
-    and the order of components are found from the others, and the walker is classified by its sum
-    over 1, 2, ... components (Troje 2002, "single-elimination jack-knife").
+    Each walker is left out in turn. Average, standardisation, eigenwalkers, discriminant and the
+    order of components are found from the others, and the walker is classified by its sum over 1,
+    2, ... components. Each number of components equals
+    ``make_pipeline(WalkerSpace(), DiscriminantClassifier(n))`` in a leave-one-out cross-validation;
+    this is faster.
 
     Parameters
     ----------
@@ -114,23 +191,32 @@ def jackknife_curves(
     fit_intercept : bool
         As in `DiscriminantClassifier`.
     scale_in_fold : bool
-        Whether to standardise anew without the walker left out (A8). Doing it once for all lets
-        the scale, though no class, of the walker left out leak in.
+        Whether to standardise anew without the walker left out. Standardising once for all lets
+        its scale, though not its class, leak into the training.
     groups : array of shape (walker,), optional
-        Who each row is: persons with several trials are left out with all of them.
+        The person of each row: persons with several trials are left out with all of them.
     progress : callable, optional
-        Called with the folds done and all folds.
+        Called with the number of folds done and of all folds.
 
     Returns
     -------
     JackknifeCurves
-        Where a fold has fewer components than others (walkers that are twins), its last sum holds.
+        Where a fold has fewer components than others (identical walkers), its last sum holds.
 
     Raises
     ------
     ValueError
         If there are fewer than three walkers or groups, no two classes, no feature that varies,
         or missing numbers.
+
+    See Also
+    --------
+    regression_curves : The same for a trait that is a number.
+    nested_leave_one_out : Errors when the number of components is not chosen on them.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 11, "single-elimination jack-knife", fig. 4.
 
     Examples
     --------
@@ -147,113 +233,10 @@ def jackknife_curves(
     True
 
     """
-    walkers, r, folds = checked_classes(X, y, groups)
-    with one_blas_thread():
-        table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
-        trained = _trained_sums(table, order)
-        held_out = _held_out_sums(table, folds, order, progress)
-    trained = trained[: len(held_out)]
-    if fit_intercept:
-        trained = trained + r.mean()
-        held_out = held_out + _levels_without(table, folds)
-    return JackknifeCurves(y=r, trained=trained.T, held_out=held_out.T)
-
-
-def _trained_sums(table: LeaveOut, order: Order) -> np.ndarray:
-    """Sums of eq. 11 of the walkers trained on: shape (component, walker)."""
-    everyone = table.all_kept()
-    lengths, c = everyone.lengths[:, None], everyone.c
-    return discriminant_sums(lengths, c, everyone.scores, order)
-
-
-def _held_out_sums(
-    table: LeaveOut, folds: Sequence[np.ndarray], order: Order, progress: Progress | None
-) -> np.ndarray:
-    """Sums of eq. 11 of each walker in its own fold: shape (component, walker)."""
-    shape = (min(table.Y.shape), len(table.Y))
-    lengths, c, scores = np.zeros((3, *shape))
-    n_most = 0
-    for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
-        n = len(fold.lengths)
-        lengths[:n, out] = fold.lengths[:, None]
-        c[:n, out] = fold.c
-        scores[:n, out] = fold.scores
-        n_most = max(n_most, n)
-    return discriminant_sums(lengths[:n_most], c[:n_most], scores[:n_most], order)
-
-
-@dataclass(frozen=True, eq=False)
-class RegressionCurves:
-    """How well a continuous trait is told, over the number of components (W8).
-
-    Parameters
-    ----------
-    y : array of shape (walker,)
-        The trait.
-    trained : array of shape (walker, component)
-        As told by 1, 2, ... components of all walkers.
-    held_out : array of shape (walker, component)
-        As told by the others when the walker is left out.
-
-    """
-
-    y: np.ndarray
-    trained: np.ndarray
-    held_out: np.ndarray
-
-    @property
-    def n_components(self) -> np.ndarray:
-        """1, 2, ...: the abscissa of the curves."""
-        return np.arange(1, self.held_out.shape[1] + 1)
-
-    @property
-    def rmse(self) -> np.ndarray:
-        """Root mean square error on walkers left out, in units of the trait."""
-        return root_mean_square_error(self.y, self.held_out)
-
-    @property
-    def r2(self) -> np.ndarray:
-        """Share of variance told on walkers left out; below 0 where the mean tells more."""
-        return share_told(self.y, self.held_out)
-
-    @property
-    def trained_r2(self) -> np.ndarray:
-        """Share of variance told on walkers trained on."""
-        return share_told(self.y, self.trained)
-
-    @property
-    def correlation(self) -> np.ndarray:
-        """Correlation of trait and prediction over walkers left out.
-
-        Chance is below 0: leaving a walker out moves the mean of the others away from it.
-        """
-        return correlation_with(self.y, self.held_out)
-
-    @property
-    def best_n(self) -> int:
-        """Fewest components with the least error on walkers left out.
-
-        Chosen on the curve itself, so the error there flatters: see `nested_regression`.
-        """
-        return int(self.rmse.argmin()) + 1
-
-
-def root_mean_square_error(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Return the error of predictions of shape (walker, component), in units of the trait y."""
-    return np.sqrt(((predicted - y[:, None]) ** 2).mean(axis=0))
-
-
-def share_told(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Return the share of the variance of y that predictions of (walker, component) tell (R2)."""
-    return 1 - root_mean_square_error(y, predicted) ** 2 / y.var()
-
-
-def correlation_with(y: np.ndarray, predicted: np.ndarray) -> np.ndarray:
-    """Return how predictions of (walker, component) correlate with y; NaN if they are all alike."""
-    about = predicted - predicted.mean(axis=0)
-    spread = about.std(axis=0) * y.std()
-    product = (about * (y - y.mean())[:, None]).mean(axis=0)
-    return np.divide(product, spread, out=np.full(len(spread), np.nan), where=spread > 0)
+    task = class_task(X, y, groups)
+    return JackknifeCurves(
+        task.y, *_predictions(task, scale, order, scale_in_fold, progress, fit_intercept)
+    )
 
 
 def regression_curves(
@@ -266,10 +249,10 @@ def regression_curves(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> RegressionCurves:
-    """Return how well a continuous trait is told of walkers left out (W8).
+    """Return how well a trait that is a number is predicted for walkers left out.
 
     As `jackknife_curves`, with the trait about its mean for r; the mean of the walkers trained on
-    is given back.
+    is added to the prediction.
 
     Parameters
     ----------
@@ -287,6 +270,10 @@ def regression_curves(
     ValueError
         As `jackknife_curves`, or if the trait does not vary.
 
+    References
+    ----------
+    Troje (2002), The little difference.
+
     Examples
     --------
     >>> walkers = np.random.default_rng(0).normal(size=(30, 3))
@@ -296,24 +283,45 @@ def regression_curves(
     (3, np.float64(1.0))
 
     """
-    walkers, trait, folds = checked_trait(X, y, groups)
-    r = trait - trait.mean()
-    with one_blas_thread():
-        table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
-        fitted = _trained_sums(table, order)
-        predicted = _held_out_sums(table, folds, order, progress)
-    level = trait.mean() + _levels_without(table, folds)
-    n_components = len(predicted)
+    task = number_task(X, y, groups)
     return RegressionCurves(
-        y=trait,
-        trained=(trait.mean() + fitted[:n_components]).T,
-        held_out=(level + predicted).T,
+        task.y, *_predictions(task, scale, order, scale_in_fold, progress, fit_intercept=True)
     )
 
 
-def _levels_without(table: LeaveOut, folds: Sequence[np.ndarray]) -> np.ndarray:
-    """Mean of r over the walkers kept when each is left out."""
-    levels = np.empty(len(table.R))
-    for out in folds:
-        levels[out] = table.level_without(out)
-    return levels
+def _predictions(
+    task: Task,
+    scale: Scale,
+    order: Order,
+    scale_in_fold: bool,
+    progress: Progress | None,
+    fit_intercept: bool,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Predictions by 1, 2, ... components, of walkers trained on and left out: each (walker, n)."""
+    with one_blas_thread():
+        svd = task.leave_out_svd(task.r[:, None], scale, scale_in_fold)
+        trained = svd.of_all_walkers().sums(order)
+        held_out = _held_out_sums(svd, task.folds, order, progress)
+    trained = trained[: len(held_out)]
+    if fit_intercept:
+        means = np.empty(len(task.y))
+        for out in task.folds:
+            means[out] = svd.training_mean(out)
+        trained = trained + task.y.mean()
+        held_out = held_out + (task.offset + means)
+    return trained.T, held_out.T
+
+
+def _held_out_sums(
+    svd: LeaveOutSVD, folds: Sequence[np.ndarray], order: Order, progress: Progress | None
+) -> np.ndarray:
+    """Sums of eq. 11 of each walker in its own fold: shape (component, walker)."""
+    singular_values, c, scores = np.zeros((3, min(svd.Y.shape), len(svd.Y)))
+    n_most = 0
+    for out, fold in ticked(svd.leaving_out(folds), len(folds), progress):
+        n = len(fold.singular_values)
+        singular_values[:n, out] = fold.singular_values[:, None]
+        c[:n, out] = fold.c
+        scores[:n, out] = fold.scores
+        n_most = max(n_most, n)
+    return discriminant_sums(singular_values[:n_most], c[:n_most], scores[:n_most], order)

@@ -1,36 +1,27 @@
-"""Errors that no choice has flattered: nested leave-one-out and a permutation test (A14)."""
+"""Errors that no choice makes too small: nested leave-one-out, and a permutation test."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
+from sklearn.metrics import r2_score, root_mean_squared_error
 
-from eigenwalker.analysis._leave_out import (
-    LeaveOut,
-    checked_classes,
-    checked_trait,
-    discriminant_sums,
-    members,
-)
+from eigenwalker.analysis._task import Task, class_task, number_task, rows_of_groups
 from eigenwalker.analysis.discriminant import Order
-from eigenwalker.analysis.jackknife import correlation_with, root_mean_square_error, share_told
+from eigenwalker.analysis.jackknife import correlation
 from eigenwalker.analysis.walker_space import Scale
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.progress import Progress, ticked
 
 RandomState = int | np.random.Generator | None
 
-_Loss = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-"""What sums of eq. 11 of shape (component, ...) cost, given r and the mean r of those kept."""
-
 
 @dataclass(frozen=True, eq=False)
 class NestedErrors:
-    """Errors of a classifier whose number of components was chosen without the walker judged.
+    """Errors of a classifier whose number of components is chosen without the walker predicted.
 
     Parameters
     ----------
@@ -52,14 +43,14 @@ class NestedErrors:
 
 @dataclass(frozen=True, eq=False)
 class NestedRegression:
-    """A continuous trait, told with a number of components chosen without the walker judged.
+    """Predictions of a trait with a number of components chosen without the walker predicted.
 
     Parameters
     ----------
     y : array of shape (walker,)
         The trait.
     held_out : array of shape (walker,)
-        As told by the others.
+        Prediction for each walker left out.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
 
@@ -72,17 +63,17 @@ class NestedRegression:
     @property
     def rmse(self) -> float:
         """Root mean square error, in units of the trait."""
-        return float(root_mean_square_error(self.y, self.held_out[:, None])[0])
+        return float(root_mean_squared_error(self.y, self.held_out))
 
     @property
     def r2(self) -> float:
-        """Share of variance told; below 0 where the mean of all walkers tells more."""
-        return float(share_told(self.y, self.held_out[:, None])[0])
+        """Share of variance predicted; below 0 where the mean of all walkers does better."""
+        return float(r2_score(self.y, self.held_out))
 
     @property
     def correlation(self) -> float:
-        """Correlation of trait and prediction; chance is below 0, as in `RegressionCurves`."""
-        return float(correlation_with(self.y, self.held_out[:, None])[0])
+        """Correlation of trait and prediction; see `RegressionCurves.correlation`."""
+        return correlation(self.y, self.held_out)
 
 
 def nested_leave_one_out(
@@ -95,21 +86,26 @@ def nested_leave_one_out(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> NestedErrors:
-    """Return the errors on walkers left out when they have no say in the number of components.
+    """Return the errors on walkers left out that have no part in choosing the number of components.
 
-    The least of a generalisation curve flatters, since the number of components was picked for it.
-    Here a jack-knife of the other walkers picks the number for each walker left out (A14); of
-    equally good ones the fewest.
+    The least error of a generalisation curve is too small, since the number of components was
+    chosen for it. Here a jack-knife of the other walkers chooses the number for each walker left
+    out; among equally good numbers the smallest.
 
     Parameters
     ----------
     X, y, scale, order, scale_in_fold, groups, progress
         As in `jackknife_curves`. Every pair of walkers is left out once, so n walkers take
-        n (n + 1) / 2 folds; `progress` is told of the pairs.
+        n (n + 1) / 2 folds; `progress` counts the pairs.
 
     Returns
     -------
     NestedErrors
+
+    See Also
+    --------
+    nested_regression : The same for a trait that is a number.
+    permutation_test : How often random classes reach as few errors.
 
     Examples
     --------
@@ -120,11 +116,9 @@ def nested_leave_one_out(
     0
 
     """
-    walkers, r, folds = checked_classes(X, y, groups, least_folds=4)
-    with one_blas_thread():
-        table = LeaveOut.of(walkers, r[:, None], scale=scale, scale_in_fold=scale_in_fold)
-        sums, chosen_n = _nested(table, folds, order, _misses, progress)
-    return NestedErrors(misclassified=r * sums <= 0, chosen_n=chosen_n)
+    task = class_task(X, y, groups, least_folds=4)
+    held_out, chosen_n = _nested(task, scale, order, scale_in_fold, progress)
+    return NestedErrors(task.y * held_out <= 0, chosen_n)
 
 
 def nested_regression(
@@ -137,10 +131,10 @@ def nested_regression(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> NestedRegression:
-    """Return how well a trait is told of walkers with no say in the number of components (W8).
+    """Return predictions of a trait for walkers with no part in choosing the number of components.
 
-    As `nested_leave_one_out`: for each walker left out the number with the least root mean square
-    error in a jack-knife of the others is taken (A14).
+    As `nested_leave_one_out`: for each walker left out, the number with the least root mean square
+    error in a jack-knife of the others is taken.
 
     Parameters
     ----------
@@ -160,40 +154,41 @@ def nested_regression(
     (1.0, {3})
 
     """
-    walkers, trait, folds = checked_trait(X, y, groups, least_folds=4)
-    r = (trait - trait.mean())[:, None]
-    with one_blas_thread():
-        table = LeaveOut.of(walkers, r, scale=scale, scale_in_fold=scale_in_fold)
-        sums, chosen_n = _nested(table, folds, order, _squared_errors, progress)
-    for out in folds:
-        sums[out] += trait.mean() + table.level_without(out)
-    return NestedRegression(y=trait, held_out=sums, chosen_n=chosen_n)
+    task = number_task(X, y, groups, least_folds=4)
+    sums, chosen_n = _nested(task, scale, order, scale_in_fold, progress, fit_intercept=True)
+    return NestedRegression(task.y, sums, chosen_n)
 
 
 def _nested(
-    table: LeaveOut,
-    folds: Sequence[np.ndarray],
+    task: Task,
+    scale: Scale,
     order: Order,
-    loss: _Loss,
+    scale_in_fold: bool,
     progress: Progress | None,
+    *,
+    fit_intercept: bool = False,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Sum of eq. 11 of each walker over the components that the others chose, and their number."""
-    inner = np.zeros((len(folds), min(table.Y.shape)))
+    """Prediction of each walker with the components that the others choose, and their number."""
+    folds = task.folds
     pairs = list(combinations(range(len(folds)), 2))
     both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
-    steps = ticked(table.leaving_out(both), len(pairs), progress)
-    for (first, second), (out, fold) in zip(pairs, steps, strict=True):
-        sums = discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order)
-        losses = loss(sums, table.R[out, 0], table.level_without(out))
-        of_first = len(folds[first])
-        _add(losses[:, of_first:].sum(axis=1), inner[first])
-        _add(losses[:, :of_first].sum(axis=1), inner[second])
-    chosen_sums, chosen_n = np.zeros(len(table.R)), np.zeros(len(table.R), dtype=int)
-    for losses, (out, fold) in zip(inner, table.leaving_out(folds), strict=True):
-        sums = discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, order)
-        chosen_n[out] = min(losses.argmin() + 1, len(sums))
-        chosen_sums[out] = sums[chosen_n[out[0]] - 1]
-    return chosen_sums, chosen_n
+    predictions, chosen_n = np.zeros(len(task.y)), np.zeros(len(task.y), dtype=int)
+    with one_blas_thread():
+        svd = task.leave_out_svd(task.r[:, None], scale, scale_in_fold)
+        losses_of_others = np.zeros((len(folds), min(svd.Y.shape)))
+        steps = ticked(svd.leaving_out(both), len(pairs), progress)
+        for (first, second), (out, fold) in zip(pairs, steps, strict=True):
+            losses = task.losses(fold.sums(order), task.r[out], svd.training_mean(out))
+            of_first = len(folds[first])
+            _add(losses[:, of_first:].sum(axis=1), losses_of_others[first])
+            _add(losses[:, :of_first].sum(axis=1), losses_of_others[second])
+        for losses, (out, fold) in zip(losses_of_others, svd.leaving_out(folds), strict=True):
+            sums = fold.sums(order)
+            n = min(int(losses.argmin()) + 1, len(sums))
+            chosen_n[out], predictions[out] = n, sums[n - 1]
+            if fit_intercept:
+                predictions[out] += task.offset + svd.training_mean(out)
+    return predictions, chosen_n
 
 
 def _add(losses: np.ndarray, total: np.ndarray) -> None:
@@ -202,27 +197,17 @@ def _add(losses: np.ndarray, total: np.ndarray) -> None:
     total[len(losses) :] += losses[-1]
 
 
-def _misses(sums: np.ndarray, r: np.ndarray, _level: np.ndarray) -> np.ndarray:
-    """Count a walker as missed whose sum has not the sign of its r."""
-    return r * sums <= 0
-
-
-def _squared_errors(sums: np.ndarray, r: np.ndarray, level: np.ndarray) -> np.ndarray:
-    """Return the squared error of r as told by the sums and the mean of the walkers kept."""
-    return (level + sums - r) ** 2
-
-
 @dataclass(frozen=True, eq=False)
 class PermutationTest:
-    """The least error of a generalisation curve, beside those of meaningless traits.
+    """The least error of a generalisation curve, and those of permuted traits.
 
     Parameters
     ----------
     least_error : float
-        Of the trait as it is: misclassified walkers, or, of a continuous trait, the root mean
+        Of the trait as it is: misclassified walkers, or, of a trait that is a number, the root mean
         square error in standard deviations of the trait.
     null : array of shape (permutation,)
-        Of the trait dealt out anew.
+        The same of each permuted trait.
 
     """
 
@@ -231,8 +216,8 @@ class PermutationTest:
 
     @property
     def p(self) -> float:
-        """Chance of as small an error as found, the trait as it is counted among the deals."""
-        as_small = self.null <= self.least_error * (1 + 1e-9)  # the same deal may be rounded
+        """Probability of as small an error; the trait as it is counts as a permutation."""
+        as_small = self.null <= self.least_error * (1 + 1e-9)  # equal permutations may be rounded
         return (1 + int(as_small.sum())) / (1 + len(self.null))
 
 
@@ -248,24 +233,28 @@ def permutation_test(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> PermutationTest:
-    """Return how often classes dealt out at random reach as few errors as the true ones.
+    """Return how often randomly permuted classes reach as few errors as the true ones.
 
-    The statistic is the least of the generalisation curve over all numbers of components, and it is
-    picked from each deal in the same way, so that picking it is no advantage (A14).
+    The statistic is the least error of the generalisation curve over all numbers of components. It
+    is chosen in the same way for each permutation, so choosing it is no advantage.
 
     Parameters
     ----------
     X, y, scale, order, scale_in_fold, groups, progress
-        As in `jackknife_curves`. With `groups`, classes are dealt to whole groups where each group
-        is of one class, and within groups otherwise.
+        As in `jackknife_curves`. With `groups`, classes are permuted among whole groups where each
+        group has one class, and within groups otherwise.
     n_permutations : int
-        Deals.
+        Number of permutations.
     random_state : int or numpy.random.Generator
         Seed of the permutations, or their generator.
 
     Returns
     -------
     PermutationTest
+
+    See Also
+    --------
+    regression_permutation_test : The same for a trait that is a number.
 
     Examples
     --------
@@ -275,12 +264,9 @@ def permutation_test(
     True
 
     """
-    walkers, r, folds = checked_classes(X, y, groups)
-    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(random_state))
-    with one_blas_thread():
-        table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
-        errors = _least_losses(table, folds, order, _misses, progress)
-    return PermutationTest(least_error=float(errors[0]), null=errors[1:])
+    task = class_task(X, y, groups)
+    R = _permuted_labels(task.r, groups, n_permutations, random_state)
+    return _permutation_test(task, R, scale, order, scale_in_fold, progress)
 
 
 def regression_permutation_test(
@@ -295,16 +281,17 @@ def regression_permutation_test(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> PermutationTest:
-    """Return how often a trait dealt out at random is told as well as the true one (W8).
+    """Return how often a randomly permuted trait is predicted as well as the true one.
 
     As `permutation_test`, of the least root mean square error over all numbers of components. It is
-    in standard deviations, since these change where a trait is dealt to groups of unlike size.
+    in standard deviations, since these change where a trait is permuted among groups of unequal
+    size.
 
     Parameters
     ----------
     X, y, scale, order, scale_in_fold, groups, progress
-        As in `regression_curves`. With `groups`, values are dealt to whole groups where each group
-        has one value, and within groups otherwise.
+        As in `regression_curves`. With `groups`, values are permuted among whole groups where each
+        group has one value, and within groups otherwise.
     n_permutations, random_state
         As in `permutation_test`.
 
@@ -320,37 +307,35 @@ def regression_permutation_test(
     0.005
 
     """
-    walkers, trait, folds = checked_trait(X, y, groups)
-    r = trait - trait.mean()
-    deals = _dealt_anew(r, groups, n_permutations, np.random.default_rng(random_state))
+    task = number_task(X, y, groups)
+    R = _permuted_labels(task.r, groups, n_permutations, random_state)
+    return _permutation_test(task, R, scale, order, scale_in_fold, progress)
+
+
+def _permutation_test(
+    task: Task,
+    R: np.ndarray,
+    scale: Scale,
+    order: Order,
+    scale_in_fold: bool,
+    progress: Progress | None,
+) -> PermutationTest:
     with one_blas_thread():
-        table = LeaveOut.of(walkers, deals, scale=scale, scale_in_fold=scale_in_fold)
-        squares = _least_losses(table, folds, order, _squared_errors, progress)
-    errors = np.sqrt(squares / len(r)) / deals.std(axis=0)
+        svd = task.leave_out_svd(R, scale, scale_in_fold)
+        total = np.zeros((min(svd.Y.shape), R.shape[1]))
+        for out, fold in ticked(svd.leaving_out(task.folds), len(task.folds), progress):
+            training_mean = svd.training_mean(out)
+            for walker, sums in zip(out, fold.sums_of_traits(order), strict=True):
+                _add(task.losses(sums, R[walker], training_mean), total)
+    errors = task.error(total.min(axis=0), R)
     return PermutationTest(least_error=float(errors[0]), null=errors[1:])
 
 
-def _least_losses(
-    table: LeaveOut,
-    folds: Sequence[np.ndarray],
-    order: Order,
-    loss: _Loss,
-    progress: Progress | None,
+def _permuted_labels(
+    r: np.ndarray, groups: ArrayLike | None, n_permutations: int, random_state: RandomState
 ) -> np.ndarray:
-    """Loss over all walkers left out with the number of components that is best for each trait."""
-    total = np.zeros((min(table.Y.shape), table.R.shape[1]))
-    for out, fold in ticked(table.leaving_out(folds), len(folds), progress):
-        level = table.level_without(out)
-        for walker, scores in zip(out, fold.scores.T, strict=True):
-            sums = discriminant_sums(fold.lengths[:, None], fold.c, scores[:, None], order)
-            _add(loss(sums, table.R[walker], level), total)
-    return total.min(axis=0)
-
-
-def _dealt_anew(
-    r: np.ndarray, groups: ArrayLike | None, n_permutations: int, rng: np.random.Generator
-) -> np.ndarray:
-    """Give r as it is, then in random orders: shape (walker, 1 + permutation)."""
+    """Targets as they are, then in random orders: shape (walker, 1 + permutation)."""
+    rng = np.random.default_rng(random_state)
     _, first, group = np.unique(
         np.arange(len(r)) if groups is None else np.asarray(groups),
         return_index=True,
@@ -358,9 +343,9 @@ def _dealt_anew(
     )
     of_group = r[first]
     if (of_group[group] == r).all():
-        dealt = rng.permuted(np.tile(of_group[:, None], n_permutations), axis=0)[group]
+        permuted = rng.permuted(np.tile(of_group[:, None], n_permutations), axis=0)[group]
     else:
-        dealt = np.tile(r[:, None], n_permutations)
-        for rows in members(group):
-            dealt[rows] = rng.permuted(dealt[rows], axis=0)
-    return np.column_stack([r, dealt])
+        permuted = np.tile(r[:, None], n_permutations)
+        for rows in rows_of_groups(group):
+            permuted[rows] = rng.permuted(permuted[rows], axis=0)
+    return np.column_stack([r, permuted])

@@ -104,7 +104,13 @@ def model_names(people: Path | None) -> dict[str, str]:
 
 
 def _print_result(result: Classification | Regression) -> None:
-    print(result.table_in_words().to_string(index=False))
-    print(f"\n{result.chance}")
-    if result.many_inputs:
-        print(result.many_inputs)
+    from eigenwalker.report.classification_tables import (
+        chance_sentence,
+        multiple_inputs_sentence,
+        printed_results,
+    )
+
+    print(printed_results(result).to_string(index=False))
+    print(f"\n{chance_sentence(result)}")
+    if sentence := multiple_inputs_sentence(result):
+        print(sentence)

@@ -46,8 +46,10 @@ from eigenwalker.report.blocks import (
     Text,
 )
 from eigenwalker.report.classification_tables import (
+    chance_sentence,
     gait_table,
     missed_table,
+    multiple_inputs_sentence,
     plausibility_table,
     results_table,
 )
@@ -159,14 +161,16 @@ def _lead(found: Classification | Regression) -> str:
         return (
             f"Left out one at a time, {best['errors']} of {n} walkers {are} misclassified from "
             f"everything that is known of them, with the {with_n} best; "
-            f"{best['nested errors']} when that number is chosen without them. {found.chance}"
+            f"{best['nested errors']} when that number is chosen without them. "
+            f"{chance_sentence(found)}"
         )
     best = table.iloc[0]
     return (
         f"Told from everything, {asked.trait} of {n} walkers left out one at a time correlates "
         f"with the truth at {best['correlation']:.2f} (R2 {best['R2']:.2f}) with the number of "
         f"components that does best; at {best['nested correlation']:.2f} "
-        f"(R2 {best['nested R2']:.2f}) when that number is chosen without them. {found.chance}"
+        f"(R2 {best['nested R2']:.2f}) when that number is chosen without them. "
+        f"{chance_sentence(found)}"
     )
 
 
@@ -269,8 +273,8 @@ def _model(population: Population, example: xr.DataArray | None) -> list[Block]:
 
 def _classifiers(population: Population, found: Classification | Regression) -> list[Block]:
     blocks: list[Block] = [results_table(found)]
-    if found.many_inputs:
-        blocks.append(Text(found.many_inputs))
+    if sentence := multiple_inputs_sentence(found):
+        blocks.append(Text(sentence))
     if isinstance(found, Classification):
         panels = {each.input.title: each.curves for each in found.results[:N_PANELS]}
         blocks.append(

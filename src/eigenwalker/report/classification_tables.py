@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import pandas as pd
 
 from eigenwalker.analysis.classification import N_PANELS, Classification, Regression
 from eigenwalker.analysis.plausibility import Plausibility
@@ -36,12 +37,56 @@ vary is not among them: a walker's are all the same."""
 def results_table(found: Classification | Regression) -> Table:
     """Return how well a trait is told from each input."""
     out = "persons" if found.contrast.persons is not None else "walkers"
-    words = found.table_in_words()
+    words = printed_results(found)
     return Table(
         f"Told of {out} left out one at a time",
         [str(column) for column in words],
         words.to_numpy(dtype=object).tolist(),
     )
+
+
+def printed_results(found: Classification | Regression) -> pd.DataFrame:
+    """Return the results as printed: "-" where there is nothing, p with its lower limit."""
+    least = 1 / (1 + found.n_permutations)
+
+    def printed_p(p: float) -> str:
+        if not found.n_permutations:
+            return "-"
+        return f"<= {least:.2g}" if p <= least else f"{p:.2g}"
+
+    def cell(value: object) -> str:
+        if value is None or value is pd.NA or value != value:
+            return "-"
+        return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+    table = found.table()
+    printed = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
+    return printed.assign(p=[printed_p(p) for p in table["p"]])
+
+
+def chance_sentence(found: Classification | Regression) -> str:
+    """Return what to hold the errors against: those of always giving the same answer."""
+    contrast = found.contrast
+    if isinstance(found, Regression):
+        return f"Always answering the mean has an RMSE of {contrast.y.std():.3g}."
+    sizes = [int((contrast.y < 0).sum()), int((contrast.y > 0).sum())]
+    errors = "1 error" if min(sizes) == 1 else f"{min(sizes)} errors"
+    sentence = f"Always answering the more frequent class makes {errors}."
+    if sizes[0] == sizes[1]:
+        return sentence
+    return (
+        f"{sentence} The classes are of unequal size ({contrast.negative} {sizes[0]}, "
+        f"{contrast.positive} {sizes[1]}), and the discriminant has no constant (eq. 11), "
+        "which suits classes of equal size."
+    )
+
+
+def multiple_inputs_sentence(found: Classification | Regression) -> str:
+    """Return what to mind of so many values of p; empty where there is one."""
+    if len(found.results) < 2 or not found.n_permutations:
+        return ""
+    n_inputs = len(found.results)
+    return f"There are {n_inputs} inputs: a p of 0.05 somewhere is to be expected by chance."
 
 
 def gait_table(walkers: Mapping[str, Walker]) -> Table:
