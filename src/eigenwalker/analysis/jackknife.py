@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -156,7 +157,8 @@ def correlation(a: np.ndarray, b: np.ndarray) -> float:
     """Return Pearson's correlation of two arrays; NaN where one does not vary."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConstantInputWarning)
-        return float(pearsonr(a, b)[0])
+        result: Any = pearsonr(a, b)  # scipy is untyped
+        return float(result.statistic)
 
 
 def jackknife_curves(
