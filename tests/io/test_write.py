@@ -369,3 +369,8 @@ def test_convert_writes_markers_or_joints(captures: Path, tmp_path: Path, run_co
     assert {*JOINTS.markers, "left_toe"} <= set(joints.marker.values)
     bones = read_mocap(tmp_path / "walk.bvh", unit="cm").sel(marker=joints.marker.values)
     assert np.abs(bones.values - joints.values).max() < 25
+
+
+def test_the_name_in_a_trc_file_is_that_of_the_file(walk, tmp_path: Path):
+    path = write_mocap(walk, tmp_path / "walk.trc")
+    assert path.read_text().splitlines()[0].split("\t")[3] == "walk.trc"

@@ -19,7 +19,7 @@ TOO_LARGE = 4
 """The function needs more memory than it may have, or returns more bytes."""
 
 
-def main(module: str, function: str, seconds: int, max_bytes: int, *arguments: str) -> int:
+def main(module: str, function: str, seconds: str, max_bytes: str, *arguments: str) -> int:
     """Return the exit status after one call."""
     with os.fdopen(os.dup(1), "wb") as output:
         os.dup2(2, 1)  # what libraries print does not mix with the result
@@ -29,14 +29,14 @@ def main(module: str, function: str, seconds: int, max_bytes: int, *arguments: s
             assert spec.loader is not None
             job = importlib.util.module_from_spec(spec)
             spec.loader.exec_module(job)
-            limit_process(seconds, max_bytes)
+            limit_process(int(seconds), int(max_bytes))
             result: bytes = getattr(job, function)(*arguments)
         except MemoryError:
             return TOO_LARGE
         except Exception as error:  # damaged files make readers raise anything
             output.write((str(error) or type(error).__name__).encode(errors="replace"))
             return REFUSED if isinstance(error, ValueError) else FAILED
-        if len(result) > max_bytes:
+        if len(result) > int(max_bytes):
             return TOO_LARGE
         output.write(result)
     return 0
@@ -60,4 +60,4 @@ def limit_process(seconds: int, max_bytes: int) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:3], int(sys.argv[3]), int(sys.argv[4]), *sys.argv[5:]))
+    sys.exit(main(*sys.argv[1:]))

@@ -1,15 +1,15 @@
-"""One function for all formats: the suffix decides who writes."""
+"""One function for all formats: the suffix of the file decides which writer takes it."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 import xarray as xr
 
+from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.trajectories import MILLIMETRES, check_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker
 from eigenwalker.io.up_axis_and_unit import turn_upright
@@ -17,33 +17,34 @@ from eigenwalker.io.writers.bvh import write_bvh
 from eigenwalker.io.writers.c3d import write_c3d
 from eigenwalker.io.writers.csv_trc import write_csv, write_trc
 from eigenwalker.io.writers.netcdf import write_netcdf
-from eigenwalker.io.writers.sampled_walk import RATE_HZ, captured, played
+from eigenwalker.io.writers.sampled_walk import RATE_HZ, sampled_walk, with_progress
 
 Up = Literal["y", "z"]
 
 
 class Format(NamedTuple):
-    """A kind of file: what it is called, its usual unit and upward axis, and who writes it."""
+    """A format that is written: its usual unit and upward axis, and its writer."""
 
-    name: str
     unit: str
     up: Up
     write: Callable[[xr.DataArray, str, Up, Path], None]
 
 
 FORMATS = {
-    ".bvh": Format("BVH", "cm", "y", write_bvh),
-    ".c3d": Format("C3D", "mm", "z", write_c3d),
-    ".csv": Format("CSV", "mm", "z", write_csv),
-    ".nc": Format("NetCDF", "mm", "z", write_netcdf),
-    ".trc": Format("TRC", "mm", "y", write_trc),
+    ".bvh": Format("cm", "y", write_bvh),
+    ".c3d": Format("mm", "z", write_c3d),
+    ".csv": Format("mm", "z", write_csv),
+    ".nc": Format("mm", "z", write_netcdf),
+    ".trc": Format("mm", "y", write_trc),
 }
-"""Every format that is written. A writer takes positions, in the unit and frame of the file, the
-unit, the upward axis, and where to write."""
+"""Every format that is written, by suffix.
+
+A writer takes positions in the unit and frame of the file, the unit, the upward axis, and the path.
+"""
 
 
 def write_mocap(
-    walk: xr.DataArray | Walker,
+    trajectories: xr.DataArray | Walker,
     path: str | os.PathLike[str],
     *,
     n_strides: int | None = None,
@@ -56,7 +57,7 @@ def write_mocap(
     """Write trajectories, or a walker that walks, as a file of motion capture.
 
     ======= ==== == ========================================================================
-    suffix  unit up what stands in it
+    suffix  unit up content
     ======= ==== == ========================================================================
     .bvh    cm   y  a skeleton with constant bones, from the 15 joints (see `constant_bones`)
     .c3d    mm   z  the markers, as 4-byte floats
@@ -69,14 +70,14 @@ def write_mocap(
 
     Parameters
     ----------
-    walk : DataArray of shape (time, marker, axis), or Walker
-        Trajectories in millimetres; NaN is missing, which BVH cannot hold.
+    trajectories : DataArray of shape (time, marker, axis), or Walker
+        Positions in millimetres; NaN is missing, which BVH cannot hold.
     path : str or path
         File to write, or to replace.
     n_strides : int, optional
-        How long a walker walks, in strides; 4 if neither this nor `duration_s` is given.
+        Length of a walker's walk in strides; 4 if neither this nor `duration_s` is given.
     duration_s : float, optional
-        The same in seconds.
+        Its length in seconds.
     rate_hz : float, optional
         Frames a second of a walker; 120 if left out.
     overground : bool
@@ -99,6 +100,10 @@ def write_mocap(
     FileNotFoundError
         If the folder does not exist.
 
+    See Also
+    --------
+    read_mocap : Reads these files back.
+
     Examples
     --------
     >>> from pathlib import Path
@@ -117,45 +122,38 @@ def write_mocap(
 
     """
     path = Path(path)
-    form = _form_of(path)
+    form = _format_of(path)
     unit, up = unit or form.unit, up or form.up
     if unit not in MILLIMETRES:
         raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
     if up not in ("y", "z"):
         raise ValueError(f"up={up!r} is not known; give 'y' or 'z'.")
-    if isinstance(walk, Walker):
-        walk = played(
-            walk, n_strides=n_strides, duration_s=duration_s, rate_hz=rate_hz or RATE_HZ,
+    if isinstance(trajectories, Walker):
+        walk = sampled_walk(
+            trajectories,
+            n_strides=n_strides,
+            duration_s=duration_s,
+            rate_hz=rate_hz or RATE_HZ,
             overground=overground,
-        )  # fmt: skip
+        )
+    elif (n_strides, duration_s, rate_hz) != (None, None, None):
+        raise ValueError(
+            "n_strides, duration_s and rate_hz are for walkers; these are trajectories, which are "
+            "written as they are."
+        )
     else:
-        if (n_strides, duration_s, rate_hz) != (None, None, None):
-            raise ValueError(
-                "n_strides, duration_s and rate_hz are for walkers; these are trajectories, which "
-                "are written as they are."
-            )
-        walk = captured(check_trajectories(walk), overground=overground)
-    sampling_rate(walk)
-    turned = walk.copy(data=walk.values @ turn_upright(up) / MILLIMETRES[unit])
-    with _appearing(path) as unfinished:
+        walk = check_trajectories(trajectories)
+        walk = with_progress(walk) if overground else walk
+    sampling_rate(walk)  # which refuses uneven times
+    turned = walk.copy(data=walk.values @ turn_upright(up) / MILLIMETRES[unit]).rename(path.name)
+    with atomic_write(path) as unfinished:
         form.write(turned, unit, up, unfinished)
     return path
 
 
-def _form_of(path: Path) -> Format:
+def _format_of(path: Path) -> Format:
     if path.suffix.lower() not in FORMATS:
         raise ValueError(f"{path.name!r} must end in one of {sorted(FORMATS)} to hold a capture.")
     if not path.parent.is_dir():
         raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
     return FORMATS[path.suffix.lower()]
-
-
-@contextmanager
-def _appearing(path: Path) -> Iterator[Path]:
-    """Where to write what then appears at `path`, whole or, after an error, not at all."""
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        yield unfinished
-        os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)

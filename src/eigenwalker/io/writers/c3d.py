@@ -1,4 +1,4 @@
-"""C3D files: the samples of markers, as most laboratories keep them."""
+"""C3D files: trajectories of markers, as most laboratories keep them."""
 
 from __future__ import annotations
 
@@ -11,16 +11,15 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import sampling_rate
 
-MOST_MARKERS = 255
-"""As many names as one list of the format holds."""
-LONGEST_NAME = 127
+MAX_MARKERS = 255
+"""Names that one list of the format holds."""
+MAX_NAME_LENGTH = 127
 
 
 def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     """Write a C3D file of 4-byte floats, Intel.
 
-    The first frame is that of the capture's clock, frame 1 being at 0 s; a time between two frames,
-    or before 0 s, the format cannot hold.
+    Frame 1 is at 0 s. The format cannot hold a start between two frames or before 0 s.
 
     Parameters
     ----------
@@ -39,10 +38,10 @@ def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     """
     names = [str(name).encode() for name in walk.marker.values]
     width = max(map(len, names))
-    if len(names) > MOST_MARKERS or width > LONGEST_NAME:
+    if len(names) > MAX_MARKERS or width > MAX_NAME_LENGTH:
         raise ValueError(
-            f"A C3D file is written with {MOST_MARKERS} markers at most, whose names have up to "
-            f"{LONGEST_NAME} bytes; here are {len(names)}, with up to {width}. "
+            f"A C3D file is written with {MAX_MARKERS} markers at most, whose names have up to "
+            f"{MAX_NAME_LENGTH} bytes; here are {len(names)}, with up to {width}. "
             "Take some of them, or rename them, or write .csv or .nc."
         )
     rate_hz = sampling_rate(walk)

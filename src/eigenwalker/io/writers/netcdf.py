@@ -12,9 +12,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
-
-FORMAT = "eigenwalker trajectories"
-VERSION = 1
+from eigenwalker.io.readers.netcdf import FORMAT, VERSION
 
 
 def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
@@ -32,7 +30,7 @@ def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     Raises
     ------
     ValueError
-        If another unit or axis is asked for.
+        If unit or axis is another one.
 
     """
     if (unit, up) != ("mm", "z"):

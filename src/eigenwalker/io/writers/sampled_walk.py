@@ -1,4 +1,4 @@
-"""Walks laid out in time, as files hold them: a walker played, forward progress put back."""
+"""Walks as files hold them: a walker sampled in time, and its forward progress."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import Walker
 
 RATE_HZ = 120.0
-"""Frames a second where none are asked for, those of the captures in Troje (2002)."""
+"""Frames a second if none are named: those of the captures in Troje (2002)."""
 N_STRIDES = 4
-MOST_FRAMES = 10_000_000
+MAX_FRAMES = 10_000_000
 
 
-def played(
+def sampled_walk(
     walker: Walker,
     *,
     n_strides: int | None = None,
@@ -27,11 +27,11 @@ def played(
     Parameters
     ----------
     walker : Walker
-        Who walks.
+        The walker.
     n_strides : int, optional
-        How long, to the nearest frame; 4 if neither this nor `duration_s` is given.
+        Length in strides, to the nearest frame; 4 if neither this nor `duration_s` is given.
     duration_s : float, optional
-        The same in seconds.
+        Length in seconds.
     rate_hz : float
         Frames a second.
     overground : bool
@@ -50,7 +50,7 @@ def played(
     Examples
     --------
     >>> walker = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 2.0, speed_mm_s=1000)
-    >>> walk = played(walker, n_strides=1, rate_hz=8, overground=True)
+    >>> walk = sampled_walk(walker, n_strides=1, rate_hz=8, overground=True)
     >>> walk.sel(marker="foot", axis="x").values.tolist()
     [0.0, 125.0, 250.0, 375.0]
 
@@ -60,39 +60,26 @@ def played(
     if duration_s is None:
         n_strides = N_STRIDES if n_strides is None else n_strides
         duration_s = n_strides * walker.period_s
-    if not duration_s > 0 or not rate_hz > 0 or not 2 <= duration_s * rate_hz <= MOST_FRAMES:
+    if not duration_s > 0 or not rate_hz > 0 or not 2 <= duration_s * rate_hz <= MAX_FRAMES:
         raise ValueError(
             f"{duration_s:g} s at {rate_hz:g} Hz are {duration_s * rate_hz:g} frames; "
-            f"choose 2 to {MOST_FRAMES} of them."
+            f"choose 2 to {MAX_FRAMES} of them."
         )
     time = np.arange(round(duration_s * rate_hz)) / rate_hz
     walk = walker.trajectories(walker.time_origin_s + time).assign_coords(time=time)
     walk.attrs["speed_mm_s"] = walker.speed_mm_s
-    return captured(walk, overground=overground)
+    return with_progress(walk) if overground else walk
 
 
-def captured(walk: xr.DataArray, *, overground: bool = False) -> xr.DataArray:
-    """Return trajectories in place as they are, or walking forward with their ``speed_mm_s``.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        Millimetres.
-    overground : bool
-        Whether to put the progress back that `in_place` took out.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
+def with_progress(walk: xr.DataArray) -> xr.DataArray:
+    """Return trajectories in place as a walk forward with their ``attrs["speed_mm_s"]``.
 
     Raises
     ------
     ValueError
-        If progress is to be put back and the speed is not known.
+        If the speed is not known.
 
     """
-    if not overground:
-        return walk
     speed = float(walk.attrs.get("speed_mm_s", np.nan))
     if not np.isfinite(speed):
         raise ValueError(
