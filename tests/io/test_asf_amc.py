@@ -15,7 +15,7 @@ from eigenwalker.io.capture_file import RateAssumed
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.acclaim_grammar import parse_amc, parse_asf
-from eigenwalker.io.readers.asf_amc import find_skeleton, looks_like_acclaim
+from eigenwalker.io.readers.asf_amc import find_skeleton
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
 from eigenwalker.markers.virtual_markers import virtual_markers
 
@@ -390,11 +390,3 @@ def test_damaged_files_end_in_data_or_the_one_error(tmp_path):
                 assert np.isfinite(walk.values).all()
                 outcomes.add("read")
     assert outcomes == {"read", "refused"}
-
-
-def test_motions_and_skeletons_are_known_by_their_first_keyword():
-    assert looks_like_acclaim(AMC.encode())
-    assert looks_like_acclaim(ASF.encode())
-    assert looks_like_acclaim(b"\xef\xbb\xbf# note\r\n#\r\n:degrees\r\n1\r\n")
-    for other in (b"", b"HIERARCHY", b"#" * 5000, b": a colon", b":other\n", b"1\nroot 0 0 0"):
-        assert not looks_like_acclaim(other)

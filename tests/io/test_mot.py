@@ -8,7 +8,7 @@ import pytest
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.readers.mot import looks_like_mot, read_mot
+from eigenwalker.io.readers.mot import read_mot
 
 
 def _sto(walk, *, suffix="_t{}", vectors=False, head="") -> str:
@@ -79,22 +79,3 @@ def test_what_is_wrong_is_told(text_walk, old, new, told):
     assert old in text
     with pytest.raises(UnreadableFile, match=told):
         _read(text.replace(old, new, 1))
-
-
-def test_damaged_files_end_in_data_or_the_one_error(text_walk, damaged):
-    whole = _sto(text_walk.isel(time=slice(20, 35), marker=slice(0, 5))).encode()
-    outcomes = set()
-    for content in damaged(whole, 300):
-        try:
-            walk = _read(content)
-        except UnreadableFile:
-            outcomes.add("refused")
-        else:
-            assert not np.isinf(walk.values).any()
-            outcomes.add("read")
-    assert outcomes == {"read", "refused"}
-
-
-def test_the_end_of_the_header_marks_the_format():
-    assert looks_like_mot(b"a\nendheader\r\ntime")
-    assert not looks_like_mot(b"the endheader is missing")

@@ -8,7 +8,7 @@ import pytest
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.readers.qualisys_tsv import looks_like_qualisys_tsv, read_qualisys_tsv
+from eigenwalker.io.readers.qualisys_tsv import read_qualisys_tsv
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
 
 
@@ -84,25 +84,6 @@ def test_what_is_wrong_is_told(text_walk, old, new, told):
     assert old in text
     with pytest.raises(UnreadableFile, match=told):
         _read(text.replace(old, new, 1))
-
-
-def test_damaged_files_end_in_data_or_the_one_error(text_walk, damaged):
-    whole = _tsv(text_walk.isel(time=slice(8, 24), marker=slice(0, 5))).encode()
-    outcomes = set()
-    for content in damaged(whole, 300):
-        try:
-            walk = _read(content)
-        except UnreadableFile:
-            outcomes.add("refused")
-        else:
-            assert not np.isinf(walk.values).any()
-            outcomes.add("read")
-    assert outcomes == {"read", "refused"}
-
-
-def test_the_first_key_marks_the_format():
-    assert looks_like_qualisys_tsv(b"\xef\xbb\xbfNO_OF_FRAMES\t3")
-    assert not looks_like_qualisys_tsv(b"FRAMES\t3")
 
 
 def test_a_table_in_another_unit_than_the_usual_is_guessed_aloud(text_walk):

@@ -76,7 +76,11 @@ def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
     if rate_hz is None and "rate_hz" in described:
         rate_hz = parse_rate(f"{described['rate_hz']}", "rate_hz", described.name)
     if values.time is not None:
-        positions, rate_hz, start_s = on_even_clock(positions, values.time, file.name, rate_hz)
+        try:
+            positions, rate_hz, start_s = on_even_clock(positions, values.time, file.name, rate_hz)
+        except UnreadableFile:
+            if file.rate_hz is None and file.default_rate_hz is None:
+                raise  # else the rate that the caller names replaces times that do not fit it
     rate_hz = rate_hz or file.default_rate_hz
     if rate_hz is None:
         raise described.error("rate_hz or time_column", "neither", "add the frames a second")
