@@ -24,7 +24,7 @@ import eigenwalker as ew
 from eigenwalker.explorer import app as explorer_app, tasks
 from eigenwalker.explorer.app import make_app
 from eigenwalker.simulation.people import simulate_population
-from eigenwalker.study.walker_from_file import walker_from_file
+from eigenwalker.study.process_capture import process_capture
 from eigenwalker.web import upload
 from eigenwalker.web.host_check import HEADERS
 from eigenwalker.web.run import address_of, listening_socket
@@ -97,7 +97,7 @@ def test_nothing_else_is_there(client, path):
 def test_a_capture_becomes_a_walker_of_the_population(client, people, capture_file):
     answer = client.post("/api/capture?name=../walk.c3d", content=capture_file.read_bytes())
     told = answer.json()
-    vector = people.vector(walker_from_file(capture_file)[0])
+    vector = people.vector(process_capture(capture_file).walker)
     assert (told["name"], told["verdict"], told["flag"]) == ("walk.c3d", "use", "")
     np.testing.assert_allclose(told["vector"], vector, atol=1e-9)
     assert re.match(r"\d+ strides in 6 s at 0\.\d\d Hz", told["messages"][0])
@@ -144,7 +144,7 @@ def test_a_population_is_loaded_and_captures_are_compared_with_it(client, captur
     assert (answer["model"]["n_walkers"], answer["model"]["title"]) == (6, "others")
     query = {"name": "walk.c3d", "population": answer["model"]["population"]}
     told = client.post("/api/capture", params=query, content=capture_file.read_bytes()).json()
-    vector = others.vector(walker_from_file(capture_file)[0])
+    vector = others.vector(process_capture(capture_file).walker)
     np.testing.assert_allclose(told["vector"], vector, atol=1e-9)
 
 

@@ -43,7 +43,7 @@ from eigenwalker.io.readers.mat_arrays import mat_arrays
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
 from eigenwalker.population.population import Population
 from eigenwalker.study.inspect import inspect_file
-from eigenwalker.study.walker_from_file import walker_from_file
+from eigenwalker.study.process_capture import process_capture
 from fuzz.mutations import mutated
 
 SECONDS = 10
@@ -95,7 +95,7 @@ DOORS: dict[str, dict[str, Callable[[Path], object]]] = {
         "mat": lambda path: mat_arrays(str(path)),
     },
     "info": dict.fromkeys(KINDS, inspect_file),
-    "fit": dict.fromkeys(KINDS, walker_from_file),
+    "fit": dict.fromkeys(KINDS, process_capture),
 }
 
 

@@ -38,7 +38,7 @@ def legs(**changes):
 def test_feet_strike_in_front_and_leave_behind():
     walker = legs()
     events = gait_events(walker.trajectories(np.arange(0, 3, 0.01)))
-    strikes = events.query("side == 'left' and event == 'heel strike'").time_s
+    strikes = events.query("side == 'left' and event == 'heel_strike'").time_s
     np.testing.assert_allclose(strikes, (np.arange(3) + 0.25) / 0.9, atol=1e-4)
     np.testing.assert_array_equal(events.time_s, np.sort(events.time_s))
 
@@ -52,32 +52,32 @@ def test_heels_and_toes_are_preferred_to_ankles():
     full = full.reindex(marker=[*walk.marker.values, "left_heel", "left_toe"]).copy(data=both)
     events = gait_events(full)
     told = events.groupby(["side", "event"]).marker.first()
-    assert told["left", "heel strike"] == "left_heel"
-    assert told["left", "toe off"] == "left_toe"
-    assert told["right", "toe off"] == "right_ankle"
+    assert told["left", "heel_strike"] == "left_heel"
+    assert told["left", "toe_off"] == "left_toe"
+    assert told["right", "toe_off"] == "right_ankle"
     plain = gait_events(walk)
     late = [
-        table.query("side == 'left' and event == 'heel strike'").time_s.to_numpy()
+        table.query("side == 'left' and event == 'heel_strike'").time_s.to_numpy()
         for table in (events, plain)
     ]
     assert late[0][0] - late[1][0] == pytest.approx(0.05, abs=1e-3)
 
 
 def test_events_of_ankles_are_as_early_as_stated(walks):
-    early = {"heel strike": [], "toe off": []}
+    early = {"heel_strike": [], "toe_off": []}
     for walk in walks:
         found = gait_events(walk)
         for side in ("left", "right"):
             change = np.diff(walk[f"{side}_stance"].values.astype(int))
-            for event, step in (("heel strike", 1), ("toe off", -1)):
+            for event, step in (("heel_strike", 1), ("toe_off", -1)):
                 truth = walk.time.values[1:][change == step]
                 times = found.query("side == @side and event == @event").time_s.to_numpy()
                 ahead = truth[None] - times[:, None]
                 nearest = np.abs(ahead).min(axis=1) < 0.2
                 ahead = ahead[np.arange(len(times)), np.abs(ahead).argmin(axis=1)][nearest]
                 early[event] += (ahead * walk.attrs["frequency_hz"]).tolist()
-    assert np.mean(early["heel strike"]) == pytest.approx(0.05, abs=0.015)
-    assert np.mean(early["toe off"]) == pytest.approx(0.02, abs=0.015)
+    assert np.mean(early["heel_strike"]) == pytest.approx(0.05, abs=0.015)
+    assert np.mean(early["toe_off"]) == pytest.approx(0.02, abs=0.015)
 
 
 def test_parameters_of_a_walker_are_those_it_was_made_with():

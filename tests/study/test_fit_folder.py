@@ -14,9 +14,9 @@ import pytest
 from eigenwalker.analysis.classification import classify
 from eigenwalker.simulation.people import simulate_captures
 from eigenwalker.study.fit_folder import fit_folder
-from eigenwalker.study.walker_from_file import walker_from_file
+from eigenwalker.study.process_capture import process_capture
 
-attempts = sys.modules["eigenwalker.study.walker_from_file"]
+fitting = sys.modules["eigenwalker.study.fit_folder"]
 
 
 @pytest.fixture(scope="module")
@@ -130,28 +130,28 @@ def test_acted_styles_of_bandai_namco_are_told_apart(captures) -> None:
 @pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
 @pytest.mark.parametrize(("name", "r2"), [("02_01.c3d", 0.97), ("12_01.bvh", 0.94)])
 def test_real_captures_reach_the_share_explained_of_the_prototype(captures, name, r2) -> None:
-    walker, facts = walker_from_file(captures / "cmu" / name, form="fourier")
+    walker = process_capture(captures / "cmu" / name, form="fourier").walker
     assert walker.fit is not None
-    assert facts["r2"] == walker.fit.r2 >= r2
+    assert walker.fit.fourier_r2 == walker.fit.r2 >= r2
 
 
 def test_an_interrupted_run_goes_on_where_it_stopped(folder, tmp_path, monkeypatch) -> None:
-    journal = tmp_path / "people.nc.part"
+    checkpoint = tmp_path / "people.nc.part"
 
     def interrupted(done: int, _total: int) -> None:
         if done == 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        fit_folder(folder, n_jobs=1, journal=journal, progress=interrupted)
-    with journal.open("a") as file:
+        fit_folder(folder, n_jobs=1, checkpoint=checkpoint, progress=interrupted)
+    with checkpoint.open("a") as file:
         file.write('{"file": "female_2.c3d", "state"')  # as a power cut leaves it
     read = []
     monkeypatch.setattr(
-        attempts, "walker_from_file", lambda path, **how: (read.append(path), made(path, **how))[1]
+        fitting, "process_capture", lambda path, **how: (read.append(path), made(path, **how))[1]
     )
-    made = walker_from_file
-    again = fit_folder(folder, n_jobs=1, journal=journal)
+    made = process_capture
+    again = fit_folder(folder, n_jobs=1, checkpoint=checkpoint)
     assert [path.name for path in read] == [
         "female_1.c3d", "female_2.c3d", "male_4.c3d", "male_5.c3d",
     ]  # fmt: skip
@@ -165,13 +165,13 @@ def test_an_interrupted_run_goes_on_where_it_stopped(folder, tmp_path, monkeypat
 
 
 def test_what_has_changed_is_read_again(folder, tmp_path) -> None:
-    journal, path = tmp_path / "people.nc.part", tmp_path / "in" / "a.c3d"
+    checkpoint, path = tmp_path / "people.nc.part", tmp_path / "in" / "a.c3d"
     path.parent.mkdir()
     path.write_bytes((folder / "female_0.c3d").read_bytes())
-    first = fit_folder(path.parent, n_jobs=1, journal=journal)
-    fourier = fit_folder(path.parent, n_jobs=1, journal=journal, form="fourier")
+    first = fit_folder(path.parent, n_jobs=1, checkpoint=checkpoint)
+    fourier = fit_folder(path.parent, n_jobs=1, checkpoint=checkpoint, form="fourier")
     path.write_bytes((folder / "men" / "male_3.c3d").read_bytes())
-    changed = fit_folder(path.parent, n_jobs=1, journal=journal)
+    changed = fit_folder(path.parent, n_jobs=1, checkpoint=checkpoint)
     assert first.population is not None
     assert fourier.population is not None
     assert changed.population is not None
@@ -180,27 +180,27 @@ def test_what_has_changed_is_read_again(folder, tmp_path) -> None:
 
 
 @pytest.mark.parametrize("damage", ["", "[]\n", "{}\n", "\x00\xff\n", '{"file": "female_0.c3d"}\n'])
-def test_a_damaged_journal_costs_time_and_nothing_else(folder, tmp_path, damage) -> None:
-    journal = tmp_path / "people.nc.part"
-    journal.write_text(damage, encoding="latin-1")
+def test_a_damaged_checkpoint_costs_time_and_nothing_else(folder, tmp_path, damage) -> None:
+    checkpoint = tmp_path / "people.nc.part"
+    checkpoint.write_text(damage, encoding="latin-1")
     names = pd.DataFrame({"file": ["female_0.c3d"]})
-    kept = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
-    lines = journal.read_text(encoding="latin-1").splitlines()
+    kept = fit_folder(folder, traits=names, n_jobs=1, checkpoint=checkpoint)
+    lines = checkpoint.read_text(encoding="latin-1").splitlines()
     entry = lines[-1].replace('"p0": [[', '"p0": [["no number", ')
-    journal.write_text(entry + "\n")
-    again = fit_folder(folder, traits=names, n_jobs=1, journal=journal)
+    checkpoint.write_text(entry + "\n")
+    again = fit_folder(folder, traits=names, n_jobs=1, checkpoint=checkpoint)
     assert kept.population is not None
     assert again.population is not None
     np.testing.assert_array_equal(kept.population.X, again.population.X)
 
 
 def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:
-    def killed(where: Path, name: str, settings: dict, made=attempts._attempt):
+    def killed(where: Path, name: str, settings: dict, made=fitting._attempt):
         if name == "men/male_4.c3d":
             os.kill(os.getpid(), signal.SIGKILL)
         return made(where, name, settings)
 
-    monkeypatch.setattr(attempts, "_attempt", killed)
+    monkeypatch.setattr(fitting, "_attempt", killed)
     found = fit_folder(folder, n_jobs=2)
     reasons = found.refused.set_index("file")["reason"]
     assert reasons.index.tolist() == ["female_1.c3d", "female_2.c3d", "men/male_4.c3d"]

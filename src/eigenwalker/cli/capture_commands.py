@@ -23,13 +23,13 @@ def info(
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.study.inspect import inspect_file
-    from eigenwalker.study.messages import in_words
+    from eigenwalker.study.messages import inspection_in_words
 
     facts = inspect_file(file, unit=unit, rate_hz=rate)
     if as_json:
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    lines = in_words(facts)
+    lines = inspection_in_words(facts)
     width = max(len(name) for name in lines) + 2
     for name, value in lines.items():
         print(f"{name:<{width}}{_laid_out(value, width)}")

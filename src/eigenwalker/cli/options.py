@@ -102,13 +102,14 @@ def start_vector(population: Population, start: str) -> np.ndarray:
             f"--from {start}: expected 'average', a walker from 0 to {len(population) - 1}, or a "
             "capture file."
         )
-    from eigenwalker.study.walker_from_file import walker_from_file
+    from eigenwalker.study.messages import flag_of
+    from eigenwalker.study.process_capture import process_capture
 
     first = population.walkers[0]
-    walker, facts = walker_from_file(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
-    if facts["flag"]:
-        print(f"eigenwalker: {start}: {facts['flag']}", file=sys.stderr)
-    return population.vector(walker)
+    result = process_capture(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
+    if flag := flag_of(result.quality):
+        print(f"eigenwalker: {start}: {flag}", file=sys.stderr)
+    return population.vector(result.walker)
 
 
 def check_choice(value: str, known: Collection[str], option: str) -> None:

@@ -60,7 +60,7 @@ def fit(
     130 when it was interrupted; the same command then goes on where it stopped.
     """
     from eigenwalker.study.fit_folder import fit_folder
-    from eigenwalker.study.walker_from_file import DECOMPOSE
+    from eigenwalker.study.process_capture import DECOMPOSE
 
     check_choice(form, DECOMPOSE, "--form")
     check_population_file(output)
@@ -78,7 +78,7 @@ def fit(
             rate_hz=rate,
             low_pass_hz=low_pass,
             n_jobs=jobs,
-            journal=checkpoint,
+            checkpoint=checkpoint,
             progress=progress,
         )
     if table is not None:
@@ -120,7 +120,7 @@ def _print_problems(study: Study) -> None:
 
 
 def _print_summary(study: Study, output: Path) -> None:
-    from eigenwalker.study.summary import summary_of
+    from eigenwalker.study.messages import summary_in_words
 
     assert study.population is not None
     read = study.files[study.files["status"] != "refused"]
@@ -128,7 +128,7 @@ def _print_summary(study: Study, output: Path) -> None:
         f"{len(read)} of {len(study.files)} captures read, "
         f"{(read['status'] == 'flagged').sum()} of them flagged. Medians (and ranges):"
     )
-    for name, value in summary_of(study.files).items():
+    for name, value in summary_in_words(study.files).items():
         print(f"  {name + ':':<23}{value}")
     if "units" in study.population.provenance:
         print(f"Units were {study.population.provenance['units']}.")

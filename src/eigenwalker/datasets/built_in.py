@@ -59,5 +59,5 @@ def built_in_capture() -> xr.DataArray:
 
     """
     capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
-    walk = in_place(virtual_markers(capture))
+    walk = in_place(virtual_markers(capture), speed_mm_s=capture.attrs["speed_mm_s"])
     return walk.assign_attrs(source="The first woman of the built-in population")

@@ -48,8 +48,9 @@ def capture(folder: Path, settings: Answer) -> Answer:
     """Return a capture as a point of a population's space."""
     from eigenwalker.gait.appearance import walker_measures
     from eigenwalker.io.read import is_capture
-    from eigenwalker.population.population import FLAG, Population
-    from eigenwalker.study.walker_from_file import walker_from_file
+    from eigenwalker.population.population import Population
+    from eigenwalker.study.messages import capture_lines, flag_of
+    from eigenwalker.study.process_capture import process_capture
 
     files = [files_of(folder) / name for name in settings["files"]]
     captures = [path for path in files if is_capture(path)] or files[:1]
@@ -58,42 +59,26 @@ def capture(folder: Path, settings: Answer) -> Answer:
         raise ValueError(f"{len(captures)} captures came ({named}); one at a time is compared.")
     people = Population.load(Path(settings["population"]))
     first = people.walkers[0]
-    walker, facts = walker_from_file(
+    result = process_capture(
         captures[0],
         form=first.form,
         n_harmonics=max(len(first.harmonics) // 2, 1),
         unit=settings["unit"],
         rate_hz=settings["rate_hz"],
     )
-    vector = people.vector(walker)
+    vector = people.vector(result.walker)
     made = people.walker(vector)
     return {
         "name": captures[0].name,
         "vector": vector.tolist(),
-        "verdict": facts["verdict"],
-        "flag": facts[FLAG],
-        "messages": _messages(facts),
+        "verdict": result.quality.verdict,
+        "flag": flag_of(result.quality),
+        "messages": capture_lines(result),
         "measures": {
             str(name): None if math.isnan(value) else value
             for name, value in walker_measures(made).items()
         },
     }
-
-
-def _messages(facts: dict) -> list[str]:
-    """What is to be known of a capture, in sentences."""
-    strides, seconds = round(facts["strides"]), facts["duration_s"]
-    messages = [
-        f"{strides} strides in {seconds:.0f} s at {facts['frequency_hz']:.2f} Hz; the sines of "
-        f"this walker hold {100 * facts['r2']:.0f} % of its movement."
-    ]
-    if facts["flag"]:
-        messages.append(str(facts["flag"]))
-    if facts["rebuilt"]:
-        messages.append(f"Rebuilt: {facts['rebuilt']}.")
-    if facts["unit_guessed"]:
-        messages.append(f"The file names no unit; {facts['unit']} was guessed from the height.")
-    return messages
 
 
 @_task

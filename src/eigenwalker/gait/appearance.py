@@ -1,4 +1,4 @@
-"""What the eye takes in of a walk, in numbers: widths, sway, elbows, bounce, stride (J32, W11)."""
+"""The visible differences between walkers, in numbers: widths, sway, elbows, bounce, stride."""
 
 from __future__ import annotations
 
@@ -6,39 +6,41 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.core.walker import Walker
-from eigenwalker.gait.heading import ground_speed
-
-N_SAMPLES = 200
-"""Moments at which a walk is looked at."""
+from eigenwalker.gait.heading import N_MOMENTS, ground_speed
 
 
 def walker_measures(walker: Walker) -> pd.Series:
-    """Return what changes visibly between walkers: the numbers that the interactive page shows.
+    """Return the measures of a walker that the interactive page shows.
 
     The qualitative findings of Troje (2002) and of WDP2002 are stated in these: men's shoulders are
-    wider than their hips, their elbows further out, their upper bodies sway more. Stance, steps and
-    their symmetry are in `gait_parameters`.
+    wider than their hips, their elbows further out, and their upper bodies sway more.
 
     Parameters
     ----------
     walker : Walker
-        Of any markers.
+        With any markers.
 
     Returns
     -------
     Series
         NaN where the markers are missing.
 
-        ``shoulder_width_mm``, ``hip_width_mm``: distance of left and right in the mean posture.
-        ``elbow_distance_mm``: the same of the elbows, sideways (y) only, as arms swing.
-        ``lateral_sway_mm``: range over a stride of the place sideways of the middle of the
-        shoulders.
-        ``vertical_movement_mm``: range over a stride of the height of the pelvis, or of the
-        middle of the hips where there is none.
-        ``frequency_hz``: strides a second.
-        ``stride_length_mm``: speed over frequency. The speed is the walker's own, or else that of
-        the feet that stand (`ground_speed`, of 200 moments evenly from 0 to 2 strides). Two
-        harmonics hold feet only so still: on simulated walkers it is 87 to 109 % of the true one.
+        - ``shoulder_width_mm``, ``hip_width_mm``: distance of left and right in the mean posture;
+          ``elbow_distance_mm``: that of the elbows along y only, as arms swing;
+        - ``lateral_sway_mm``: range over a stride of y of the middle of the shoulders;
+        - ``vertical_movement_mm``: range over a stride of the height of the pelvis, or else of the
+          middle of the hips;
+        - ``frequency_hz``: strides a second;
+        - ``stride_length_mm``: speed (`ground_speed`) over frequency.
+
+    See Also
+    --------
+    ground_speed
+    gait_parameters : steps, stance and their symmetry.
+
+    References
+    ----------
+    Troje (2002), fig. 6 and p. 381. WDP2002: Troje (2002), Little man or big woman.
 
     Examples
     --------
@@ -48,7 +50,7 @@ def walker_measures(walker: Walker) -> pd.Series:
     True
 
     """
-    stride = walker.trajectories(np.arange(N_SAMPLES) * walker.period_s / N_SAMPLES).values
+    stride = walker.trajectories(np.arange(N_MOMENTS) * walker.period_s / N_MOMENTS).values
     trunk = ("pelvis",) if "pelvis" in walker.markers else ("left_hip", "right_hip")
     apart = {part: _apart(walker, part) for part in ("shoulder", "hip", "elbow")}
     return pd.Series(
@@ -65,7 +67,7 @@ def walker_measures(walker: Walker) -> pd.Series:
 
 
 def _apart(walker: Walker, part: str) -> np.ndarray:
-    """From the right joint to the left one in the mean posture; NaN where one is missing."""
+    """Return the vector from the right joint to the left one in the mean posture, or NaN."""
     sides = [f"{side}_{part}" for side in ("left", "right")]
     if not set(sides) <= set(walker.markers):
         return np.full(3, np.nan)
@@ -74,7 +76,7 @@ def _apart(walker: Walker, part: str) -> np.ndarray:
 
 
 def _range(walker: Walker, stride: np.ndarray, names: tuple[str, ...], *, axis: int) -> float:
-    """How far the middle of some markers moves along an axis over a stride."""
+    """Return the range of the middle of some markers along an axis over a stride, or NaN."""
     if not set(names) <= set(walker.markers):
         return float("nan")
     places = [walker.markers.index(name) for name in names]

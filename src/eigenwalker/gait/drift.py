@@ -1,4 +1,4 @@
-"""Progress through the room and wander on the belt: what is slower than a stride."""
+"""Progress through the room and wander on the belt: movement slower than a stride."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from eigenwalker.core.fourier import fit_basis, harmonic_basis
 from eigenwalker.gait.steady_strides import closing_step
 
 DRIFT_BELOW = 0.4
-"""Cycles a stride below which movement of the whole body is drift and no part of the gait."""
+"""Cycles a stride below which movement of the whole body is drift and not part of the gait."""
 
 ONE_STRIDE = 1.5
-"""In less than this many strides a line cannot be told from harmonics: what is left after a stride
-that closes is the way."""
+"""In fewer strides a line cannot be separated from harmonics; the progress is then what is left
+after a stride that closes."""
 
 N_HARMONICS = 4
 """Harmonics of the stride that are fitted beside the drift, so that it takes nothing of them."""
 
 
 def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
-    """Return the constant velocity in a movement that else repeats with every stride.
+    """Return the constant velocity of a movement that otherwise repeats with every stride.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     Returns
     -------
     array of shape (axis,)
-        Way a stride.
+        Millimetres a stride.
 
     Examples
     --------
@@ -42,17 +42,16 @@ def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
 
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
-        return _way_of_one_stride(path, cycles)
+        return _velocity_of_one_stride(path, cycles)
     basis = np.column_stack([cycles, harmonic_basis(cycles, N_HARMONICS)])
     return fit_basis(basis, path)[0]
 
 
 def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
-    """Return what of a movement is slower than a stride.
+    """Return the part of a movement that is slower than a stride.
 
     A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
-    the harmonics of the stride: what repeats with every stride, up to the fourth harmonic, has no
-    drift.
+    four harmonics of the stride, to which the drift therefore does not add.
 
     Parameters
     ----------
@@ -68,7 +67,7 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
 
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
-        line = np.multiply.outer(cycles - cycles.mean(), _way_of_one_stride(path, cycles))
+        line = np.multiply.outer(cycles - cycles.mean(), _velocity_of_one_stride(path, cycles))
         return line + path.mean(axis=0)
     n_frames = len(cycles)
     n_strides = cycles[-1] - cycles[0]
@@ -81,7 +80,7 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     return slow @ weights[: slow.shape[1]]
 
 
-def _way_of_one_stride(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
-    """Return how far a body gets in its only stride, at whose end it moves as at the beginning."""
-    way = path[-1] - path[0] + closing_step(path)
-    return way / (cycles[-1] + cycles[1] - 2 * cycles[0])
+def _velocity_of_one_stride(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
+    """Return the progress in a single stride, at whose end the body moves as at the beginning."""
+    progress = path[-1] - path[0] + closing_step(path)
+    return progress / (cycles[-1] + cycles[1] - 2 * cycles[0])

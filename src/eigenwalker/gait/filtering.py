@@ -1,23 +1,22 @@
-"""Smoothing of noisy captures: a low-pass filter that shifts nothing in time."""
+"""A low-pass filter without phase shift, for noisy captures."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from eigenwalker.gait.gaps import runs_of
+from eigenwalker.core.runs import runs_of_true
 
 _ORDER = 2
-"""Forth and back this is the fourth-order filter usual in biomechanics (Winter 2009, ch. 3.4)."""
+"""Run in both directions this is the fourth-order filter usual in biomechanics."""
 
 _PASSES_CORRECTION = (np.sqrt(2) - 1) ** (1 / 4)
-"""Two passes let less through at the cut-off of one; this makes it the cut-off of both."""
+"""Tangent of the common cut-off of two passes over that of one."""
 
 
 def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.ndarray:
-    """Return positions without what is faster than a cut-off, at which half the power is left.
+    """Return low-pass filtered positions, with half the power left at the cut-off.
 
-    A Butterworth filter of second order, run forth and back (Winter 2009, Biomechanics and Motor
-    Control of Human Movement, eq. 3.8).
+    A Butterworth filter of second order, run forwards and backwards.
 
     Parameters
     ----------
@@ -37,6 +36,10 @@ def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.n
     ValueError
         If the cut-off is not between 0 and half the rate.
 
+    References
+    ----------
+    Winter (2009), Biomechanics and Motor Control of Human Movement, eq. 3.8.
+
     Examples
     --------
     >>> time = np.arange(0, 4, 0.01)
@@ -46,7 +49,7 @@ def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.n
     0.5
 
     """
-    from scipy.signal import butter, sosfiltfilt  # takes 0.3 s, and most captures need no filter
+    from scipy.signal import butter, sosfiltfilt  # takes 0.3 s; most captures need no filter
 
     if not 0 < cut_off_hz < rate_hz / 2:
         raise ValueError(
@@ -58,8 +61,8 @@ def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.n
     settling = int(2 * rate_hz / cut_off_hz)
     smooth = positions.copy()
     for marker in range(positions.shape[1]):
-        seen = np.atleast_1d(np.isfinite(positions[:, marker]).all(axis=1))
-        for start, stop in runs_of(seen):
+        seen = np.isfinite(positions[:, marker]).all(axis=1)
+        for start, stop in runs_of_true(seen):
             if stop - start > 2:
                 path = positions[start:stop, marker]
                 pad = min(settling, len(path) - 1)

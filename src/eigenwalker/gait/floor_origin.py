@@ -1,4 +1,4 @@
-"""Where the origin of a walk in place lies: under the pelvis, on the floor."""
+"""The origin of a walk in place: under the pelvis, on the floor."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ ANKLE_HEIGHT_OF_LEG = 0.084
 """Height of a standing ankle as a share of thigh and shank (ANSUR II: 0.040 of 0.475 of height)."""
 
 _LOW_SHARE = 0.05
-"""Share of frames in which a foot is lower than what counts as its lowest level, against noise."""
+"""Quantile of the heights of a foot that counts as its lowest level; lower ones may be noise."""
 
 
 def find_origin(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray:
-    """Return the point on the floor under the mean pelvis (A15).
+    """Return the point on the floor under the mean pelvis.
 
-    The floor is where the lowest standing ankle is as high above it as ankles are for such legs;
-    where legs are not known, it is the level of the lowest marker.
+    The floor is `ANKLE_HEIGHT_OF_LEG` of the length of thigh and shank below the lowest standing
+    ankle; where legs are not known, at the level of the lowest marker.
 
     Parameters
     ----------

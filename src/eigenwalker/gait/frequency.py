@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.fourier import share_explained, unit_phasors
+from eigenwalker.core.smoothing import parabola_vertex
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
 
@@ -17,17 +18,17 @@ class NoStrideError(ValueError):
 
 
 BOUNDS_HZ = (0.3, 2.0)
-"""Strides a second that are looked for: from the slowest patient to a sprint."""
+"""Range of strides a second in which the frequency is searched: slowest patient to sprint."""
 
 _COARSE_RATE_HZ = 12.0
-"""Enough for the second harmonic of the fastest stride, three times over."""
+"""Three times what the second harmonic of the fastest stride needs."""
 
 _OCTAVE = 0.99
-"""When about twice a frequency explains this share of what the frequency explains, the lower one
-lives on its second harmonic alone: it is half the stride frequency."""
+"""If about twice a frequency explains this share of what the frequency explains, the lower one
+explains with its second harmonic alone: it is half the stride frequency."""
 
 _RIVAL = 0.9
-"""The same share on a coarse grid of velocities, at which the octave is looked into."""
+"""The same share on a coarse grid of velocities, from which on the octave is tested."""
 
 _CONVERGED = 1e-6
 """Relative size of the last step. The next would be its square where sines fit exactly, and under a
@@ -35,17 +36,20 @@ hundredth of it in real walks."""
 _MAX_STEPS = 50
 
 
-def fundamental_frequency(walk: xr.DataArray, *, n_harmonics: int = 2) -> float:
-    """Return the stride frequency of a walk.
+def fundamental_frequency(trajectories: xr.DataArray, *, n_harmonics: int = 2) -> float:
+    r"""Return the stride frequency of a walk.
 
-    The omega of Troje (2002, eq. 2) and of WDP2002 (eq. 1): the frequency whose sines, with their
-    harmonics, explain most of the variance of all markers together. Steady progress through the
-    room is allowed for.
+    It is the frequency whose sines, with their harmonics, explain most of the variance of all
+    markers together, beside a constant velocity of each:
+
+    .. math:: \min_{\omega, p_0, v, a_h, b_h} \sum_t \Big\| p(t) - p_0 - v t - \sum_h
+        \big(a_h \sin h \omega t + b_h \cos h \omega t\big) \Big\|^2
 
     Parameters
     ----------
-    walk : DataArray of shape (time, marker, axis)
-        Trajectories in millimetres, any markers, better two strides or more.
+    trajectories : DataArray of shape (time, marker, axis)
+        Positions in millimetres, complete, of any markers, for two strides or more; in place or
+        not.
     n_harmonics : int
         Harmonics that take part in the fit.
 
@@ -59,6 +63,14 @@ def fundamental_frequency(walk: xr.DataArray, *, n_harmonics: int = 2) -> float:
     ValueError
         If samples are missing, nothing moves, or the capture holds less than a stride.
 
+    See Also
+    --------
+    frequency_of_scores : the same for scores of principal components.
+
+    References
+    ----------
+    Troje (2002), eq. 2; WDP2002, eq. 1.
+
     Examples
     --------
     >>> time = np.arange(0, 12, 1 / 120)
@@ -68,7 +80,7 @@ def fundamental_frequency(walk: xr.DataArray, *, n_harmonics: int = 2) -> float:
     0.85
 
     """
-    walk = check_trajectories(walk, complete=True)
+    walk = check_trajectories(trajectories, complete=True)
     movement = walk.values.reshape(walk.sizes["time"], -1)
     return frequency_of_scores(movement, sampling_rate(walk), n_harmonics=n_harmonics, trend=True)
 
@@ -81,11 +93,11 @@ def frequency_of_scores(
     bounds_hz: tuple[float, float] = BOUNDS_HZ,
     trend: bool = False,
 ) -> float:
-    """Return the one frequency whose harmonics explain most of all columns together.
+    """Return the frequency whose harmonics explain most of the variance of all columns together.
 
-    A coarse search over the spectrum of velocities, in which drift weighs little, then variable
-    projection: amplitudes and means are solved for at every trial frequency, which leaves a
-    problem in one unknown.
+    A coarse search over the spectrum of velocities, in which drift weighs little, is followed by
+    variable projection: at every trial frequency amplitudes and means are solved for, which leaves
+    a problem in one unknown.
 
     Parameters
     ----------
@@ -109,6 +121,10 @@ def frequency_of_scores(
     ------
     ValueError
         If nothing moves or there is less than about a stride.
+
+    References
+    ----------
+    Troje (2002), eq. 2. Golub & Pereyra (1973), SIAM J. Numer. Anal. 10, 413-432.
 
     Examples
     --------
@@ -134,7 +150,7 @@ def frequency_of_centred(
     trend: bool = False,
     least: float = 1e-9,
 ) -> float:
-    """Return what `frequency_of_scores` does, of columns whose mean is 0.
+    """Return the same as `frequency_of_scores`, of columns whose mean is 0.
 
     Parameters
     ----------
@@ -162,7 +178,7 @@ def frequency_of_centred(
     blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))
     angle = 2 * np.pi / rate_hz
     candidates = _coarse_frequencies(blocks, rate_hz / block, (lowest, bounds_hz[1]))
-    # Sums of a few frames keep the frequency of a sine: most of the way is gone on them.
+    # Sums of a few frames have the frequency of the sine, so most of the search runs on them.
     starts = [_stepped(blocks, each * angle * block, n_harmonics, trend) for each in candidates]
     return _refined(centred, _of_octaves(blocks, starts) / block, n_harmonics, trend=trend) / angle
 
@@ -172,16 +188,16 @@ _FEWEST_STRIDES = 0.9
 
 
 def _stepped(values: np.ndarray, angle: float, n_harmonics: int, trend: bool) -> float:
-    """One careful step of variable projection from a coarse angle."""
+    """Return an angle after one limited step of variable projection."""
     step = _gauss_newton_step(values, angle, n_harmonics, trend=trend)
     reach = np.pi / len(values) / 2
     return angle + min(max(step, -reach), reach)
 
 
 def _of_octaves(values: np.ndarray, angles: list[float]) -> float:
-    """Which of angles an octave apart is that of the stride.
+    """Return which of some angles, octaves apart, is that of the stride.
 
-    If a lower one is, it explains its own first harmonic, which a higher one cannot.
+    The lower one explains its own first harmonic, which the higher one cannot.
     """
     chosen, *higher = sorted(angles)
     cycles = np.arange(len(values)) / (2 * np.pi)
@@ -197,7 +213,7 @@ def _coarse_frequencies(
 ) -> list[float]:
     """Return the frequency that explains velocities best with two harmonics, on a grid.
 
-    Where about half or twice that frequency explains nearly as much, it is returned too.
+    About half or twice that frequency is returned too where it explains nearly as much.
 
     The least-squares spectrum (mean, sines and cosines fitted together) has no leakage, so two
     strides are enough; its normal equations are known in closed form.
@@ -212,7 +228,7 @@ def _coarse_frequencies(
     explained = _normal_equations(len(velocity), size, first, last).explained(spectrum)
     best = int(explained.argmax())
     offset, top = _peak(explained, best)
-    found = [(first + best + offset) * spacing_hz]
+    candidates = [(first + best + offset) * spacing_hz]
     for octave in (0.5, 2.0):
         near = slice(
             max(round(0.8 * octave * (first + best)) - first, 0),
@@ -222,8 +238,8 @@ def _coarse_frequencies(
             rival = near.start + int(explained[near].argmax())
             rival_offset, rival_top = _peak(explained, rival)
             if rival_top >= _RIVAL * top:
-                found.append((first + rival + rival_offset) * spacing_hz)
-    return found
+                candidates.append((first + rival + rival_offset) * spacing_hz)
+    return candidates
 
 
 class _NormalEquations(NamedTuple):
@@ -260,27 +276,22 @@ def _normal_equations(n: int, size: int, first: int, last: int) -> _NormalEquati
 
 
 def _inverse(g11: np.ndarray, g12: np.ndarray, g22: np.ndarray) -> np.ndarray:
-    """Weights of b1 b1, b2 b2 and b1 b2 in b' inv(G) b, for 2 x 2 matrices G."""
+    """Return the weights of b1 b1, b2 b2 and b1 b2 in b' inv(G) b, for 2 x 2 matrices G."""
     return np.stack([g22, g11, -2 * g12]) / (g11 * g22 - g12**2)
 
 
 def _peak(values: np.ndarray, peak: int) -> tuple[float, float]:
-    """Return how far from a peak the top of a parabola through it lies, and how high that is."""
-    top = float(values[peak])
-    if not 0 < peak < len(values) - 1:
-        return 0.0, top
-    before, after = float(values[peak - 1]), float(values[peak + 1])
-    bend = before - 2 * top + after
-    if not (bend < 0 and before <= top >= after):
-        return 0.0, top
-    return 0.5 * (before - after) / bend, top - (before - after) ** 2 / (8 * bend)
+    """Return the vertex of the parabola through a peak; at an edge, the peak itself."""
+    around = values[max(peak - 1, 0) : peak + 2].tolist()
+    if len(around) < 3 or max(around) > around[1]:
+        return 0.0, float(values[peak])
+    return parabola_vertex(*around)
 
 
 def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool) -> float:
     """Return the angle a frame at which harmonics leave the smallest residual.
 
-    Gauss-Newton steps of the variable projection functional (Golub & Pereyra 1973), from a start
-    that is right to a fraction of a cycle.
+    By Gauss-Newton steps of the variable projection functional (Golub & Pereyra 1973).
     """
     n = len(scores)
     reach = np.pi / n
@@ -295,7 +306,7 @@ def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool)
 
 
 def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool) -> float:
-    """Return the change of angle that variable projection proposes.
+    """Return the Gauss-Newton step of the angle.
 
     All sums over frames come from one product of the basis, and of its derivative by the angle,
     with itself and with the data.

@@ -1,4 +1,4 @@
-"""Gaps in the paths of markers: which are short enough to be filled, and where frames are whole."""
+"""Gaps in the paths of markers, and splines through the short ones."""
 
 from __future__ import annotations
 
@@ -7,43 +7,31 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from eigenwalker.core.runs import runs_of_true
+
 MAX_GAP_S = 0.15
 """Longest gap that is filled. A cubic spline is then off by some 5 mm at a swinging ankle (an
 eighth of a stride); over twice the time it would be ten times as much."""
 
 _NEIGHBOURS = 12
-"""Frames on either side that a spline rests on."""
+"""Frames on either side that a spline passes through."""
 
 
 class Gap(NamedTuple):
-    """Frames ``start`` to ``stop`` (not included) in which a marker was not seen."""
+    """Frames ``start`` to ``stop`` (not included) in which a marker (its index) was not seen."""
 
     marker: int
     start: int
     stop: int
 
 
-def runs_of(flags: np.ndarray) -> list[tuple[int, int]]:
-    """Return where runs of True start and stop.
-
-    Examples
-    --------
-    >>> runs_of(np.array([True, False, True, True]))
-    [(0, 1), (2, 4)]
-
-    """
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
-    return [(int(start), int(stop)) for start, stop in zip(edges[::2], edges[1::2], strict=True)]
-
-
 def find_gaps(positions: np.ndarray) -> list[Gap]:
     """Return all gaps in positions of shape (time, marker, axis), in the order of markers."""
-    missing = np.atleast_2d(np.isnan(positions).any(axis=2).T)
+    missing = np.isnan(positions).any(axis=2)
     return [
         Gap(marker, start, stop)
-        for marker, flags in enumerate(missing)
-        if flags.any()
-        for start, stop in runs_of(flags)
+        for marker in np.flatnonzero(missing.any(axis=0)).tolist()
+        for start, stop in runs_of_true(missing[:, marker])
     ]
 
 
@@ -79,17 +67,13 @@ def fill_short_gaps(
     """
     n_frames = len(positions)
     longest = round(max_gap_s * rate_hz)
-    gaps = find_gaps(positions)
-    short = [
-        gap
-        for gap in gaps
-        if gap.start > 0 and gap.stop < n_frames and gap.stop - gap.start <= longest
-    ]
-    filled = np.array(positions)
-    for gap in short:
-        around = slice(max(0, gap.start - _NEIGHBOURS), gap.stop + _NEIGHBOURS)
-        seen = np.arange(n_frames)[around]
-        seen = seen[~np.isnan(positions[around, gap.marker]).any(axis=1)]
-        wanted = np.arange(gap.start, gap.stop)
-        filled[wanted, gap.marker] = CubicSpline(seen, positions[seen, gap.marker])(wanted)
-    return filled, [gap for gap in gaps if gap not in set(short)]
+    filled, left = np.array(positions), []
+    for gap in find_gaps(positions):
+        if gap.start == 0 or gap.stop == n_frames or gap.stop - gap.start > longest:
+            left.append(gap)
+            continue
+        around = np.arange(max(0, gap.start - _NEIGHBOURS), min(gap.stop + _NEIGHBOURS, n_frames))
+        seen = around[~np.isnan(positions[around, gap.marker]).any(axis=1)]
+        missing = np.arange(gap.start, gap.stop)
+        filled[missing, gap.marker] = CubicSpline(seen, positions[seen, gap.marker])(missing)
+    return filled, left

@@ -1,4 +1,4 @@
-"""A capture of walking as a steady walk in place, facing +x."""
+"""A capture of walking as steady strides in place, facing +x."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.fourier import fit_basis
+from eigenwalker.core.kinematics import rotate_z
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.gait.drift import mean_velocity, slow_drift
 from eigenwalker.gait.filtering import low_passed
 from eigenwalker.gait.floor_origin import find_origin
-from eigenwalker.gait.gaps import MAX_GAP_S, Gap, fill_short_gaps
+from eigenwalker.gait.gaps import MAX_GAP_S, fill_short_gaps
 from eigenwalker.gait.heading import find_heading
-from eigenwalker.gait.steady_strides import SteadyPart, body_relative, steady_part
-from eigenwalker.gait.straight_passes import Passage, find_passage
-from eigenwalker.markers.label_repair import mend
-from eigenwalker.markers.marker_sets import side_pairs
+from eigenwalker.gait.steady_strides import SteadyStrides, body_relative, find_steady_strides
+from eigenwalker.gait.straight_passes import find_straight_pass
+from eigenwalker.markers.label_repair import repair_labels
 
 _WHOLE = 0.05
 """Strides that may lack to the next whole number: frames are discrete, frequencies estimates."""
@@ -28,66 +28,91 @@ _WHOLE = 0.05
 _MAX_ROUNDS = 10
 
 _TRAVELS_MM = 500.0
-"""Way that the middle of all markers must go before one that stays is none of the body."""
+"""Distance that the middle of all markers travels before a marker at rest is part of the room."""
 
 _STAYS_SHARE = 0.01
-"""Share of that way within which a marker stays where it is."""
+"""Share of that distance within which a marker is at rest."""
 
 
 def in_place(
-    walk: xr.DataArray, *, max_gap_s: float = MAX_GAP_S, low_pass_hz: float | None = None
+    trajectories: xr.DataArray,
+    *,
+    max_gap_s: float = MAX_GAP_S,
+    low_pass_hz: float | None = None,
+    speed_mm_s: float | None = None,
+    heading_deg: float | None = None,
+    repair: bool = True,
 ) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
-    Points that stay where they are while the others go through the room, such as the origin of a
-    skeleton, are left out. Left and right markers that change places are put right, and samples
-    that are elsewhere for moments are taken out (`mend`). Short gaps are filled by cubic splines.
-    Standing, starting, stopping and turning are left out, and what is kept is trimmed to a whole
-    number of strides, to the nearest frame. Of a walk there and back the straight pass with most
-    strides is taken; a walk with too few straight strides, round in a circle or in a figure of
-    eight, is unwound: each frame is seen from the body, whose slow heading is taken out.
+    In this order:
 
-    The direction of walking is turned to +x. Forward progress and slow
-    drift of the body are taken out together, by regression beside the harmonics of the stride,
-    which they therefore do not touch. The pelvis (else the middle of the hips, else of all markers)
-    is at x = y = 0 in the mean, and z = 0 is the floor: where the lowest standing ankle is as high
-    above it as ankles are for such legs (0.084 of thigh and shank), or, where legs are not known,
-    the level of the lowest marker.
+    1. Points of the room, such as the origin of a skeleton, are left out, labels are repaired
+       (`repair_labels`) and short gaps filled by cubic splines.
+    2. Standing, starting, stopping and turning are left out, and the rest is trimmed to whole
+       strides, to the nearest frame. Of a walk there and back the straight pass with most strides
+       is taken. A walk with too few straight strides, in a circle or a figure of eight, is unwound:
+       each frame is turned back by the slow heading of the body.
+    3. Forward progress and slow drift of the body are taken out together. They are regressed beside
+       the harmonics of the stride, which stay as they are.
+    4. The direction of walking is turned to +x. The pelvis (else the middle of the hips, else of
+       all markers) is at x = y = 0 in the mean, and z = 0 is the floor: 0.084 of the length of
+       thigh and shank below the lowest standing ankle, or, without legs, at the lowest marker.
+
+    Nothing is read from the attributes of the capture.
 
     Parameters
     ----------
-    walk : DataArray of shape (time, marker, axis)
-        Trajectories of someone who walks, in a room or on a treadmill; any markers. With the
-        joints' usual names, facing and standing feet are known, otherwise only the way travelled.
+    trajectories : DataArray of shape (time, marker, axis)
+        A capture in millimetres of someone who walks, in a room or on a treadmill; any markers.
+        With the usual names of joints, facing and standing feet are known, otherwise only the path.
     max_gap_s : float
         Longest gap to be filled, in seconds.
     low_pass_hz : float, optional
-        Cut-off of a low-pass filter (`low_passed`), for noisy captures; 6 Hz is usual for walking.
-        Left out, nothing is filtered.
+        Cut-off in hertz of a low-pass filter (`low_passed`), for noisy captures; 6 is usual for
+        walking. Without it nothing is filtered.
+    speed_mm_s, heading_deg : float, optional
+        Speed in mm/s, and direction in degrees from +x towards +y, of a walk on a treadmill or in
+        place, where they are known. Otherwise the standing feet tell them. A walk through a room
+        tells both itself.
+    repair : bool
+        Whether to repair labels; False for a capture whose labels are repaired already.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        In millimetres, on the clock of the capture. A coordinate ``rotation`` is turned too.
-        ``attrs`` tell ``speed_mm_s`` (NaN if it cannot be known; what the attributes of a walk in
-        place already state is kept), ``heading_deg`` (direction of walking in the capture, from
-        +x towards +y), ``feet_deg`` (the direction that standing feet alone would tell, beside it),
-        ``straight_passes`` (from how many the strides were chosen; 1 without turns, 0 if unwound),
-        ``unwound_deg`` (how far the heading changed that was taken out),
-        ``treadmill``, ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``,
-        ``climb_mm`` (how far the body rose), ``wander_mm`` (how far it was, on the whole, from a
-        straight line at constant speed), ``filled_samples``, and ``low_pass_hz`` where a filter
-        was asked for, and ``still_points``, names of points of the room, where there were some.
+        In millimetres, on the clock of the capture; a coordinate ``rotation`` is turned too. In
+        ``attrs``, beside those of the capture:
+
+        - ``speed_mm_s``: forward speed, NaN if unknown; ``treadmill``: whether the body stays in
+          its place;
+        - ``heading_deg``: direction of walking in the capture, from +x towards +y; ``feet_deg``:
+          direction of the standing feet beside it;
+        - ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``: the strides;
+        - ``straight_passes``: number of straight passes from which the strides were chosen, 1
+          without turns, 0 if unwound; ``unwound_deg``: range of the heading that was taken out;
+        - ``climb_mm``: how far the body rose; ``wander_mm``: root mean square distance of its path
+          from a straight line at constant speed;
+        - ``filled_samples``, ``repairs`` (see `repair_labels`), ``still_points`` (names of points
+          of the room), ``low_pass_hz``.
 
     Raises
     ------
     ValueError
-        If there is less than about a stride, or a gap in the midst of it is too long to be filled;
+        If there is less than about a stride, or a gap between the strides is too long to be filled;
         the marker and the times are named.
+
+    See Also
+    --------
+    eigenwalker.study.process_capture : all steps from a file to a walker.
+
+    References
+    ----------
+    Troje (2002), p. 373, on the walkers' position and the strides that were taken.
 
     Examples
     --------
-    Someone whose feet swing about a body that goes along +y at 1.2 m/s:
+    Someone whose feet swing about a body that moves along +y at 1.2 m/s:
 
     >>> time = np.arange(0, 4, 0.01)
     >>> swing = 300 * np.sin(2 * np.pi * 0.9 * time)
@@ -99,91 +124,93 @@ def in_place(
     (1200, 90, 3)
 
     """
-    walk = _of_the_body(check_trajectories(walk))
+    walk = _without_still_points(check_trajectories(trajectories))
     rate_hz = sampling_rate(walk)
-    walk = mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
+    if repair:
+        walk = repair_labels(walk)
+    _refuse_unseen(walk)
     positions, gaps = fill_short_gaps(walk.values, rate_hz, max_gap_s)
-    _refuse_unseen(walk, gaps)
-    filtered = {}
     if low_pass_hz is not None:
         positions = low_passed(positions, rate_hz, low_pass_hz)
-        filtered = {"low_pass_hz": float(low_pass_hz)}
     names = walk.marker.values.tolist()
     with one_blas_thread():  # on a busy machine 20 times faster
-        passage = find_passage(walk, positions, gaps, rate_hz)
-        part = _whole_strides(passage.positions, passage.part, rate_hz)
-        passage = passage._replace(part=part)
-        kept = slice(part.start, part.stop)
-        placed = _placed(
-            passage.positions[kept], names, part.frequency_hz, rate_hz, walk.attrs.get("feet_deg")
-        )
-    result = walk.isel(time=kept).copy(data=placed.positions)
+        straight = find_straight_pass(walk, positions, gaps, rate_hz)
+        strides = _whole_strides(straight.positions, straight.strides, rate_hz)
+        frames = slice(strides.start, strides.stop)
+        moving, frequency_hz = straight.positions[frames], strides.frequency_hz
+        placed = _placed(moving, names, frequency_hz, rate_hz, speed_mm_s, heading_deg)
+    result = walk.isel(time=frames).copy(data=placed.positions)
+    heading = straight.heading[frames]
     if "rotation" in result.coords:
-        turns = passage.heading[0] - passage.heading[kept] - placed.angle
+        turns = straight.heading[0] - heading - np.deg2rad(placed.facts["heading_deg"])
         result = result.assign_coords(rotation=_turned(result.rotation, turns))
-    filled = np.isnan(walk.values[kept]).any(axis=2).sum()
-    return result.assign_attrs(
-        _facts(walk, placed, passage, rate_hz) | filtered,
-        filled_samples=int(filled) + int(walk.attrs.get("filled_samples", 0)),
-    )
+    facts = placed.facts | {
+        "steady_start_s": float(result.time[0]),
+        "steady_end_s": float(result.time[-1]),
+        "n_strides": round(strides.count(rate_hz)),
+        "frequency_hz": frequency_hz,
+        "straight_passes": straight.n_passes,
+        "unwound_deg": float(np.ptp(np.rad2deg(heading))),
+        "filled_samples": int(np.isnan(walk.values[frames]).any(axis=2).sum()),
+    }
+    if low_pass_hz is not None:
+        facts["low_pass_hz"] = float(low_pass_hz)
+    return result.assign_attrs(facts)
 
 
-def _of_the_body(walk: xr.DataArray) -> xr.DataArray:
-    """Return a capture without points that stay in the room while the others go through it.
+def _without_still_points(walk: xr.DataArray) -> xr.DataArray:
+    """Return a capture without points that stay in the room while the others travel through it.
 
-    A joint that stays is none of these: something is wrong with it, which `assess` is to find.
+    A joint that stays is not one of these: something is wrong with it, which `assess` has to find.
     """
     if walk.sizes["time"] < 2 or walk.sizes["marker"] < 2:
         return walk
     low, high = (np.where(np.isnan(walk), edge, walk).T for edge in (np.inf, -np.inf))
-    way = (high.max(axis=2) - low.min(axis=2)).max(axis=0)
+    extent = (high.max(axis=2) - low.min(axis=2)).max(axis=0)
     seen = ~np.isnan(walk.values).any(axis=(0, 2))
     body = walk.values[:, seen].mean(axis=1) if seen.any() else np.zeros((1, 3))
     travelled = float(np.ptp(body, axis=0).max())
-    still = (way >= 0) & (way < _STAYS_SHARE * travelled) & ~np.isin(walk.marker, JOINTS.markers)
+    still = (extent >= 0) & (extent < _STAYS_SHARE * travelled)
+    still &= ~np.isin(walk.marker, JOINTS.markers)
     if not travelled > _TRAVELS_MM or not still.any():
         return walk
-    names = walk.marker.values[still].tolist()
-    return walk.isel(marker=~still).assign_attrs(still_points=", ".join(names))
+    return walk.isel(marker=~still).assign_attrs(still_points=walk.marker.values[still].tolist())
 
 
-def _refuse_unseen(walk: xr.DataArray, gaps: list[Gap]) -> None:
-    n_frames = walk.sizes["time"]
-    unseen = [gap.marker for gap in gaps if gap.stop - gap.start == n_frames]
-    if unseen:
+def _refuse_unseen(walk: xr.DataArray) -> None:
+    unseen = np.isnan(walk.values).any(axis=2).all(axis=0)
+    if unseen.any():
         raise ValueError(
             f"The markers {walk.marker.values[unseen].tolist()} were never seen; leave them out, "
             "for instance with trajectories.drop_sel(marker=[...])."
         )
 
 
-def _whole_strides(positions: np.ndarray, part: SteadyPart, rate_hz: float) -> SteadyPart:
-    """Return the middle of a steady part that holds a whole number of its own strides.
+def _whole_strides(positions: np.ndarray, strides: SteadyStrides, rate_hz: float) -> SteadyStrides:
+    """Return the middle of steady strides that is a whole number of them.
 
-    What is cut may change what is steady and how long a stride is: repeated until it holds.
+    Without what was cut, other frames may be steady and strides have another length: repeated
+    until nothing changes.
     """
     for _ in range(_MAX_ROUNDS):
-        n_strides = max(1, int(part.strides(rate_hz) + _WHOLE))
-        n_frames = min(round(n_strides * rate_hz / part.frequency_hz), part.stop - part.start)
-        start = part.start + (part.stop - part.start - n_frames) // 2
-        if n_strides < 2:  # too little to measure a frequency anew
-            return part._replace(start=start, stop=start + n_frames)
-        found = steady_part(body_relative(positions[start : start + n_frames]), rate_hz)
-        found = found._replace(start=start + found.start, stop=start + found.stop)
-        if found == part:
+        n_strides = max(1, int(strides.count(rate_hz) + _WHOLE))
+        n_frames = min(
+            round(n_strides * rate_hz / strides.frequency_hz), strides.stop - strides.start
+        )
+        start = strides.start + (strides.stop - strides.start - n_frames) // 2
+        if n_strides < 2:  # too few to measure the frequency again
+            return strides._replace(start=start, stop=start + n_frames)
+        trimmed = find_steady_strides(body_relative(positions[start : start + n_frames]), rate_hz)
+        trimmed = trimmed._replace(start=start + trimmed.start, stop=start + trimmed.stop)
+        if trimmed == strides:
             break
-        part = found
-    return part
+        strides = trimmed
+    return strides
 
 
-class _Placed(NamedTuple):
+class _InPlace(NamedTuple):
     positions: np.ndarray
-    angle: float
-    feet_angle: float
-    speed_mm_s: float
-    treadmill: bool
-    climb_mm: float
-    wander_mm: float
+    facts: dict[str, float | bool | int]
 
 
 def _placed(
@@ -191,36 +218,35 @@ def _placed(
     markers: list[str],
     frequency_hz: float,
     rate_hz: float,
-    feet_deg: float | None,
-) -> _Placed:
-    """Return whole strides with progress and drift taken out, turned to +x, about the origin.
-
-    A walk in place that was turned before knows by how much its feet then differed from its path.
-    """
+    speed_mm_s: float | None,
+    heading_deg: float | None,
+) -> _InPlace:
+    """Return whole strides without progress and drift, turned to +x, about the origin."""
     cycles = np.arange(len(positions)) * frequency_hz / rate_hz
     path = positions.mean(axis=1)
     drift = slow_drift(path, cycles)
-    way = mean_velocity(path, cycles)
+    per_stride = mean_velocity(path, cycles)
     still = positions - drift[:, None]
-    heading = find_heading(still, markers, way[:2] * frequency_hz, frequency_hz, rate_hz)
-    angle = heading.angle
-    if heading.treadmill and feet_deg is not None:
-        angle -= np.deg2rad(feet_deg)
-    still = still @ Rotation.from_euler("z", -angle).as_matrix().T
+    heading = find_heading(still, markers, per_stride[:2] * frequency_hz, frequency_hz, rate_hz)
+    angle, speed = heading.angle, heading.speed_mm_s
+    if heading.treadmill:
+        angle = angle if heading_deg is None else np.deg2rad(heading_deg)
+        speed = speed if speed_mm_s is None else speed_mm_s
+    still = rotate_z(still, -angle)
     still -= find_origin(still, markers)
-    return _Placed(
-        still,
-        angle=angle,
-        feet_angle=heading.feet_angle - angle,
-        speed_mm_s=heading.speed_mm_s,
-        treadmill=heading.treadmill,
-        climb_mm=float(way[2] * cycles[-1]),
-        wander_mm=_wander(drift[:, :2], cycles),
-    )
+    facts = {
+        "speed_mm_s": float(speed),
+        "heading_deg": _degrees(angle),
+        "feet_deg": _degrees(heading.feet_angle - angle),
+        "treadmill": heading.treadmill,
+        "climb_mm": float(per_stride[2] * cycles[-1]),
+        "wander_mm": _wander(drift[:, :2], cycles),
+    }
+    return _InPlace(still, facts)
 
 
 def _wander(drift: np.ndarray, cycles: np.ndarray) -> float:
-    """Return the root mean square of the way from a straight line walked at constant speed."""
+    """Return the root mean square distance from a straight line walked at constant speed."""
     line = np.column_stack([np.ones(len(cycles)), cycles])
     aside = drift - line @ fit_basis(line, drift)
     return float(np.sqrt(np.einsum("ta,ta->t", aside, aside).mean()))
@@ -235,30 +261,6 @@ def _turned(rotation: xr.DataArray, angles: np.ndarray) -> xr.DataArray:
     about_z = Rotation.from_euler("z", turns[seen, None])
     turned[seen] = (about_z * Rotation.from_rotvec(vectors[seen])).as_rotvec()
     return rotation.copy(data=turned.reshape(rotation.shape))
-
-
-def _facts(
-    walk: xr.DataArray, placed: _Placed, passage: Passage, rate_hz: float
-) -> dict[str, float | bool | int]:
-    """Return what is known of the walk; what its attributes state of it in place stays."""
-    time, part = walk.time.values, passage.part
-    turned = np.ptp(np.rad2deg(passage.heading[part.start : part.stop]))
-    before = walk.attrs if placed.treadmill else {}
-    speed = before.get("speed_mm_s", np.nan)
-    return {
-        "speed_mm_s": float(speed if np.isfinite(speed) else placed.speed_mm_s),
-        "heading_deg": _degrees(placed.angle + np.deg2rad(before.get("heading_deg", 0.0))),
-        "feet_deg": _degrees(placed.feet_angle),
-        "treadmill": bool(before.get("treadmill", placed.treadmill)),
-        "steady_start_s": float(time[part.start]),
-        "steady_end_s": float(time[part.stop - 1]),
-        "n_strides": round(part.strides(rate_hz)),
-        "frequency_hz": part.frequency_hz,
-        "climb_mm": placed.climb_mm + float(before.get("climb_mm", 0.0)),
-        "straight_passes": int(before.get("straight_passes", passage.straight_passes)),
-        "unwound_deg": float(before.get("unwound_deg", turned)),
-        "wander_mm": float(np.hypot(placed.wander_mm, before.get("wander_mm", 0.0))),
-    }
 
 
 def _degrees(angle: float) -> float:

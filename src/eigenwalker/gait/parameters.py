@@ -1,4 +1,4 @@
-"""A walk in the numbers that clinics and textbooks use."""
+"""Spatio-temporal gait parameters, as clinics and textbooks use them."""
 
 from __future__ import annotations
 
@@ -18,39 +18,48 @@ from eigenwalker.gait.in_place import in_place
 
 _STRIDES_PLAYED = 3
 _TRAVELS_MM = 800.0
-"""Way that nobody goes on a treadmill without falling off."""
+"""Distance that nobody travels on a treadmill without falling off."""
 _FRAMES_A_STRIDE = 200
 
 
-def gait_parameters(walk: xr.DataArray | Walker) -> pd.Series:
-    """Return the gait parameters of a walk.
+def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = None) -> pd.Series:
+    """Return the spatio-temporal parameters of a walk.
 
     Events are those of `gait_events`, with its bias: from ankles alone, stance and double support
-    come out some 3 and 5 % of the stride too long (simulated walks). A step's length is the way
-    between the places of successive heel strikes of both feet on the ground, its width their
-    distance sideways.
+    are some 3 and 5 % of the stride too long (simulated walks).
 
     Parameters
     ----------
     walk : DataArray of shape (time, marker, axis), or Walker
-        A walk in place, facing +x, whose ``attrs["speed_mm_s"]`` says how fast it was; otherwise
-        the standing feet tell the speed (`stance_speed`). A capture that travels goes through
-        `in_place` first. A walker is played for some strides.
+        A walk in place, facing +x, in millimetres. A capture that travels is brought in place
+        first (`in_place`); a walker is sampled over three strides.
+    speed_mm_s : float, optional
+        Speed of the walk. Otherwise it is that of the walker or of the capture that travels, the
+        ``attrs["speed_mm_s"]`` that `in_place` writes, or that of the standing feet
+        (`stance_speed`).
 
     Returns
     -------
     Series
-        ``frequency_hz``, ``cadence_steps_min``, ``speed_mm_s``, ``stride_time_s``,
-        ``stride_time_cv`` (SD over mean, NaN for a walker or less than three strides),
-        ``stride_length_mm``, ``step_length_left_mm`` (from the right foot's strike to the left's),
-        ``step_length_right_mm``, ``step_width_mm``, ``step_asymmetry`` and ``stance_asymmetry``
-        (left minus right over their mean), ``stance_share_left``, ``stance_share_right``,
-        ``double_support_share``, ``pelvis_vertical_range_mm``. What needs more strides is NaN.
+        NaN where more strides are needed.
+
+        - ``frequency_hz``, ``stride_time_s``, ``cadence_steps_min``, ``speed_mm_s``,
+          ``stride_length_mm``;
+        - ``stride_time_cv``: SD over mean, NaN for a walker or less than three strides;
+        - ``step_length_left_mm``: along x between the places on the ground of a right heel strike
+          and the left one that follows; ``step_length_right_mm``; ``step_width_mm``: along y;
+        - ``stance_share_left``, ``stance_share_right``, ``double_support_share``: of the stride;
+        - ``step_asymmetry``, ``stance_asymmetry``: left minus right over their mean;
+        - ``pelvis_vertical_range_mm``: mean over strides.
 
     Raises
     ------
     ValueError
         If the ankles are missing or nothing repeats.
+
+    See Also
+    --------
+    gait_events, walker_measures
 
     Examples
     --------
@@ -81,8 +90,9 @@ def gait_parameters(walk: xr.DataArray | Walker) -> pd.Series:
             walk = in_place(walk)
         walk = check_trajectories(walk, complete=True)
         frequency_hz = fundamental_frequency(walk)
-        speed = float(walk.attrs.get("speed_mm_s", np.nan))
+        speed = walk.attrs.get("speed_mm_s", np.nan)
     events = gait_events(walk)
+    speed = float(speed if speed_mm_s is None else speed_mm_s)
     if not np.isfinite(speed):
         speed = stance_speed(walk)
     times = {
@@ -111,7 +121,7 @@ def gait_parameters(walk: xr.DataArray | Walker) -> pd.Series:
             "stance_share_right": stance[1],
             "stance_asymmetry": _asymmetry(*stance),
             "double_support_share": sum(stance) - 1,
-            "pelvis_vertical_range_mm": _bob(walk, frequency_hz),
+            "pelvis_vertical_range_mm": _vertical_range(walk, frequency_hz),
         }
     )
 
@@ -123,7 +133,7 @@ class _Steps(NamedTuple):
 
 
 def _steps(walk: xr.DataArray, times: dict[tuple[str, str], np.ndarray], speed: float) -> _Steps:
-    """Return mean step lengths and width, from where the ankles are at their heel strikes."""
+    """Return mean step lengths and width, from the places of the ankles at heel strikes."""
     time = walk.time.values
     strikes = []
     for side in SIDES:
@@ -151,7 +161,7 @@ def _stance(strikes: np.ndarray, offs: np.ndarray, frequency_hz: float) -> float
     return _mean([share for share in shares if share < 1])
 
 
-def _bob(walk: xr.DataArray, frequency_hz: float) -> float:
+def _vertical_range(walk: xr.DataArray, frequency_hz: float) -> float:
     """Return the mean over strides of the vertical range of the pelvis, or of the hips' middle."""
     names = set(walk.marker.values.tolist())
     trunk = ["pelvis"] if "pelvis" in names else ["left_hip", "right_hip"]

@@ -1,4 +1,4 @@
-"""Which part of a capture is steady walking: standing, starting, turning and stopping left out."""
+"""The steady strides of a capture: without standing, starting, turning and stopping."""
 
 from __future__ import annotations
 
@@ -7,33 +7,34 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.core.fourier import fit_basis, harmonic_basis
+from eigenwalker.core.smoothing import running_mean
 from eigenwalker.gait.frequency import frequency_of_scores
 
 N_HARMONICS = 3
 """Harmonics of the stride that steadiness is judged against; more would follow any wobble."""
 
 TOLERATED_SHARE = 0.08
-"""A half-stride belongs to the steady part if it departs from it by less than this share of the
+"""A half-stride is steady if it departs from the common cycle by less than this share of the
 movement's variance: two harmonics then explain 0.92 or more. Real walks reach 0.95 to 0.99."""
 
 BROKEN_SHARE = 0.4
-"""No steady part goes through a half-stride that departs by more: a stop, a turn, a stumble."""
+"""Steady strides end at a half-stride that departs by more: a stop, a turn, a stumble."""
 
 TOLERANCE_BESIDE_CORE = 1.5
-"""In a capture without a steady stride, this many times what its most regular strides depart by is
-tolerated, so that something is kept; quality then says what it is worth."""
+"""In a capture without a steady stride, this many times the departure of its most regular strides
+is tolerated, so that some strides are taken; `assess` then judges them."""
 
 CORE_STRIDES = 2.0
-"""Length of the piece from which a steady part is grown."""
+"""Length in strides of the piece from which the search starts."""
 
 MOST_CORES = 60
-"""Pieces among which the most regular is looked for, however long the capture is."""
+"""Most pieces among which the most regular one is searched."""
 
 SEARCH_RATE_HZ = 30.0
-"""Enough for the harmonics above, three times over."""
+"""Three times what these harmonics need."""
 
 ONE_STRIDE_WITHIN = 0.25
-"""How far the estimate of a single stride's frequency may be off."""
+"""Relative error that the estimated frequency of a single stride may have."""
 
 CLOSED_SHARE = 0.02
 """Squared distance of end and beginning, as a share of the movement's variance, up to which a
@@ -42,22 +43,22 @@ recording closes: an eightieth of a stride, or noise of a few millimetres."""
 _MAX_ROUNDS = 30
 
 
-class SteadyPart(NamedTuple):
+class SteadyStrides(NamedTuple):
     """Frames ``start`` to ``stop`` (not included) and the stride frequency they share."""
 
     start: int
     stop: int
     frequency_hz: float
 
-    def strides(self, rate_hz: float) -> float:
-        """Return how many strides the part holds."""
+    def count(self, rate_hz: float) -> float:
+        """Return the number of strides."""
         return (self.stop - self.start) * self.frequency_hz / rate_hz
 
 
 def body_relative(positions: np.ndarray) -> np.ndarray:
-    """Return movement relative to the body, as columns, in which progress and drift do not show.
+    """Return the movement of shape (time, feature) relative to the body, without progress.
 
-    Relative to the middle of all markers; with less than three, to a straight path.
+    Relative to the middle of all markers; with fewer than three, to a straight path.
     """
     n_frames, n_markers, _ = positions.shape
     if n_markers >= 3:
@@ -68,23 +69,23 @@ def body_relative(positions: np.ndarray) -> np.ndarray:
     return columns - np.multiply.outer(frames, frames @ columns / (frames @ frames))
 
 
-def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
-    """Return the longest part that one frequency and one posture cycle describe.
+def find_steady_strides(movement: np.ndarray, rate_hz: float) -> SteadyStrides:
+    """Return the longest run of strides that one frequency and one cycle of postures describe.
 
-    Starting from the whole, or else from the most regular two strides, the part takes in every
-    half-stride that its own cycle, played on, predicts, and gives up those that it does not, until
-    nothing changes. An already steady walk is kept whole.
+    Starting from the whole capture, or else from the most regular two strides, the run takes in
+    every half-stride that its own cycle predicts and drops those that it does not predict, until
+    nothing changes. A capture that is steady throughout is taken whole.
 
     Parameters
     ----------
     movement : array of shape (time, feature)
-        Positions relative to the body, so that progress through the room is out.
+        Positions relative to the body, as `body_relative` returns them.
     rate_hz : float
         Frames a second.
 
     Returns
     -------
-    SteadyPart
+    SteadyStrides
 
     Raises
     ------
@@ -102,17 +103,17 @@ def steady_part(movement: np.ndarray, rate_hz: float) -> SteadyPart:
         core, irregularity = _most_regular(coarse, rate)
         tolerated = max(TOLERATED_SHARE, TOLERANCE_BESIDE_CORE * irregularity)
         grown = [_settle(coarse, rate, start, tolerated) for start in (whole, core)]
-        window = max(core, *grown, key=lambda window: window[1] - window[0])
+        window = max(core, *grown, key=lambda run: run[1] - run[0])
     start, stop = window[0] * block, window[1] * block
     if window[1] == n_blocks:
         stop = len(movement)
-    return SteadyPart(start, stop, _frequency(movement[start:stop], rate_hz))
+    return SteadyStrides(start, stop, _frequency(movement[start:stop], rate_hz))
 
 
 def _frequency(movement: np.ndarray, rate_hz: float) -> float:
-    """Return strides a second; of a recording that closes after one stride, what its length says.
+    """Return strides a second; of a recording that closes after one stride, that of its length.
 
-    A single stride tells its frequency badly, unless it goes over into its own beginning.
+    The frequency of a single stride is estimated badly, unless its end leads to its beginning.
     """
     frequency_hz = frequency_of_scores(movement, rate_hz)
     once = abs(len(movement) * frequency_hz / rate_hz - 1) < ONE_STRIDE_WITHIN
@@ -120,26 +121,26 @@ def _frequency(movement: np.ndarray, rate_hz: float) -> float:
 
 
 def closes(movement: np.ndarray) -> bool:
-    """Return whether movement goes on, after its last frame, as it began."""
+    """Return whether the last frame of a movement leads to its first."""
     gap = movement[-1] - movement[0] + closing_step(movement)
     variance = movement.var(axis=0).sum()
     return bool(gap @ gap < CLOSED_SHARE * variance)
 
 
 def closing_step(movement: np.ndarray) -> np.ndarray:
-    """Return the way from the last frame to the first of the next stride."""
+    """Return the step from the last frame to the first of the next stride."""
     return (movement[1] - movement[0] + movement[-1] - movement[-2]) / 2
 
 
 def _settle(
     movement: np.ndarray, rate_hz: float, window: tuple[int, int], tolerated: float
 ) -> tuple[int, int]:
-    """Return the window that taking in and giving up half-strides ends at; empty if none is."""
+    """Return the window at which taking in and dropping half-strides ends; else an empty one."""
     seen = {window}
     for _ in range(_MAX_ROUNDS):
         departure, frequency = _departure(movement, rate_hz, window)
         stride = rate_hz / frequency
-        smooth = _smoothed(departure, max(1, round(stride / 2)))
+        smooth = running_mean(departure, max(1, round(stride / 2)))
         broken = smooth > max(BROKEN_SHARE, 2 * tolerated)
         run = _best_run(np.where(broken, -np.inf, tolerated - smooth))
         if run[1] - run[0] < stride:
@@ -154,7 +155,7 @@ def _settle(
 def _departure(
     movement: np.ndarray, rate_hz: float, window: tuple[int, int]
 ) -> tuple[np.ndarray, float]:
-    """Return how far each frame is from the cycle of a window, as a share of its variance."""
+    """Return each frame's squared distance from the cycle of a window over its variance; and Hz."""
     inside = movement[slice(*window)]
     frequency = frequency_of_scores(inside, rate_hz)
     cycles = np.arange(len(movement)) * frequency / rate_hz
@@ -166,15 +167,8 @@ def _departure(
     return np.einsum("tf,tf->t", residual, residual) / variance, frequency
 
 
-def _smoothed(values: np.ndarray, width: int) -> np.ndarray:
-    """Return running means; at the ends over what there is."""
-    kernel = np.ones(min(width, len(values)))
-    counts = np.convolve(np.ones(len(values)), kernel, "same")
-    return np.convolve(values, kernel, "same") / counts
-
-
 def _best_run(gain: np.ndarray) -> tuple[int, int]:
-    """Return the run of frames whose gains add up to most."""
+    """Return the run of frames with the largest sum of gains."""
     best, best_sum, start, total = (0, 0), -np.inf, 0, 0.0
     for frame, value in enumerate(gain.tolist()):
         if total <= 0:
@@ -186,7 +180,7 @@ def _best_run(gain: np.ndarray) -> tuple[int, int]:
 
 
 def _most_regular(movement: np.ndarray, rate_hz: float) -> tuple[tuple[int, int], float]:
-    """Return the two strides that repeat best, among those that move much, and how they depart."""
+    """Return the two strides that repeat best, among those that move much, and their departure."""
     n_frames = len(movement)
     length = round(CORE_STRIDES * rate_hz / frequency_of_scores(movement, rate_hz))
     length = min(length, n_frames)
@@ -201,5 +195,5 @@ def _most_regular(movement: np.ndarray, rate_hz: float) -> tuple[tuple[int, int]
             for window, variance in zip(windows, variances, strict=True)
             if variance >= lively
         ),
-        key=lambda found: found[1],
+        key=lambda candidate: candidate[1],
     )

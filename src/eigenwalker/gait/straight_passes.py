@@ -1,4 +1,4 @@
-"""Which strides of a capture are taken: a straight pass, or a turning walk made straight."""
+"""The straight pass whose strides are taken, or a turning walk made straight."""
 
 from __future__ import annotations
 
@@ -7,36 +7,36 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.runs import runs_of_true
 from eigenwalker.gait.frequency import NoStrideError
-from eigenwalker.gait.gaps import Gap, runs_of
-from eigenwalker.gait.steady_strides import SteadyPart, body_relative, steady_part
+from eigenwalker.gait.gaps import Gap
+from eigenwalker.gait.steady_strides import SteadyStrides, body_relative, find_steady_strides
 from eigenwalker.gait.turning import STRAIGHT_ON_THE_WHOLE, slow_heading, straight_frames, unwound
 
 FEWEST_STRIDES = 0.9
-"""Below about one stride nothing repeats, and a walk cannot be told from its drift."""
+"""With less than about a stride nothing repeats, and a walk cannot be separated from its drift."""
 
 ENOUGH_STRAIGHT = 2
 """Straight strides that are taken however many more a turning walk has on its curves."""
 
 
-class Passage(NamedTuple):
-    """The steady part of a capture, and how its heading was dealt with.
+class StraightPass(NamedTuple):
+    """The steady strides of a capture, and its positions in which they go straight on.
 
-    ``positions`` are those of the whole capture, made straight where ``heading`` is not 0, the
-    slow heading of each frame in radians. ``straight_passes`` counts the passes from which the
-    one with most strides was taken; it is 1 for a capture without turns and 0 where the heading
-    was unwound.
+    ``positions`` are those of the whole capture, unwound where ``heading`` is not 0: the slow
+    heading of each frame in radians. ``n_passes`` counts the straight passes from which the one
+    with most strides was taken; it is 1 for a capture without turns and 0 for one that is unwound.
     """
 
     positions: np.ndarray
-    part: SteadyPart
+    strides: SteadyStrides
     heading: np.ndarray
-    straight_passes: int
+    n_passes: int
 
 
-def find_passage(
+def find_straight_pass(
     walk: xr.DataArray, positions: np.ndarray, gaps: list[Gap], rate_hz: float
-) -> Passage:
+) -> StraightPass:
     """Return the steady strides of a capture: straight ones if there are some, else unwound ones.
 
     Where the heading changes, the straight pass with most strides is taken if it has two or
@@ -53,86 +53,80 @@ def find_passage(
     rate_hz : float
         Frames a second.
 
-    Returns
-    -------
-    Passage
-
     Raises
     ------
     ValueError
-        If there is less than about a stride, or a gap in the midst of it.
+        If there is less than about a stride, or a gap between the strides.
 
     """
-    complete = np.atleast_1d(np.isfinite(positions).all(axis=(1, 2)))
+    complete = np.isfinite(positions).all(axis=(1, 2))
     heading = slow_heading(positions, walk.marker.values.tolist(), rate_hz)
     ahead = np.zeros(len(positions))
     if not heading.any():
-        part = _steady_run(walk, positions, gaps, rate_hz, complete)
-        return Passage(positions, part, ahead, 1)
+        strides = _most_strides(walk, positions, gaps, rate_hz, complete)
+        return StraightPass(positions, strides, ahead, 1)
     along = unwound(positions, heading)
-    curved = _steady_run(walk, along, gaps, rate_hz, complete)
+    curved = _most_strides(walk, along, gaps, rate_hz, complete)
     stride = rate_hz / curved.frequency_hz
     straight = complete & straight_frames(heading, stride)
     try:
-        part = _steady_run(walk, positions, gaps, rate_hz, straight)
+        strides = _most_strides(walk, positions, gaps, rate_hz, straight)
     except ValueError:
-        return Passage(along, curved, heading, 0)
-    wanted = min(ENOUGH_STRAIGHT, curved.strides(rate_hz) / 2)
-    turned = np.ptp(heading[part.start : part.stop])
-    if part.strides(rate_hz) < wanted or turned > STRAIGHT_ON_THE_WHOLE:
-        return Passage(along, curved, heading, 0)
-    passes = [stop - start for start, stop in runs_of(straight)]
+        return StraightPass(along, curved, heading, 0)
+    enough = min(ENOUGH_STRAIGHT, curved.count(rate_hz) / 2)
+    turned = np.ptp(heading[strides.start : strides.stop])
+    if strides.count(rate_hz) < enough or turned > STRAIGHT_ON_THE_WHOLE:
+        return StraightPass(along, curved, heading, 0)
+    passes = [stop - start for start, stop in runs_of_true(straight)]
     n_passes = sum(length >= FEWEST_STRIDES * stride for length in passes)
-    return Passage(positions, part, ahead, max(1, n_passes))
+    return StraightPass(positions, strides, ahead, max(1, n_passes))
 
 
-def _steady_run(
+def _most_strides(
     walk: xr.DataArray,
     positions: np.ndarray,
     gaps: list[Gap],
     rate_hz: float,
     usable: np.ndarray,
-) -> SteadyPart:
-    """Return the steady part with most strides among the runs of frames that can be used."""
-    parts, complaints = [], []
-    for start, stop in runs_of(usable):
+) -> SteadyStrides:
+    """Return the most steady strides that a run of usable frames holds."""
+    runs, problems = [], []
+    for start, stop in runs_of_true(usable):
         try:
-            part = steady_part(body_relative(positions[start:stop]), rate_hz)
+            run = find_steady_strides(body_relative(positions[start:stop]), rate_hz)
         except ValueError as error:
-            complaints.append((stop - start, str(error)))
+            problems.append((stop - start, str(error)))
         else:
-            parts.append(part._replace(start=start + part.start, stop=start + part.stop))
-    parts = [part for part in parts if part.strides(rate_hz) >= FEWEST_STRIDES]
-    if not parts:
-        raise NoStrideError(_no_stride(walk, gaps, complaints))
-    best = max(parts, key=lambda part: part.strides(rate_hz))
-    seen = np.atleast_1d(np.isfinite(positions).any(axis=(1, 2)))
-    if within := _gaps_within(best, parts, gaps, rate_hz, seen):
+            if run.count(rate_hz) >= FEWEST_STRIDES:
+                runs.append(run._replace(start=start + run.start, stop=start + run.stop))
+    if not runs:
+        raise NoStrideError(_no_stride(walk, gaps, problems))
+    best = max(runs, key=lambda run: run.count(rate_hz))
+    seen = np.isfinite(positions).any(axis=(1, 2))
+    if within := _gaps_within(best, runs, gaps, rate_hz, seen):
         raise ValueError(
-            f"Gaps in the midst of the walk are too long to be filled: {_told(walk, within)}. Fill "
-            "them where the capture was made, cut the capture before or after them, or leave "
+            f"Gaps in the midst of the walk are too long to be filled: {_listed(walk, within)}. "
+            "Fill them where the capture was made, cut the capture before or after them, or leave "
             "the markers out."
         )
     return best
 
 
 def _gaps_within(
-    best: SteadyPart,
-    parts: list[SteadyPart],
+    best: SteadyStrides,
+    runs: list[SteadyStrides],
     gaps: list[Gap],
     rate_hz: float,
     seen: np.ndarray,
 ) -> list[Gap]:
-    """Return gaps that alone part the best steady part from another, however long they are.
+    """Return gaps, however long, that alone separate the best run of strides from another.
 
-    Both parts reach up to such a gap, but for what trimming to whole strides leaves. Who was not
-    seen at all in the middle of it had left the room between two passes, which is no gap.
+    Both runs reach up to such a gap, but for what trimming to whole strides leaves. A body of which
+    no marker was seen in the middle of it had left the room between two passes: that is no gap.
     """
     trimmed = 2 * rate_hz / best.frequency_hz
     between = [
-        sorted([best.start, best.stop, part.start, part.stop])[1:3]
-        for part in parts
-        if part is not best
+        sorted([best.start, best.stop, run.start, run.stop])[1:3] for run in runs if run is not best
     ]
     return [
         gap
@@ -147,21 +141,22 @@ def _gaps_within(
     ]
 
 
-def _no_stride(walk: xr.DataArray, gaps: list[Gap], complaints: list[tuple[int, str]]) -> str:
+def _no_stride(walk: xr.DataArray, gaps: list[Gap], problems: list[tuple[int, str]]) -> str:
     if gaps:
         return (
             "No stride is seen whole: the longest stretch in which all markers are there is too "
-            f"short, as these are missing: {_told(walk, gaps)}. Leave out markers that were "
+            f"short, as these are missing: {_listed(walk, gaps)}. Leave out markers that were "
             "hardly seen, or fill their gaps."
         )
-    return max(complaints)[1] if complaints else "No stride repeats here: this is no steady walk."
+    return max(problems)[1] if problems else "No stride repeats here: this is no steady walk."
 
 
-def _told(walk: xr.DataArray, gaps: list[Gap], most: int = 5) -> str:
+def _listed(walk: xr.DataArray, gaps: list[Gap], most: int = 5) -> str:
     time = walk.time.values
-    told = [
+    longest = sorted(gaps, key=lambda gap: gap.start - gap.stop)[:most]
+    named = ", ".join(
         f"{walk.marker.values[gap.marker]} from {time[gap.start]:.2f} to "
         f"{time[gap.stop - 1]:.2f} s (frames {gap.start} to {gap.stop - 1})"
-        for gap in sorted(gaps, key=lambda gap: gap.start - gap.stop)[:most]
-    ]
-    return ", ".join(told) + (f" and {len(gaps) - most} more" if len(gaps) > most else "")
+        for gap in longest
+    )
+    return named + (f" and {len(gaps) - most} more" if len(gaps) > most else "")

@@ -1,4 +1,4 @@
-"""Walks that turn: the slow heading of the body, and the walk as if it had gone straight on."""
+"""Walks that turn: the slow heading of the body, and the walk unwound to a straight one."""
 
 from __future__ import annotations
 
@@ -6,33 +6,34 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from eigenwalker.core.kinematics import rotate_z
 from eigenwalker.gait.heading import SIDES
-from eigenwalker.gait.steady_strides import steady_part
+from eigenwalker.gait.steady_strides import find_steady_strides
 
 TURNED = np.deg2rad(25)
-"""A capture in which the heading changes by less goes straight: of 175 acted straight
-walks it changes by 6 degrees, at most 15."""
+"""A capture in which the heading changes by less is straight: in 175 acted straight walks it
+changes by 6 degrees, at most 15."""
 
 STRAIGHT_A_STRIDE = np.deg2rad(15)
-"""Change of heading within a stride from which on the stride belongs to a turn."""
+"""Change of heading within a stride that makes it part of a turn."""
 
 STRAIGHT_ON_THE_WHOLE = np.deg2rad(12)
-"""Change of heading that straight strides may add up to."""
+"""Change of heading over all straight strides of a pass that is still straight."""
 
 FLIPPED = np.deg2rad(60)
-"""Nobody turns so far from one frame to the next: where markers seem to, they do not tell."""
+"""Nobody turns so far from one frame to the next: the heading is then unknown."""
 
 FEWEST_MARKERS = 6
-"""Without names, fewer markers swing too much to show which way a body faces."""
+"""Without names, fewer markers swing too much to show the direction that a body faces."""
 
 _ROUNDS = 10
 
 
 def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) -> np.ndarray:
-    """Return the direction the body faces, without what repeats with every stride.
+    """Return the direction that the body faces, averaged over a stride around each frame.
 
-    The direction square to hips and shoulders, or, where names do not tell these, the turn that
-    brings the markers nearest to their mean posture; its mean over a stride around each frame.
+    It is square to the lines through both hips and both shoulders; without these names, it is the
+    turn that brings the markers nearest to their mean posture.
 
     Parameters
     ----------
@@ -46,15 +47,15 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
     Returns
     -------
     array of shape (time,)
-        Radians, without jumps of a full turn; all 0 where it cannot be told, or hardly changes.
+        Radians, without jumps of a full turn; all 0 where it is unknown or hardly changes.
 
     Examples
     --------
-    Someone who goes round anticlockwise, once in 8 s:
+    Someone who walks one circle counter-clockwise in 8 s:
 
     >>> walk = ew.simulate_walk(seed=1, duration_s=8, rate_hz=60)
     >>> around = np.linspace(0, 2 * np.pi, len(walk))
-    >>> turned = positions_turned(walk.values, around)
+    >>> turned = rotate_z(walk.values, around)
     >>> heading = slow_heading(turned, ew.JOINTS.markers, 60)
     >>> bool(np.abs(np.ptp(heading) - 2 * np.pi) < 0.1)
     True
@@ -73,32 +74,25 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
     if not whole.any():
         return straight
     relative = positions[:, whole] - positions[:, whole].mean(axis=1, keepdims=True)
-    movement = positions_turned(relative, -angle).reshape(len(positions), -1)
+    movement = rotate_z(relative, -angle).reshape(len(positions), -1)
     try:
-        stride = rate_hz / steady_part(movement, rate_hz).frequency_hz
+        stride = rate_hz / find_steady_strides(movement, rate_hz).frequency_hz
     except ValueError:
         return straight
     heading = _mean_over(angle, round(stride))
     return heading if np.ptp(heading) >= TURNED else straight
 
 
-def positions_turned(positions: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return positions turned about z by an angle in each frame, in radians."""
-    cos, sin = np.cos(angle)[:, None], np.sin(angle)[:, None]
-    x, y, z = np.moveaxis(positions, 2, 0)
-    return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=2)
-
-
 def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """Return a walk as if it had gone on in its first direction, each frame seen from the body.
+    """Return a walk made straight: in the direction of its first frame throughout.
 
-    The body is turned back by its slow heading, and so is each step of its path, so that progress
-    along a curve becomes progress along a line.
+    The body is turned back by its slow heading, and so is each step of its path: progress along a
+    curve becomes progress along a line.
 
     Parameters
     ----------
     positions : array of shape (time, marker, axis)
-        In the room; frames in which a marker is missing are lost.
+        In the room; where a marker is missing in a frame, all are missing in the result.
     heading : array of shape (time,)
         As `slow_heading` returns it.
 
@@ -110,18 +104,18 @@ def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
     turn = heading[0] - heading
     centre = positions.mean(axis=1, keepdims=True)
     steps = np.nan_to_num(np.diff(centre, axis=0))
-    path = np.cumsum(positions_turned(steps, (turn[1:] + turn[:-1]) / 2), axis=0)
+    path = np.cumsum(rotate_z(steps, (turn[1:] + turn[:-1]) / 2), axis=0)
     path = np.concatenate([np.zeros((1, 1, 3)), path]) + np.nan_to_num(centre[:1])
-    return positions_turned(positions - centre, turn) + path
+    return rotate_z(positions - centre, turn) + path
 
 
 def straight_frames(heading: np.ndarray, stride: float) -> np.ndarray:
-    """Return which frames belong to straight passes; a stride has so many frames."""
+    """Return which frames belong to straight passes; `stride` is the frames of one stride."""
     return np.abs(np.gradient(heading)) * stride < STRAIGHT_A_STRIDE
 
 
 def _facing(positions: np.ndarray, names: list[str]) -> np.ndarray:
-    """Return the horizontal direction the body faces in each frame, as a complex number."""
+    """Return the horizontal direction that the body faces in each frame, as a complex number."""
     flat = positions[..., 0] + 1j * positions[..., 1]
     to_left = [
         flat[:, names.index(f"left_{part}")] - flat[:, names.index(f"right_{part}")]
@@ -142,7 +136,7 @@ def _facing(positions: np.ndarray, names: list[str]) -> np.ndarray:
 
 
 def _mean_over(values: np.ndarray, width: int) -> np.ndarray:
-    """Return running means over so many frames; at both ends they go on as they changed there."""
+    """Return running means over `width` frames, extrapolated linearly at both ends."""
     width = max(1, min(width, len(values) // 2))
     inner = np.convolve(values, np.full(width, 1 / width), "valid")
     first = (width - 1) / 2

@@ -1,2 +1,2 @@
-from .label_repair import mend as mend
+from .label_repair import Repair as Repair, repair_labels as repair_labels
 from .virtual_markers import virtual_markers as virtual_markers

@@ -1,4 +1,4 @@
-"""Markers that are for moments elsewhere: samples that are no part of a path."""
+"""Flicker: samples that are off a marker's path for moments."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 LONGEST_S = 0.1
-"""A marker that is elsewhere for longer than this has jumped: nothing tells which place
-is right."""
+"""A marker that is off its path for longer has jumped: nothing tells which place is right."""
 
 SUDDEN_MM = 30.0
 SUDDEN_FACTOR = 4.0
@@ -23,49 +22,45 @@ _FEWEST = 8
 
 
 class Flicker(NamedTuple):
-    """Frames in which each marker is elsewhere, and how often it jumps without coming back."""
+    """Samples off the path, of shape (time, marker), and the frames of each marker's jumps."""
 
-    elsewhere: np.ndarray
-    jumps: np.ndarray
+    off_path: np.ndarray
+    jumps: list[list[int]]
 
 
 def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
-    """Return which samples of each marker are no part of its path.
+    """Return which samples of each marker are not part of its path, and where it jumps.
 
-    A marker flickers if it leaves its path by a sudden step and comes back by the opposite one
-    within `LONGEST_S`; also if it comes only after its first few frames, or leaves before its last.
+    A marker flickers if it leaves its path by a sudden step and returns by the opposite one within
+    `LONGEST_S`; also if it reaches its path only after its first few frames, or leaves it before
+    its last. Any other sudden step is a jump.
 
     Parameters
     ----------
     positions : array of shape (time, marker, axis)
-        NaN where a marker was not seen.
+        Millimetres; NaN where a marker was not seen.
     rate_hz : float
         Frames a second.
-
-    Returns
-    -------
-    Flicker
-        ``elsewhere`` of shape (time, marker), ``jumps`` of shape (marker,).
 
     Examples
     --------
     >>> path = np.linspace(0, 300, 31)[:, None, None] * [[1.0, 0, 0]]
     >>> path[10:12] += 400
     >>> flicker = find_flicker(path, 100)
-    >>> np.flatnonzero(flicker.elsewhere[:, 0]).tolist(), flicker.jumps.tolist()
-    ([10, 11], [0])
+    >>> np.flatnonzero(flicker.off_path[:, 0]).tolist(), flicker.jumps
+    ([10, 11], [[]])
 
     """
     longest = max(1, round(LONGEST_S * rate_hz))
-    elsewhere = np.zeros(positions.shape[:2], dtype=bool)
-    jumps = np.zeros(positions.shape[1], dtype=int)
+    off_path = np.zeros(positions.shape[:2], dtype=bool)
+    jumps: list[list[int]] = [[] for _ in range(positions.shape[1])]
     for marker in np.flatnonzero(~_calm(positions)):
         frames = np.flatnonzero(np.isfinite(positions[:, marker]).all(axis=1))
         if len(frames) >= _FEWEST:
-            found, jumps[marker] = _of_path(positions[frames, marker], frames, longest)
-            for first, last in found:
-                elsewhere[frames[first:last], marker] = True
-    return Flicker(elsewhere, jumps)
+            excursions, jumps[marker] = _excursions(positions[frames, marker], frames, longest)
+            for first, last in excursions:
+                off_path[frames[first:last], marker] = True
+    return Flicker(off_path, jumps)
 
 
 def _calm(positions: np.ndarray) -> np.ndarray:
@@ -83,32 +78,33 @@ def _calm(positions: np.ndarray) -> np.ndarray:
 
 def _calm_around(steps: np.ndarray) -> np.ndarray:
     most = least = steps
-    for apart in (1, 2, 3):  # 2, 4, then 7 steps on end
+    for apart in (1, 2, 3):  # 2, 4, then 7 successive steps
         most = np.maximum(most[:-apart], most[apart:])
         least = np.minimum(least[:-apart], least[apart:])
     return np.square(most - least).sum(axis=2).max(axis=0) <= SUDDEN_MM**2
 
 
-def _of_path(path: np.ndarray, frames: np.ndarray, longest: int) -> tuple[list[tuple], int]:
-    """Return from where to where a marker is elsewhere, and how many jumps are left."""
-    passed = np.diff(frames)[:, None]
-    steps = np.diff(path, axis=0) / passed
+def _excursions(
+    path: np.ndarray, frames: np.ndarray, longest: int
+) -> tuple[list[tuple[int, int]], list[int]]:
+    """Return where a path is left and reached again, and the frames of other sudden steps."""
+    steps = np.diff(path, axis=0) / np.diff(frames)[:, None]
     sudden = steps - median_filter(steps, size=(_AROUND, 1), mode="nearest")
     size = np.linalg.norm(sudden, axis=1)
     least = SUDDEN_MM + SUDDEN_FACTOR * np.quantile(size, 0.9)
     places = (np.flatnonzero(size > least) + 1).tolist()
-    found, jumps = [], 0
+    excursions, jumps = [], []
     while places:
         here, there = places.pop(0), places[0] if places else None
         if there is not None and frames[there - 1] - frames[here] < longest:
-            left, back = sudden[here - 1], sudden[there - 1]
-            if np.linalg.norm(left + back) < (np.linalg.norm(left) + np.linalg.norm(back)) / 2:
-                found.append((here, places.pop(0)))
+            away, back = sudden[here - 1], sudden[there - 1]
+            if np.linalg.norm(away + back) < (np.linalg.norm(away) + np.linalg.norm(back)) / 2:
+                excursions.append((here, places.pop(0)))
                 continue
         if frames[here - 1] - frames[0] < longest:
-            found.append((0, here))
+            excursions.append((0, here))
         elif frames[-1] - frames[here] < longest:
-            found.append((here, len(frames)))
+            excursions.append((here, len(frames)))
         else:
-            jumps += 1
-    return found, jumps
+            jumps.append(int(frames[here]))
+    return excursions, jumps

@@ -1,4 +1,4 @@
-"""Left and right markers that change places: found by where they were a frame before."""
+"""Left and right labels that change places, found from where both markers were before."""
 
 from __future__ import annotations
 
@@ -7,37 +7,37 @@ from collections.abc import Sequence
 import numpy as np
 
 SWAP_MM = 25.0
-"""Two markers that change places seem to jump by more than this each; nearer ones are one."""
+"""Two markers that change places seem to jump by more than this each; nearer ones are the same."""
 
 CLEARER = 3.0
-"""How many times nearer the places are, with labels exchanged, to those expected."""
+"""How many times nearer to the expected places the markers are with exchanged labels."""
 
 CLEAR_SIDE_MM = 20.0
-"""Mean distance across the body from which on a pair shows which of its markers is the left one."""
+"""Mean distance across the body from which on a pair shows which of its markers is on the left."""
 
 TOGETHER = 0.95
-"""Share of the frames in which two pairs agree that change places together."""
+"""Share of the frames in which two pairs agree if they change places together."""
 
 RIGID = 0.1
-"""Coefficient of variation of the distance of two markers that belong to one part of the body."""
+"""Coefficient of variation of the distance of two markers on one rigid part of the body."""
 
 TRAVEL_MM = 1000.0
-"""Way from which on progress tells the front of the body."""
+"""Distance travelled from which on the direction of progress is the front of the body."""
 
 
 def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> np.ndarray:
-    """Return where the labels of each pair have to be exchanged so that both paths are smooth.
+    """Return where the labels of each pair have to be exchanged for both paths to be smooth.
 
-    Of the two ways to make the paths of a pair smooth, the one is taken that puts the left marker
-    at the side at which those of the other pairs are; where all pairs change places, the one that
-    leaves most labels as they are, or, if the body gets along, lets it walk forwards.
+    Either the frames found or all others can be exchanged. The left marker has to be on the side of
+    the other left markers. Where all pairs change places, most labels stay as they are, or, if the
+    body moves through the room, it has to walk forwards.
 
     Parameters
     ----------
     positions : array of shape (time, marker, axis)
         NaN where a marker was not seen.
     pairs : sequence of pairs of int
-        Places of left markers and their right counterparts.
+        Index of each left marker and of its right counterpart.
 
     Returns
     -------
@@ -70,10 +70,10 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
 
 
 def _within_reach(positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Return which pairs may change places: whose steps, both together, would reach across.
+    """Return which pairs may change places: those whose steps, added up, reach across.
 
-    By the triangle inequality labels that stay cost `SWAP_MM` each more than exchanged ones only if
-    both steps add up to more than the distance of the two and `SWAP_MM`.
+    By the triangle inequality, exchanging labels shortens the steps by more than `SWAP_MM` each
+    only if both steps add up to more than the distance of the two markers and `SWAP_MM`.
     """
     steps = np.diff(positions, axis=0)
     farthest = np.sqrt(np.einsum("tma,tma->tm", steps, steps).max(axis=0))[pairs].sum(axis=1)
@@ -83,23 +83,23 @@ def _within_reach(positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 
 def _decided(exchanged: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """Return where labels are exchanged, by the side at which each pair's left marker then is.
+    """Return where labels are exchanged, from the side on which each pair's left marker then is.
 
-    Where that is unclear, as of heels, a pair goes with those that change places when it does, or
-    else most of its labels stay.
+    Where that is unclear, as for heels, a pair follows those that change places at the same frames;
+    without such pairs most of its labels stay.
     """
     clear = np.abs(sides) > CLEAR_SIDE_MM
     decided = exchanged ^ (clear & (sides < 0))
     for pair in np.flatnonzero(~clear):
         own = exchanged[:, [pair]]
         alike = (decided[:, clear] == own).mean(axis=0)
-        with_it = alike[np.abs(alike - 0.5) > TOGETHER - 0.5]
-        decided[:, pair] ^= with_it[0] < 0.5 if len(with_it) else own.mean() > 0.5
+        same_frames = alike[np.abs(alike - 0.5) > TOGETHER - 0.5]
+        decided[:, pair] ^= same_frames[0] < 0.5 if len(same_frames) else own.mean() > 0.5
     return decided
 
 
 def _since_exchanged(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return where the labels of two markers are not those of the first frame."""
+    """Return where the labels of two markers differ from those in the first frame."""
     exchanged = np.zeros(len(left), dtype=bool)
     frames = np.flatnonzero(np.isfinite(left).all(axis=1) & np.isfinite(right).all(axis=1))
     one, other = left[frames], right[frames]
@@ -116,7 +116,7 @@ def _since_exchanged(left: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def _expected(path: np.ndarray, frames: np.ndarray, at: int) -> np.ndarray:
-    """Return where a path goes on, at the speed of its last two frames."""
+    """Return the next place of a path at the velocity of its last two frames."""
     if at < 2:
         return path[at - 1]
     speed = (path[at - 1] - path[at - 2]) / (frames[at - 1] - frames[at - 2])
@@ -124,26 +124,26 @@ def _expected(path: np.ndarray, frames: np.ndarray, at: int) -> np.ndarray:
 
 
 def _most_rigid(across: np.ndarray) -> np.ndarray:
-    """Return those lines across the body that hardly change length: of hips, shoulders, head."""
+    """Return the lines across the body that hardly change length: hips, shoulders, head."""
     lengths = np.ma.masked_equal(np.abs(across), 0)
     variation = (lengths.std(axis=0) / lengths.mean(axis=0)).filled(np.inf)
     return across[:, variation <= max(RIGID, variation.min())]
 
 
 def _sides(across: np.ndarray, usual: np.ndarray) -> np.ndarray:
-    """Return how far, in the mean, each pair's left marker is to the left of its right one."""
+    """Return how far each pair's left marker is to the left of its right one, in the mean."""
     known = (across != 0) & (usual != 0)[:, None]
     left = np.real(across * np.conj(usual)[:, None]) / np.maximum(np.abs(usual), 1e-9)[:, None]
     return np.where(known, left, 0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
 
 
 def _goes_backwards(positions: np.ndarray, across: np.ndarray, share: float) -> bool:
-    """Return whether a body goes backwards, or, in place, whether more labels were exchanged."""
+    """Return whether a body walks backwards; in place, whether most labels were exchanged."""
     places = np.ma.masked_invalid(positions[..., 0] + 1j * positions[..., 1])
     steps = np.diff(places.mean(axis=1)).filled(0)
     forwards = -1j * across / np.maximum(np.abs(across), 1e-9)
-    way = float(np.real(steps * np.conj(forwards[1:])).sum())
-    return way < 0 if abs(way) > TRAVEL_MM else share > 0.5
+    progress = float(np.real(steps * np.conj(forwards[1:])).sum())
+    return progress < 0 if abs(progress) > TRAVEL_MM else share > 0.5
 
 
 def _distance(one: np.ndarray, other: np.ndarray) -> np.ndarray:

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.trajectories import check_trajectories, sampling_rate, trajectories_at
+from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.markers.joint_centres import HIP_REGRESSIONS
-from eigenwalker.markers.label_repair import FLICKER, JUMPS, SWAPS, markers_of, mend, told
+from eigenwalker.markers.label_repair import repair_labels
 from eigenwalker.markers.marker_sets import (
     SIDES,
     MarkerNames,
     MarkerSet,
     known_sets,
     marker_names,
-    side_pairs,
     subjects,
 )
 from eigenwalker.markers.skin_markers import (
@@ -58,7 +58,7 @@ def virtual_markers(
     """Return the 15 joints of a walker (J3, J4), from markers on the skin or another skeleton.
 
     Before that, labels that change sides are put right and samples that are elsewhere for moments
-    are taken out (`mend`). Known are Plug-in Gait and its kin, the 41 markers of the CMU
+    are taken out (`repair_labels`). Known are Plug-in Gait and its kin, the 41 markers of the CMU
     collection, landmarks after van Sint Jan, OptiTrack's sets, and the usual skeletons of BVH
     files: see ``mocap/marker_sets.toml``.
 
@@ -85,7 +85,7 @@ def virtual_markers(
     DataArray of shape (time, marker, axis)
         Joints in the order of ``JOINTS.markers``, then the extra points. NaN where markers were
         missing and nothing rigid beside them tells where they were. Attributes of the capture
-        stay; ``attrs["swaps"]`` and ``attrs["flicker"]`` say what was mended,
+        stay; ``attrs["repairs"]`` holds what was repaired (`repair_labels`),
         ``attrs["marker_set"]`` names the set, ``attrs["marker_set_share"]`` says for which share
         of what it asks there are markers, ``attrs["marker_set_runner_up"]`` which other set is
         nearest, ``attrs["approximate"]`` which joints rest on a regression, an assumed width or a
@@ -109,7 +109,9 @@ def virtual_markers(
     ('own mapping', 'pelvis')
 
     """
-    walk = _mended(check_trajectories(trajectories))
+    walk = check_trajectories(trajectories)
+    with suppress(ValueError):  # where frames are not evenly spaced
+        walk = repair_labels(walk)
     if joints not in ("walker", "full"):
         raise ValueError(f"joints={joints!r} is not known; give 'walker' or 'full'.")
     if hip_regression not in HIP_REGRESSIONS:
@@ -134,31 +136,13 @@ def virtual_markers(
         "approximate": [joint for joint in order if joint in found.approximate],
         "rebuilt": list(found.rebuilt),
     }
-    if joints == "walker":
-        result.attrs |= _of_these(walk, found.markers)
+    if joints == "walker" and found.markers and "repairs" in walk.attrs:
+        result.attrs["repairs"] = tuple(
+            repair
+            for repair in walk.attrs["repairs"]
+            if found.markers & {repair.marker, repair.partner}
+        )
     return result
-
-
-def _mended(walk: xr.DataArray) -> xr.DataArray:
-    """Return the capture with its labels put right, where its frames are evenly spaced."""
-    try:
-        rate_hz = sampling_rate(walk)
-    except ValueError:
-        return walk
-    return mend(walk, side_pairs(walk.marker.values.tolist()), rate_hz)
-
-
-def _of_these(walk: xr.DataArray, markers: frozenset[str]) -> dict[str, list[str]]:
-    """Return what was mended of markers from which joints come: of others it does not matter."""
-    return {
-        found: [
-            entry
-            for entry, about in zip(entries, markers_of(entries), strict=True)
-            if not markers or markers & {about, *about.split(" and ")}
-        ]
-        for found in (SWAPS, FLICKER, JUMPS)
-        if (entries := told(walk, found))
-    }
 
 
 def _seen(walk: xr.DataArray) -> list[str]:

@@ -140,6 +140,6 @@ def common_positions(a: xr.DataArray, b: xr.DataArray) -> tuple[np.ndarray, np.n
     if not seen.any():
         raise ValueError(
             "No marker was seen in all frames of both clips, so they cannot be aligned. Fill gaps "
-            "first, with in_place() or mend()."
+            "first, with in_place() or repair_labels()."
         )
     return values_a[:, seen], values_b[:, seen]

@@ -193,7 +193,7 @@ def register(
     if any(unseen) or cells.isnull().any():
         raise ValueError(
             "Samples are missing in some frames, so no path leads through their map; fill gaps "
-            "first, with in_place() or mend()."
+            "first, with in_place() or repair_labels()."
         )
     path = least_cost_path(cells.values, slope_limit=slope_limit)
     half = round(window_s * sampling_rate(a) / 2)

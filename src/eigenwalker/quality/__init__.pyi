@@ -1,2 +1,2 @@
-from .findings import Quality as Quality, assess as assess
-from .verdict import Verdict as Verdict
+from .assessment import assess as assess
+from .quality import Finding as Finding, Quality as Quality, Verdict as Verdict

@@ -167,7 +167,9 @@ def _walkers(
                 # Effects need the phase of each frame, which virtual markers do not carry on.
                 phase = {"phase": walk["phase"]} if "phase" in walk.coords else {}
                 walk = virtual_markers(walk).assign_coords(phase)
-            walkers.append(decompose_pca(in_place(_with_effects(walk, person, planted))))
+            walk = _with_effects(walk, person, planted)
+            walk = in_place(walk, speed_mm_s=walk.attrs["speed_mm_s"])
+            walkers.append(decompose_pca(walk))
     return walkers
 
 

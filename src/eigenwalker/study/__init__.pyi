@@ -1,5 +1,12 @@
+from .capture_table import capture_table as capture_table
 from .fit_folder import Study as Study, fit_folder as fit_folder
-from .walker_from_file import walker_from_file as walker_from_file
+from .inspect import inspect_file as inspect_file
+from .messages import reasons as reasons, summarise as summarise
+from .process_capture import (
+    CaptureResult as CaptureResult,
+    NoWalkError as NoWalkError,
+    process_capture as process_capture,
+)
 from .walks import (
     Walks as Walks,
     walker_space_distances as walker_space_distances,

@@ -1,4 +1,4 @@
-"""Which captures of a folder make a study, and what is known of each."""
+"""The table of the captures of a folder and of their traits."""
 
 from __future__ import annotations
 
@@ -15,15 +15,22 @@ FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
 
 
-def listed(
-    folder: Path, traits: pd.DataFrame | str | Path | None, pattern: str | None
+def capture_table(
+    folder: str | Path,
+    traits: pd.DataFrame | str | Path | None = None,
+    trait_from_name: str | None = None,
 ) -> pd.DataFrame:
-    """Return the captures to read with what is known of each: a table with a column ``file``.
+    """Return the captures of a folder with their traits, as `fit_folder` reads them.
 
     Parameters
     ----------
-    folder, traits, pattern
+    folder, traits, trait_from_name
         As `fit_folder` takes them.
+
+    Returns
+    -------
+    DataFrame
+        One row a capture: ``file``, relative to the folder, and a column a trait.
 
     Raises
     ------
@@ -31,6 +38,7 @@ def listed(
         If folder, table or pattern make no sense.
 
     """
+    folder = Path(folder)
     if not folder.is_dir():
         raise ValueError(f"{folder} is no folder; name one that holds captures ({_known()}).")
     if traits is not None:
@@ -40,16 +48,16 @@ def listed(
         table = pd.DataFrame({FILE: names})
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
-    if not pattern:
+    if not trait_from_name:
         return table
-    named = _named_traits(table[FILE], pattern)
+    named = _named_traits(table[FILE], trait_from_name)
     if both := [str(name) for name in named if name in table]:
         raise ValueError(f"Both the traits table and the pattern name {both}; let one do so.")
     return table.join(named)
 
 
 def captures_in(folder: Path) -> list[str]:
-    """Return the captures of a folder and its subfolders, by their names from there."""
+    """Return the captures of a folder and its subfolders, by their paths relative to it."""
     return [path.relative_to(folder).as_posix() for path in folder.rglob("*") if is_capture(path)]
 
 
@@ -102,10 +110,10 @@ def _named_traits(names: pd.Series, pattern: str) -> pd.DataFrame:
     matches = [compiled.search(name) for name in names]
     if not any(matches):
         raise ValueError(f"{pattern!r} matches no file name; the first is {names.iloc[0]!r}.")
-    found = pd.DataFrame(
+    traits = pd.DataFrame(
         [match.groupdict() if match else dict.fromkeys(compiled.groupindex) for match in matches]
     )
-    return found.apply(_numbers_where_all_are)
+    return traits.apply(_numbers_where_all_are)
 
 
 def _numbers_where_all_are(column: pd.Series) -> pd.Series:

@@ -1,7 +1,7 @@
-"""What a long fit has done so far: kept beside its output, so that it can go on where it stopped.
+"""The walkers that a long fit has made so far, in a file from which an interrupted fit goes on.
 
-A text file of one line of JSON a capture, to which lines are only added. A line that was cut short
-or does not fit is passed over, and its capture is read again.
+A text file with one line of JSON a capture, to which lines are only added. A line that is cut short
+or does not fit is ignored, and its capture is read again.
 """
 
 from __future__ import annotations
@@ -16,18 +16,16 @@ import numpy as np
 
 from eigenwalker.core.walker import CaptureFit, Walker
 
-Facts = dict[str, object]
 
-
-class Journal:
-    """Walkers by the name of their capture, as far as they were made before.
+class Checkpoint:
+    """The walkers that were made so far, by the names of their captures.
 
     Parameters
     ----------
     path : Path
-        Where it lies; it is made when the first walker is kept.
-    settings : mapping of str to str or int
-        On what a walker depends beside its file. Walkers made otherwise are passed over.
+        The file; it is made when the first walker is added.
+    settings : mapping
+        What a walker depends on beside its file. Walkers with other settings are ignored.
 
     Examples
     --------
@@ -35,17 +33,17 @@ class Journal:
     >>> foot = ew.Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
     >>> with TemporaryDirectory() as folder:
     ...     path = Path(folder) / "people.nc.part"
-    ...     Journal(path, {"form": "fourier"}).keep("a.c3d", [512, 7], foot, {"r2": 0.9})
-    ...     again = Journal(path, {"form": "fourier"})
-    ...     walker, facts = again.find("a.c3d", [512, 7])
-    >>> walker.p0.tolist(), facts
+    ...     Checkpoint(path, {"form": "fourier"}).append("a.c3d", [512, 7], foot, {"r2": 0.9})
+    ...     again = Checkpoint(path, {"form": "fourier"})
+    ...     walker, row = again.get("a.c3d", [512, 7])
+    >>> walker.p0.tolist(), row
     ([[0.0, 0.0, 50.0]], {'r2': 0.9})
-    >>> again.find("a.c3d", [513, 8]) is None  # the file has changed since
+    >>> again.get("a.c3d", [513, 8]) is None  # the file has changed since
     True
 
     """
 
-    def __init__(self, path: Path, settings: Mapping[str, str | int]) -> None:
+    def __init__(self, path: Path, settings: Mapping[str, Any]) -> None:
         self.path = path
         self._settings = dict(settings)
         self._known: dict[str, dict] = {}
@@ -62,15 +60,15 @@ class Journal:
     def __len__(self) -> int:
         return len(self._known)
 
-    def find(self, name: str, state: list[int]) -> tuple[Walker, Facts] | None:
-        """Return the walker of a capture and what is known of it, if they were kept.
+    def get(self, name: str, state: list[int]) -> tuple[Walker, dict[str, Any]] | None:
+        """Return the walker of a capture and its row of `Study.files`, if they are there.
 
         Parameters
         ----------
         name : str
             Of the capture.
         state : list of int
-            What changes when its files do, such as sizes and times.
+            Numbers that change with its files, such as sizes and times.
 
         Returns
         -------
@@ -85,13 +83,13 @@ class Journal:
         except (TypeError, ValueError, KeyError):
             return None
 
-    def keep(self, name: str, state: list[int], walker: Walker, facts: Mapping) -> None:
-        """Add the walker of a capture and what is known of it."""
+    def append(self, name: str, state: list[int], walker: Walker, row: Mapping) -> None:
+        """Add the walker of a capture and its row of `Study.files`."""
         entry = {
             "file": name,
             "state": state,
             "settings": self._settings,
-            "facts": dict(facts),
+            "facts": dict(row),
             "walker": walker,
         }
         with self.path.open("a", encoding="utf-8") as file:
@@ -118,19 +116,19 @@ def _entry(line: str) -> dict | None:
 
 
 def _plain(value: object) -> object:
-    """Return what JSON has for a walker, its fit, arrays and numbers of numpy."""
+    """Return a walker, its fit, or arrays and numbers of numpy in types of JSON."""
     if isinstance(value, Walker | CaptureFit):
         return {entry.name: getattr(value, entry.name) for entry in fields(value)}
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    raise TypeError(f"{type(value).__name__} cannot be kept in a journal.")
+    raise TypeError(f"{type(value).__name__} cannot be written into a checkpoint.")
 
 
-def _walker(kept: dict) -> Walker:
-    fit = kept["fit"]
+def _walker(fields_of: dict) -> Walker:
+    fit = fields_of["fit"]
     if fit is not None:
         fit = CaptureFit(**{key: _array(value) for key, value in fit.items()})
-    return Walker(**{**kept, "fit": fit})
+    return Walker(**{**fields_of, "fit": fit})
 
 
 def _array(value: Any) -> Any:

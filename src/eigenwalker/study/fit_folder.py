@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import joblib
 import numpy as np
 import pandas as pd
+from joblib.externals.loky.process_executor import TerminatedWorkerError
+from threadpoolctl import threadpool_limits
 
 from eigenwalker._version import __version__
+from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Form, Walker
+from eigenwalker.io.read import companion_files
 from eigenwalker.population.population import FLAG, Population, flags_of, joined_flags
-from eigenwalker.study.capture_table import FILE, captures_in, listed
-from eigenwalker.study.checkpoint import Journal
-from eigenwalker.study.walker_from_file import Attempt, attempts
+from eigenwalker.study.capture_table import FILE, capture_table, captures_in
+from eigenwalker.study.checkpoint import Checkpoint
+from eigenwalker.study.messages import flag_of, summarise
+from eigenwalker.study.process_capture import CaptureResult, process_capture
+
+_Attempt = tuple[Walker | None, dict[str, Any]]
+"""The walker of a capture, None where it was refused, and its row of `Study.files`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +39,8 @@ class Study:
     files : DataFrame
         One row a capture: ``file``, ``status`` ("used", "flagged" or "refused"), ``reason``, and
         for those that were read the rate, duration, strides, frequency, speed and share explained.
+    unlisted : tuple of str
+        Captures of the folder that a traits table does not list.
 
     """
 
@@ -39,6 +52,11 @@ class Study:
     def refused(self) -> pd.DataFrame:
         """The captures that could not be used, with the reason."""
         return self.files[self.files["status"] == "refused"]
+
+    @property
+    def summary(self) -> pd.DataFrame:
+        """Medians and ranges of what was measured (`summarise`)."""
+        return summarise(self.files)
 
 
 def fit_folder(
@@ -52,8 +70,8 @@ def fit_folder(
     rate_hz: float | None = None,
     low_pass_hz: float | None = None,
     n_jobs: int = -1,
-    journal: str | Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    checkpoint: str | Path | None = None,
+    progress: Progress | None = None,
 ) -> Study:
     r"""Return the population of the captures in a folder.
 
@@ -62,19 +80,19 @@ def fit_folder(
     folder : str or Path
         Searched with its subfolders.
     traits : DataFrame or path of a CSV, optional
-        A column ``file`` (relative to the folder) and whatever is known of each walker; a column
+        A column ``file`` (relative to the folder) and the traits of each walker; a column
         ``person`` says whose walk it is. Only the captures it lists are read.
     trait_from_name : str, optional
-        A regular expression with named groups, searched for in each file's name, such as
+        A regular expression with named groups, searched in each file's name, such as
         ``r"walk_(?P<style>[a-z]+)_"``.
     form, n_harmonics, unit, rate_hz, low_pass_hz
-        See `walker_from_file`.
+        See `process_capture`.
     n_jobs : int
         Processes to read with; -1 uses all cores.
-    journal : str or Path, optional
-        A file that keeps each walker as soon as it is made (`eigenwalker.study.checkpoint`).
-        If it is there from an earlier run that was interrupted, captures that have not changed
-        since are not read again. Remove it when the population is saved.
+    checkpoint : str or Path, optional
+        A file to which each walker is added as soon as it is made. If it is there from an earlier
+        run that was interrupted, captures that have not changed since are not read again. Remove it
+        when the population is saved.
     progress : callable, optional
         Called with the number of captures done and of all.
 
@@ -86,6 +104,10 @@ def fit_folder(
     ------
     ValueError
         If folder, table or pattern make no sense; never because of a single capture.
+
+    See Also
+    --------
+    process_capture : a single capture.
 
     Examples
     --------
@@ -102,7 +124,7 @@ def fit_folder(
 
     """
     folder = Path(folder)
-    table = listed(folder, traits, trait_from_name)
+    table = capture_table(folder, traits, trait_from_name)
     names = table[FILE].tolist()
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")
@@ -113,56 +135,174 @@ def fit_folder(
         "rate_hz": rate_hz,
         "low_pass_hz": low_pass_hz,
     }
-    version = {"version": __version__}
-    kept = None if journal is None else Journal(Path(journal), settings | version)
-    done: dict[str, Attempt] = {}
-    for name, attempt in attempts(folder, names, settings, n_jobs, kept):
+    earlier = None
+    if checkpoint is not None:
+        earlier = Checkpoint(Path(checkpoint), settings | {"version": __version__})
+    done: dict[str, _Attempt] = {}
+    for name, attempt in _attempts(folder, names, settings, n_jobs, earlier):
         done[name] = attempt
         if progress:
             progress(len(done), len(names))
-    walkers = [done[name][0] for name in names]
-    study = _gathered(table, walkers, pd.DataFrame([done[name][1] for name in names]), form)
     unlisted = sorted(set(captures_in(folder)) - set(names)) if traits is not None else ()
-    return replace(study, unlisted=tuple(unlisted))
+    return _study(table, [done[name] for name in names], form, tuple(unlisted))
 
 
-def _gathered(
-    table: pd.DataFrame, walkers: list[Walker | None], facts: pd.DataFrame, form: Form
+def _study(
+    table: pd.DataFrame, attempts: list[_Attempt], form: Form, unlisted: tuple[str, ...]
 ) -> Study:
-    files = pd.concat([table[[FILE]], facts.drop(columns=FLAG, errors="ignore")], axis=1)
-    kept = [number for number, walker in enumerate(walkers) if walker is not None]
-    if not kept:
-        return Study(None, files)
-    traits = table.iloc[kept].reset_index(drop=True)
-    flags = joined_flags(flags_of(traits), facts[FLAG].iloc[kept])
+    rows = pd.DataFrame([row for _, row in attempts])
+    files = pd.concat([table[[FILE]], rows.drop(columns=FLAG, errors="ignore")], axis=1)
+    read = [number for number, (walker, _) in enumerate(attempts) if walker is not None]
+    if not read:
+        return Study(None, files, unlisted)
+    traits = table.iloc[read].reset_index(drop=True)
+    flags = joined_flags(flags_of(traits), rows[FLAG].iloc[read])
     population = Population(
-        tuple(walker for walker in walkers if walker is not None),
+        tuple(walker for walker, _ in attempts if walker is not None),
         traits.assign(**{FLAG: flags}),
-        provenance={"source": f"{len(kept)} captures", "form": form}
-        | _filter(facts.iloc[kept])
-        | _guesses(facts.iloc[kept]),
+        provenance={"source": f"{len(read)} captures", "form": form}
+        | _filter(rows.iloc[read])
+        | _guesses(rows.iloc[read]),
     )
-    said = population.traits[FLAG].to_numpy()
-    files.loc[kept, "reason"] = said
-    files.loc[kept, "status"] = np.where(said != "", "flagged", "used")
-    return Study(population, files)
+    reasons = population.traits[FLAG].to_numpy()
+    files.loc[read, "reason"] = reasons
+    files.loc[read, "status"] = np.where(reasons != "", "flagged", "used")
+    return Study(population, files, unlisted)
 
 
-def _filter(facts: pd.DataFrame) -> dict[str, str]:
-    """The low-pass filter that all captures went through, in words; nothing if none was asked."""
-    cut_offs = facts["low_pass_hz"].dropna()
+def _filter(rows: pd.DataFrame) -> dict[str, str]:
+    """Return the low-pass filter of all captures in words; empty without one."""
+    cut_offs = rows["low_pass_hz"].dropna()
     return (
         {} if cut_offs.empty else {"low_pass": f"{cut_offs.iloc[0]:g} Hz, zero-phase Butterworth"}
     )
 
 
-def _guesses(facts: pd.DataFrame) -> dict[str, str]:
-    """What had to be guessed of the captures, in words."""
-    guessed = facts["unit"][facts["unit_guessed"].astype(bool)]
+def _guesses(rows: pd.DataFrame) -> dict[str, str]:
+    """Return in words for how many captures the unit was guessed; empty if for none."""
+    guessed = rows["unit"][rows["unit_guessed"].astype(bool)]
     if guessed.empty:
         return {}
     units = ", ".join(f"{unit} {count}" for unit, count in guessed.value_counts().items())
     return {
-        "units": f"guessed from the height of the body for {len(guessed)} of {len(facts)} "
+        "units": f"guessed from the height of the body for {len(guessed)} of {len(rows)} "
         f"captures, whose files name none ({units})"
     }
+
+
+def _attempts(
+    folder: Path,
+    names: list[str],
+    settings: Mapping[str, Any],
+    n_jobs: int,
+    checkpoint: Checkpoint | None,
+) -> Iterator[tuple[str, _Attempt]]:
+    """Yield the outcome of each capture by name, first of those that are in the checkpoint."""
+    waiting = []
+    for name in names:
+        if checkpoint and (earlier := checkpoint.get(name, _state(folder, name))):
+            yield name, earlier
+        else:
+            waiting.append(name)
+    for name, (walker, row) in _in_processes(folder, waiting, settings, n_jobs):
+        if checkpoint is not None and walker is not None:
+            checkpoint.append(name, _state(folder, name), walker, row)
+        yield name, (walker, row)
+
+
+def _in_processes(
+    folder: Path, names: list[str], settings: Mapping[str, Any], n_jobs: int
+) -> Iterator[tuple[str, _Attempt]]:
+    """Process captures in parallel; where the system ends a process, some one by one."""
+    done = 0
+    n_processes = min(joblib.effective_n_jobs(n_jobs), len(names))
+    while done < len(names):
+        tasks = [joblib.delayed(_attempt)(folder, name, settings) for name in names[done:]]
+        try:
+            attempts: Any = joblib.Parallel(n_processes, return_as="generator")(tasks)
+            for attempt in attempts:
+                yield names[done], attempt
+                done += 1
+        except TerminatedWorkerError:
+            for name in names[done : done + 2 * n_processes]:  # one of these was being read
+                yield name, _alone(folder, name, settings)
+                done += 1
+
+
+def _alone(folder: Path, name: str, settings: Mapping[str, Any]) -> _Attempt:
+    """Process one capture in a process that the system may end."""
+    try:
+        attempts: Any = joblib.Parallel(2)([joblib.delayed(_attempt)(folder, name, settings)])
+    except TerminatedWorkerError:
+        return _refused(
+            "the system ended the process that read it, as it does when memory runs out; look "
+            "whether the file is far larger than the others, or use fewer processes"
+        )
+    return attempts[0]
+
+
+def _attempt(folder: Path, name: str, settings: Mapping[str, Any]) -> _Attempt:
+    """Process one capture; errors become its row."""
+    try:
+        path = _within(folder, name)
+        with threadpool_limits(1), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the row holds what they say
+            result = process_capture(path, **settings)
+        return result.walker, _row(result)
+    except ValueError as error:
+        return _refused(str(error))
+    except Exception as error:  # one capture must not stop the others
+        return _refused(
+            f"an unexpected {type(error).__name__} ({error}); please report it with the file"
+        )
+
+
+def _refused(reason: str) -> _Attempt:
+    return None, {"status": "refused", "reason": reason}
+
+
+def _row(result: CaptureResult) -> dict[str, Any]:
+    """Return the row of `Study.files` for a capture that was read."""
+    quality, walker, capture = result.quality, result.walker, result.capture
+    flag = flag_of(quality)
+    return {
+        "status": "flagged" if flag else "used",
+        "reason": flag,
+        "rate_hz": quality.rate_hz,
+        "duration_s": quality.duration_s,
+        "strides": quality.n_strides,
+        "frequency_hz": walker.frequency_hz,
+        "speed_mm_s": walker.speed_mm_s,
+        "straight_passes": quality.straight_passes,
+        "unwound_deg": quality.unwound_deg,
+        "r2": walker.fit.fourier_r2 if walker.fit else float("nan"),
+        "periodicity": quality.periodicity,
+        "wander_mm": quality.wander_mm,
+        "bone_variation": max(quality.bone_length_variation.values(), default=float("nan")),
+        "missing_share": float(np.isnan(capture.values).any(axis=2).mean()),
+        "rebuilt": "; ".join(quality.rebuilt),
+        "jumps": sum(quality.jumps.values()),
+        "left_right_swaps": quality.left_right_swaps,
+        "low_pass_hz": result.walk.attrs.get("low_pass_hz", float("nan")),
+        "marker_set": result.walk.attrs.get("marker_set", ""),
+        "unit": str(capture.attrs.get("unit", "mm")),
+        "unit_guessed": quality.unit_guessed,
+        "verdict": quality.verdict,
+        FLAG: flag,
+    }
+
+
+def _state(folder: Path, name: str) -> list[int]:
+    """Return sizes and times of a capture and of the files that explain it."""
+    path = folder / name
+    if not path.is_file():
+        return []
+    stats = [file.stat() for file in (path, *companion_files(path))]
+    return [number for stat in stats for number in (stat.st_size, stat.st_mtime_ns)]
+
+
+def _within(folder: Path, name: str) -> Path:
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(f"{name}: leads out of the folder {folder}; list captures inside it only.")
+    return path

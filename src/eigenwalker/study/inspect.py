@@ -1,4 +1,4 @@
-"""What is in a file, and what is wrong with it, as plain facts."""
+"""The contents of a capture or population file, and what is wrong with it, as plain values."""
 
 from __future__ import annotations
 
@@ -14,12 +14,20 @@ import xarray as xr
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.errors import printable
 from eigenwalker.io.read import read_mocap
-from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population
 from eigenwalker.population.population_file import looks_like_population
-from eigenwalker.quality.findings import assess
+from eigenwalker.study.messages import reasons, swaps_in_words
+from eigenwalker.study.process_capture import NoWalkError, process_capture
 
 Fact = str | float | int | bool | None | list[str]
+
+_MEASURED = (
+    *("missing_share", "rebuilt", "jumps", "removed_share", "left_right_swaps", "sides_swapped"),
+    *("bone_length_variation", "height_mm", "unit_guessed", "n_strides", "steady_share"),
+    *("straight_passes", "unwound_deg", "frequency_hz", "speed_mm_s", "climb", "climb_mm"),
+    *("wander_mm", "filled_share", "r2", "periodicity", "level", "treadmill"),
+)
+_MARKER_SET = ("marker_set", "marker_set_share", "marker_set_runner_up", "approximate")
 
 
 def inspect_file(
@@ -64,7 +72,7 @@ def _is_population(path: Path) -> bool:
     try:
         return path.is_file() and looks_like_population(path)
     except OSError:
-        return False  # for the reason to be said when it is read
+        return False  # reading it gives the reason
 
 
 def _of_population(population: Population) -> dict[str, object]:
@@ -100,15 +108,16 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
 
 
 def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str, object]:
-    problems: list[str] = []
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
-    problems += [str(each.message) for each in said]
+    problems = [str(warning.message) for warning in caught]
     facts = _as_read(capture)
     try:
-        joints = virtual_markers(capture)
-        assessed = _assessed(joints, problems)
+        result = process_capture(capture)
+        joints, quality = result.walk, result.quality
+    except NoWalkError as error:
+        joints, quality = error.joints, error.quality
     except ValueError as error:
         return {
             "kind": "capture",
@@ -116,15 +125,26 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
             "problems": [*problems, str(error)],
             "marker_set": None,
         } | facts
-    taken = {
-        name: joints.attrs.get(name)
-        for name in ("marker_set", "marker_set_share", "marker_set_runner_up", "approximate")
+    return {
+        "kind": "capture",
+        "verdict": quality.verdict,
+        "problems": [*problems, *reasons(quality)],
+        **{name: _listed(getattr(quality, name)) for name in _MEASURED},
+        "swaps": swaps_in_words(quality.repairs),
+        **facts,
+        **{name: joints.attrs.get(name) for name in _MARKER_SET},
     }
-    return {"kind": "capture", **assessed, **facts, **taken}
+
+
+def _listed(value: object) -> object:
+    """Return a value; of a mapping, its keys and numbers a phrase each."""
+    if not isinstance(value, Mapping):
+        return value
+    return [f"{_name(key)}: {number:.3g}" for key, number in value.items()]
 
 
 def _as_read(capture: xr.DataArray) -> dict[str, object]:
-    """What is known of a capture whatever its markers are."""
+    """Return what is known of a capture with any markers."""
     missing = np.isnan(capture.values).any(axis=2)
     share = missing.mean(axis=0)
     names = capture.marker.values.tolist()
@@ -135,26 +155,8 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
         "duration_s": len(capture) / sampling_rate(capture) if len(capture) > 1 else None,
         "n_frames": len(capture),
         "missing_samples": float(missing.mean()),
-        "missing_markers": [
-            name for name, all_of_it in zip(names, share == 1, strict=True) if all_of_it
-        ],
+        "missing_markers": [name for name, unseen in zip(names, share == 1, strict=True) if unseen],
         "markers": names,
-    }
-
-
-def _assessed(joints: xr.DataArray, problems: list[str]) -> dict[str, object]:
-    """The verdict on a capture, its reasons, and what was measured."""
-    quality = assess(joints)
-    measured: dict[str, object] = {}
-    for name, value in vars(quality).items():
-        if isinstance(value, Mapping):
-            measured[name] = [f"{_name(key)}: {number:.3g}" for key, number in value.items()]
-        elif name not in ("reasons", "verdict"):
-            measured[name] = value
-    return {
-        "verdict": quality.verdict,
-        "problems": [*problems, *quality.reasons],
-        **measured,
     }
 
 
@@ -163,7 +165,7 @@ def _name(key: str | tuple[str, str]) -> str:
 
 
 def _plain(facts: dict[str, object]) -> dict[str, Fact]:
-    """The same facts in types that JSON has; what is not a number is None."""
+    """Return the same facts in types of JSON, NaN as None."""
     return {name: _plain_value(value) for name, value in facts.items()}
 
 

@@ -1,12 +1,306 @@
-"""What `inspect_file` finds in a capture, in words and with units, for people to read."""
+"""Sentences about captures: verdicts, repairs, what was left out, and what a folder holds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+
+import pandas as pd
+
+from eigenwalker.markers.label_repair import Repair
+from eigenwalker.quality.quality import (
+    BONE_VARIATION,
+    FLICKER_SHARE,
+    FREQUENCIES_HZ,
+    STEADY_R2,
+    Finding,
+    Quality,
+)
+from eigenwalker.study.process_capture import CaptureResult
 
 
-def in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
-    """Return what is known of a capture or population, each fact under a name in plain words.
+def reasons(quality: Quality) -> list[str]:
+    """Return a sentence for each finding that speaks against a capture.
+
+    Parameters
+    ----------
+    quality : Quality
+        As `assess` returns it, or ``process_capture(...).quality``.
+
+    Returns
+    -------
+    list of str
+        Empty for the verdict "use".
+
+    See Also
+    --------
+    eigenwalker.quality.assess
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1)
+    >>> reasons(ew.assess(walk.copy(data=walk.values * [1, -1, -1])))[0]
+    'The head is not above the feet: the wrong axis points up.'
+
+    """
+    return [_SENTENCES[finding](quality) for finding in quality.findings]
+
+
+def flag_of(quality: Quality) -> str:
+    """Return all that speaks against a capture in one line, empty for the verdict "use"."""
+    return " ".join(reasons(quality))
+
+
+def capture_lines(result: CaptureResult) -> list[str]:
+    """Return what is to be known of a capture beside its walker, in sentences."""
+    quality, walker = result.quality, result.walker
+    explained = walker.fit.fourier_r2 if walker.fit else float("nan")
+    lines = [
+        f"{quality.n_strides} strides in {quality.duration_s:.0f} s at {walker.frequency_hz:.2f} "
+        f"Hz; the sines of this walker hold {100 * explained:.0f} % of its movement."
+    ]
+    if flag := flag_of(quality):
+        lines.append(flag)
+    if quality.rebuilt:
+        lines.append(f"Rebuilt: {'; '.join(quality.rebuilt)}.")
+    if quality.unit_guessed:
+        lines.append(f"The file names no unit; {quality.unit} was guessed from the height.")
+    return lines
+
+
+def repair_in_words(repair: Repair) -> str:
+    """Return the markers and the frames of a repair.
+
+    Examples
+    --------
+    >>> repair_in_words(Repair("LKNE", "swap", 20, 29, "RKNE"))
+    'LKNE and RKNE, frames 20 to 29'
+
+    """
+    markers = f"{repair.marker} and {repair.partner}" if repair.partner else repair.marker
+    if repair.first_frame == repair.last_frame:
+        return f"{markers}, frame {repair.first_frame}"
+    return f"{markers}, frames {repair.first_frame} to {repair.last_frame}"
+
+
+def swaps_in_words(repairs: Sequence[Repair]) -> list[str]:
+    """Return where left and right labels had changed places, a phrase each."""
+    return [repair_in_words(repair) for repair in repairs if repair.kind == "swap"]
+
+
+def _length(millimetres: float) -> str:
+    if millimetres >= 1e5:
+        return f"{millimetres / 1e6:.3g} km"
+    return f"{millimetres:.3g} mm" if millimetres < 1000 else f"{millimetres / 1000:.3g} m"
+
+
+def _wrong_unit(quality: Quality) -> str:
+    return f"the unit {quality.unit or 'of length'} is wrong"
+
+
+def _elastic_limbs(quality: Quality) -> str:
+    variation = quality.bone_length_variation
+    n_elastic = sum(share > BONE_VARIATION for share in variation.values())
+    worst = max(variation, key=lambda limb: variation[limb])
+    return (
+        f"{n_elastic} of {len(variation)} limbs change length by more than "
+        f"{BONE_VARIATION:.0%}; worst from {worst[0]} to {worst[1]}, {variation[worst]:.1%}."
+    )
+
+
+def _swapped_labels(quality: Quality) -> str:
+    swaps = swaps_in_words(quality.repairs)
+    shown = "; ".join(swaps[:3]) + (f" and {len(swaps) - 3} more" if len(swaps) > 3 else "")
+    return f"Left and right changed places and were put right: {shown}."
+
+
+def _flicker(quality: Quality) -> str:
+    often = [name for name, share in quality.removed_share.items() if share > FLICKER_SHARE]
+    return f"Markers flicker, and gaps were left: {', '.join(often)}."
+
+
+def _jumps(quality: Quality) -> str:
+    jumping = (repair.marker for repair in quality.repairs if repair.kind == "jump")
+    return f"Markers jump: {', '.join(dict.fromkeys(jumping))}."
+
+
+def _not_periodic(quality: Quality) -> str:
+    return (
+        f"This is no steady walk: two harmonics explain {quality.r2:.2f} of the movement, where "
+        f"steady walks reach {STEADY_R2:.2f} or more."
+    )
+
+
+_SENTENCES: dict[Finding, Callable[[Quality], str]] = {
+    "head_below_feet": lambda q: "The head is not above the feet: the wrong axis points up.",
+    "leaning": lambda q: (
+        f"From feet to head the body leans by {q.lean_deg:.0f} degrees: the frame is tilted, or "
+        "head or feet are not where they are said to be."
+    ),
+    "impossible_height": lambda q: (
+        f"From feet to head the body measures {_length(q.height_mm)}, which no walking person "
+        f"does: {_wrong_unit(q)}. Read it with unit=..."
+    ),
+    "small_body": lambda q: (
+        f"From feet to head the body measures {_length(q.height_mm)}: if this is no small child, "
+        f"{_wrong_unit(q)}."
+    ),
+    "no_steady_walk": lambda q: f"No steady walk was found. {q.problem}",
+    "not_level": lambda q: (
+        f"This is no level walk: the body {'rises' if q.climb > 0 else 'falls'} by "
+        f"{abs(q.climb_mm):.0f} mm over {q.n_strides} strides."
+    ),
+    "hardly_periodic": _not_periodic,
+    "not_periodic": _not_periodic,
+    "cadence": lambda q: (
+        f"{q.frequency_hz:.2f} strides a second is not the pace of a walk, which is between "
+        f"{FREQUENCIES_HZ[0]} and {FREQUENCIES_HZ[1]}; the frame rate may be wrong."
+    ),
+    "one_stride": lambda q: "Only one stride is steady, so nothing tells how it varies.",
+    "unsteady": lambda q: (
+        f"This is no steady walk: {q.n_strides} strides hang together, {q.steady_share:.0%} of the "
+        "time spent walking."
+    ),
+    "filled_gaps": lambda q: (
+        f"Of the steady samples {q.filled_share:.0%} were missing and were filled."
+    ),
+    "elastic_limbs": _elastic_limbs,
+    "sides_swapped": lambda q: (
+        "Knees bend backwards: left is called right, or the capture is mirrored."
+    ),
+    "repeated_names": lambda q: (
+        "Several markers are called alike, and the first of them is taken: "
+        f"{', '.join(q.repeated)}."
+    ),
+    "swapped_labels": _swapped_labels,
+    "flicker": _flicker,
+    "jumps": _jumps,
+}
+
+_SUMMARY = {
+    "rate_hz": ("rate", "{:.4g} Hz"),
+    "duration_s": ("duration", "{:.3g} s"),
+    "strides": ("strides found", "{:.0f}"),
+    "frequency_hz": ("stride frequency", "{:.3f} Hz"),
+    "r2": ("share explained", "{:.3f}"),
+    "periodicity": ("periodicity", "{:.3f}"),
+    "missing_share": ("missing samples", "{:.1%}"),
+    "bone_variation": ("limb length varies by", "{:.1%}"),
+    "wander_mm": ("drift", "{:.0f} mm"),
+}
+"""Columns of `Study.files`, their names in the summary, and how their values are written."""
+
+
+def summary_in_words(files: pd.DataFrame) -> dict[str, str]:
+    """Return medians, ranges and counts of the captures of a study.
+
+    Parameters
+    ----------
+    files : DataFrame
+        ``Study.files``: one row a capture.
+
+    Returns
+    -------
+    dict of str to str
+
+    See Also
+    --------
+    summarise : the same medians and ranges as numbers.
+
+    Examples
+    --------
+    >>> files = pd.DataFrame({"rate_hz": [100, 100, 120], "jumps": [0, 2, 1]})
+    >>> summary_in_words(files.assign(status="used"))
+    {'rate': '100 Hz (100 to 120)', 'jumps': '3 in 2 captures'}
+
+    """
+    read = files[files["status"] != "refused"]
+    lines = {
+        _SUMMARY[str(row.Index)][0]: _range(row.median, row.least, row.most, _SUMMARY[row.Index][1])
+        for row in summarise(files).itertuples()
+    }
+    for column, name in (("jumps", "jumps"), ("left_right_swaps", "left-right swaps")):
+        if column in read:
+            n_captures = (read[column] > 0).sum()
+            lines[name] = (
+                f"{read[column].sum():.0f} in {n_captures} captures" if n_captures else "none"
+            )
+    if "rebuilt" in read and (rebuilt := (read["rebuilt"].fillna("") != "").sum()):
+        lines["rebuilt markers"] = f"in {rebuilt} captures"
+    if "unwound_deg" in read and (turning := (read["unwound_deg"] > 0).sum()):
+        lines["turning walks unwound"] = str(turning)
+    for column, name in (("marker_set", "marker set"), ("verdict", "verdict")):
+        if column in read:
+            counts = read[column].value_counts()
+            lines[name] = ", ".join(f"{value} {count}" for value, count in counts.items())
+    return lines
+
+
+def summarise(files: pd.DataFrame) -> pd.DataFrame:
+    """Return medians and ranges of the captures of a study.
+
+    Parameters
+    ----------
+    files : DataFrame
+        ``Study.files``: one row a capture.
+
+    Returns
+    -------
+    DataFrame
+        One row a measure, such as ``frequency_hz``; columns ``median``, ``least``, ``most``.
+        Refused captures are left out.
+
+    Examples
+    --------
+    >>> files = pd.DataFrame({"rate_hz": [100, 100, 120], "status": "used"})
+    >>> summarise(files)
+             median  least   most
+    rate_hz   100.0  100.0  120.0
+
+    """
+    read = files[files["status"] != "refused"]
+    columns = [name for name in _SUMMARY if name in read and read[name].notna().any()]
+    table = read[columns].agg(["median", "min", "max"]).T
+    return table.rename(columns={"min": "least", "max": "most"})
+
+
+def _range(median: float, least: float, most: float, form: str) -> str:
+    low, high = (form.format(value).split(" ")[0] for value in (least, most))
+    return form.format(median) + ("" if low == high else f" ({low} to {high})")
+
+
+_INSPECTION = {
+    "kind": ("kind", "{}"),
+    "verdict": ("verdict", "{}"),
+    "problems": ("problems", ""),
+    "format": ("format", "{}"),
+    "unit": ("unit", "{}"),
+    "rate_hz": ("rate", "{:.6g} Hz"),
+    "duration_s": ("duration", "{:.4g} s"),
+    "n_frames": ("frames", "{}"),
+    "n_strides": ("strides found", ""),
+    "frequency_hz": ("stride frequency", "{:.3f} Hz"),
+    "speed_mm_s": ("speed", "{:.0f} mm/s"),
+    "r2": ("share explained", "{:.3f} by two harmonics"),
+    "periodicity": ("periodicity", "{:.3f}"),
+    "wander_mm": ("drift", "{:.0f} mm about a straight line"),
+    "climb": ("climb", "{:.1%} of the way"),
+    "height_mm": ("height", "{:.0f} mm from feet to head"),
+    "marker_set": ("marker set", ""),
+    "missing_samples": ("missing samples", "{:.2%}"),
+    "missing_markers": ("never seen", ""),
+    "filled_share": ("filled samples", "{:.2%} of the steady part"),
+    "rebuilt": ("rebuilt markers", ""),
+    "approximate": ("approximate joints", ""),
+    "jumps": ("jumps", ""),
+    "swaps": ("left-right swaps", ""),
+    "bone_length_variation": ("limb length varies by", ""),
+    "markers": ("markers", ""),
+}
+"""Facts of `inspect_file`, their names for people, and how numbers are written; "" for lists."""
+
+
+def inspection_in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
+    """Return what `inspect_file` finds, in words and with units.
 
     Parameters
     ----------
@@ -20,103 +314,36 @@ def in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
 
     Examples
     --------
-    >>> told = in_words({"kind": "capture", "rate_hz": 120.0, "wander_mm": None, "jumps": []})
-    >>> told["rate"], told["drift"], told["jumps"]
-    ('120 Hz', 'unknown', 'none')
+    >>> lines = inspection_in_words({"kind": "capture", "rate_hz": 120.0, "jumps": []})
+    >>> lines["rate"], lines["jumps"]
+    ('120 Hz', 'none')
 
     """
     if facts.get("kind") != "capture":
-        return {name: _plain(value) for name, value in facts.items()}
-    told: dict[str, str | list[str]] = {}
-    for name, (label, form) in _MEASURES.items():
-        if name in facts:
-            told[label] = _number(facts[name], form)
-    for name, label in _LISTS.items():
-        if name in facts:
-            told[label] = _listed(facts[name])
-    if isinstance(limbs := told.get("limb length varies by"), list):
-        told["limb length varies by"] = [_as_percentage(entry) for entry in limbs]
+        return {
+            name: _written(value, "{:.4g}" if isinstance(value, float) else "{}")
+            for name, value in facts.items()
+        }
+    written = {
+        name: _written(facts[name], form)
+        for name, (_, form) in _INSPECTION.items()
+        if name in facts
+    }
+    if isinstance(limbs := written.get("bone_length_variation"), list):
+        written["bone_length_variation"] = [_as_percentage(entry) for entry in limbs]
     if "n_strides" in facts:
-        told["strides found"] = _strides(facts)
+        written["n_strides"] = _strides(facts)
     if "marker_set" in facts:
-        told["marker set"] = _marker_set(facts)
+        written["marker_set"] = _marker_set(facts)
     if facts.get("unit_guessed"):
-        told["unit"] = f"{told.get('unit', 'unknown')}, guessed from the height of the body"
-    return {label: told[label] for label in _ORDER if label in told}
+        written["unit"] = f"{written.get('unit', 'unknown')}, guessed from the height of the body"
+    return {_INSPECTION[name][0]: value for name, value in written.items()}
 
 
-_MEASURES = {
-    "kind": ("kind", "{}"),
-    "verdict": ("verdict", "{}"),
-    "format": ("format", "{}"),
-    "unit": ("unit", "{}"),
-    "rate_hz": ("rate", "{:.6g} Hz"),
-    "duration_s": ("duration", "{:.4g} s"),
-    "n_frames": ("frames", "{}"),
-    "frequency_hz": ("stride frequency", "{:.3f} Hz"),
-    "speed_mm_s": ("speed", "{:.0f} mm/s"),
-    "r2": ("share explained", "{:.3f} by two harmonics"),
-    "periodicity": ("periodicity", "{:.3f}"),
-    "wander_mm": ("drift", "{:.0f} mm about a straight line"),
-    "climb": ("climb", "{:.1%} of the way"),
-    "height_mm": ("height", "{:.0f} mm from feet to head"),
-    "missing_samples": ("missing samples", "{:.2%}"),
-    "filled_share": ("filled samples", "{:.2%} of the steady part"),
-}
-_LISTS = {
-    "problems": "problems",
-    "missing_markers": "never seen",
-    "rebuilt": "rebuilt markers",
-    "approximate": "approximate joints",
-    "jumps": "jumps",
-    "swaps": "left-right swaps",
-    "bone_length_variation": "limb length varies by",
-    "markers": "markers",
-}
-_ORDER = (
-    "kind",
-    "verdict",
-    "problems",
-    "format",
-    "unit",
-    "rate",
-    "duration",
-    "frames",
-    "strides found",
-    "stride frequency",
-    "speed",
-    "share explained",
-    "periodicity",
-    "drift",
-    "climb",
-    "height",
-    "marker set",
-    "missing samples",
-    "never seen",
-    "filled samples",
-    "rebuilt markers",
-    "approximate joints",
-    "jumps",
-    "left-right swaps",
-    "limb length varies by",
-    "markers",
-)
-
-
-def _number(value: object, form: str) -> str:
+def _written(value: object, form: str) -> str | list[str]:
+    if isinstance(value, list) or not form:
+        return [str(entry) for entry in value] if isinstance(value, list) and value else "none"
     return "unknown" if value is None else form.format(value)
-
-
-def _plain(value: object) -> str | list[str]:
-    if isinstance(value, list):
-        return _listed(value)
-    return f"{value:.4g}" if isinstance(value, float) else _number(value, "{}")
-
-
-def _listed(entries: object) -> str | list[str]:
-    if not isinstance(entries, list) or not entries:
-        return "none"
-    return [str(entry) for entry in entries]
 
 
 def _as_percentage(entry: str) -> str:
@@ -125,21 +352,21 @@ def _as_percentage(entry: str) -> str:
 
 
 def _strides(facts: Mapping[str, object]) -> str:
-    """How many strides were taken, and from where."""
-    told = f"{facts['n_strides']}, {facts['steady_share']:.0%} of the time spent walking"
-    if facts["straight_passes"] == 0 and facts["n_strides"]:
-        return f"{told}; the heading turned by {facts['unwound_deg']:.0f} degrees and was unwound"
-    if facts["straight_passes"] != 1 and facts["n_strides"]:
-        return f"{told}; from one of {facts['straight_passes']} straight passes"
-    return told
+    """Return how many strides were taken, and from where."""
+    line = f"{facts['n_strides']}, {facts['steady_share']:.0%} of the time spent walking"
+    if not facts["n_strides"] or facts["straight_passes"] == 1:
+        return line
+    if facts["straight_passes"] == 0:
+        return f"{line}; the heading turned by {facts['unwound_deg']:.0f} degrees and was unwound"
+    return f"{line}; from one of {facts['straight_passes']} straight passes"
 
 
 def _marker_set(facts: Mapping[str, object]) -> str:
-    """Which set it was taken for, and how sure that is."""
+    """Return the marker set that was recognised, and how sure that is."""
     if facts["marker_set"] is None:
         return "unknown"
     share, next_best = facts.get("marker_set_share"), facts.get("marker_set_runner_up")
-    told = str(facts["marker_set"])
+    line = str(facts["marker_set"])
     if isinstance(share, float):
-        told += f", {share:.0%} of its points found"
-    return told + (f" (next is {next_best})" if next_best else "")
+        line += f", {share:.0%} of its points found"
+    return line + (f" (next is {next_best})" if next_best else "")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,16 +12,13 @@ from scipy.spatial.distance import pdist
 
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.progress import Progress
-from eigenwalker.io.capture_file import RateAssumed
-from eigenwalker.io.read import read_mocap
-from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.metric.comparison_pipeline import comparable_walk
 from eigenwalker.metric.prepared import PreparedClip, as_trajectories, prepare
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.population.population import FLAG, Population, flags_of
-from eigenwalker.quality.findings import assess
 from eigenwalker.study.body_warnings import strangeness
-from eigenwalker.study.capture_table import FILE, listed
+from eigenwalker.study.capture_table import FILE, capture_table
+from eigenwalker.study.messages import flag_of
+from eigenwalker.study.process_capture import process_capture
 
 STRANGE = "strange"
 """Attribute of a walk that says why it is not itself on the mannequin."""
@@ -68,37 +64,12 @@ def walk_of_capture(
     is wrong with the capture (``flag``), and why it is not itself on the mannequin (``strange``);
     empty if nothing is.
     """
-    capture = _read(path, unit, rate_hz)
-    own = comparable_walk(capture, mannequin=False)
-    own.attrs[FLAG] = assess(virtual_markers(capture)).flag
+    result = process_capture(path, joints="full", default_unit=unit, default_rate_hz=rate_hz)
+    own = result.walk.assign_attrs({FLAG: flag_of(result.quality)})
     if not mannequin:
         return own
     shown = retarget(own)
     return shown.assign_attrs({STRANGE: strangeness(own, shown)})
-
-
-def _read(path: Path, unit: str | None, rate_hz: float | None) -> xr.DataArray:
-    """Return a capture, told what it does not say itself, and no more than that."""
-    if unit is None and rate_hz is None:
-        return read_mocap(path)
-    last = ValueError()
-    for told_unit, told_rate in ((None, None), (None, rate_hz), (unit, None), (unit, rate_hz)):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            try:
-                capture = read_mocap(path, unit=told_unit, rate_hz=told_rate)
-            except ValueError as error:  # perhaps for want of what is told
-                last = error
-                continue
-        lacks_rate = any(each.category is RateAssumed for each in caught)
-        wanted = (
-            unit if capture.attrs["unit_reason"] else told_unit,  # empty where the file names it
-            rate_hz if lacks_rate else told_rate,
-        )
-        if wanted == (told_unit, told_rate):
-            return capture
-        return read_mocap(path, unit=wanted[0], rate_hz=wanted[1])
-    raise last
 
 
 def remarks_on(clip: xr.DataArray) -> str:
@@ -214,8 +185,7 @@ def walks_of_folder(
         If the folder holds no captures, or the pattern makes no sense.
 
     """
-    folder = Path(folder)
-    table = listed(folder, None, trait_from_name)
+    table = capture_table(folder, None, trait_from_name)
     named = [column for column in table if column != FILE]
     clips: dict[str, PreparedClip] = {}
     labels, refused, flagged, remarks = {}, {}, {}, {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import warnings
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from eigenwalker.core.trajectories import AXES, DIMS, sampling_rate, trajectorie
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import MAX_SIZE
+from eigenwalker.markers.label_repair import Repair
 
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
@@ -52,6 +54,8 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
         for name, value in dataset.attrs.items()
         if str(name).startswith("capture_")
     }
+    if repairs := _repairs(known.pop("repairs", "")):
+        known["repairs"] = repairs
     if "source" in known:
         known.setdefault("original_source", known["source"])
     walk.attrs.update(
@@ -65,6 +69,14 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
         unit_reason="" if file.unit is None else file.unit.reason,
     )
     return walk
+
+
+def _repairs(text: object) -> tuple[Repair, ...]:
+    """Return the repairs that `write_netcdf` wrote; none of a damaged line."""
+    try:
+        return tuple(Repair(*entry) for entry in json.loads(str(text)))
+    except (TypeError, ValueError):
+        return ()
 
 
 def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:

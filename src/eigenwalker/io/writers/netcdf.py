@@ -6,6 +6,7 @@ written in C.
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import xarray as xr
 
 from eigenwalker._version import __version__
 from eigenwalker.io.readers.netcdf import FORMAT, VERSION
+from eigenwalker.markers.label_repair import Repair
 
 
 def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
@@ -55,13 +57,15 @@ def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
 
 
 def _storable(value: object) -> str | int | float | None:
-    """Return an attribute as NetCDF holds it: a word, a number, or names in one line."""
+    """Return an attribute as NetCDF holds it: a word, a number, names in one line, or JSON."""
     if isinstance(value, bool | np.bool_):
         return str(bool(value))
     if isinstance(value, str | int | float):
         return value
     if isinstance(value, np.number):
         return value.item()
+    if value and isinstance(value, tuple) and all(isinstance(entry, Repair) for entry in value):
+        return json.dumps(value)
     if isinstance(value, list | tuple):
         return ", ".join(map(str, value))
     return None

@@ -1,0 +1,201 @@
+"""The assessment of a capture: how tall and how rigid the body is, how steady its strides are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.fourier import share_explained
+from eigenwalker.core.smoothing import running_mean
+from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.gait.heading import SIDES, sides_swapped
+from eigenwalker.gait.in_place import in_place
+from eigenwalker.gait.steady_strides import body_relative
+from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
+from eigenwalker.markers.label_repair import repair_labels
+from eigenwalker.quality.quality import Quality
+
+LIMBS = tuple(
+    (f"{side}_{upper}", f"{side}_{lower}")
+    for side in SIDES
+    for upper, lower in (
+        ("hip", "knee"),
+        ("knee", "ankle"),
+        ("shoulder", "elbow"),
+        ("elbow", "wrist"),
+    )
+)
+"""The segments that are single bones."""
+
+_LIVELY = 0.3
+_LEAST_PROGRESS_MM = 300.0
+
+
+def assess(trajectories: xr.DataArray) -> Quality:
+    """Return what is known of a capture, however bad it is, and the verdict on it.
+
+    Labels are repaired and the walk is brought in place first, as in `in_place`.
+
+    Parameters
+    ----------
+    trajectories : DataArray of shape (time, marker, axis)
+        As captured, in millimetres, with any markers. Most is known of joints, as
+        `virtual_markers` returns them.
+
+    Returns
+    -------
+    Quality
+        ``.verdict`` is "use", "use with care" or "do not use", ``.findings`` names the reasons.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If these are no trajectories, or their times are not evenly spaced.
+
+    See Also
+    --------
+    eigenwalker.study.process_capture : judges the very walk that is decomposed.
+    eigenwalker.study.reasons : the findings in sentences.
+
+    Examples
+    --------
+    >>> feet = ew.Walker(
+    ...     ["left_ankle", "right_ankle", "pelvis"],
+    ...     [[0, 90, 80], [0, -90, 80], [0, 0, 900]],
+    ...     [[[300, 0, 0], [-300, 0, 0], [0, 20, 0]]],
+    ...     [1],
+    ...     [0],
+    ...     0.9,
+    ... )
+    >>> quality = assess(feet.trajectories(np.arange(0, 5, 0.01)))
+    >>> quality.verdict, quality.n_strides, round(quality.r2, 6)
+    ('use', 4, 1.0)
+
+    """
+    capture = check_trajectories(trajectories)
+    repaired = repair_labels(capture)
+    try:
+        walk, problem = in_place(repaired, repair=False), ""
+    except ValueError as error:
+        walk, problem = None, str(error)
+    return judge(capture, repaired, walk, problem)
+
+
+def judge(
+    capture: xr.DataArray, repaired: xr.DataArray, walk: xr.DataArray | None, problem: str = ""
+) -> Quality:
+    """Return what is known of a capture and of the walk that was made of it.
+
+    Parameters
+    ----------
+    capture, repaired : DataArray of shape (time, marker, axis)
+        As captured, and with repaired labels.
+    walk : DataArray of shape (time, marker, axis) or None
+        Its steady strides, as `in_place` returns them; None if there are none.
+    problem : str
+        Why there are none.
+
+    """
+    names = capture.marker.values.tolist()
+    missing = np.isnan(capture.values).any(axis=2).mean(axis=0)
+    rate_hz = sampling_rate(capture)
+    strides = repaired if walk is None else repaired.sel(time=walk.time, marker=walk.marker)
+    height_mm, lean_deg = _height_and_lean(repaired.values, names)
+    return Quality(
+        rate_hz=rate_hz,
+        duration_s=len(capture) / rate_hz,
+        n_frames=len(capture),
+        missing_share={
+            name: float(share) for name, share in zip(names, missing, strict=True) if share
+        },
+        repairs=tuple(repaired.attrs.get("repairs", ())),
+        rebuilt=_names(capture, "rebuilt"),
+        repeated=_names(capture, "repeated"),
+        sides_swapped=walk is not None and sides_swapped(walk.values, names),
+        bone_length_variation=bone_length_variation(strides),
+        height_mm=height_mm,
+        lean_deg=lean_deg,
+        unit=str(capture.attrs.get("unit", "")),
+        unit_guessed=bool(capture.attrs.get("unit_guessed", False)),
+        problem=problem,
+        **({} if walk is None else _steadiness(walk, strides, repaired.values, rate_hz)),
+    )
+
+
+def _names(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
+    """Return what an attribute lists; NetCDF files hold it as one line."""
+    names = capture.attrs.get(attribute, ())
+    return (names,) * bool(names) if isinstance(names, str) else tuple(names)
+
+
+def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, float]:
+    """Return the height in mm and the lean in degrees of the line from feet to head, or NaN."""
+    head, feet = head_and_feet(positions, names)
+    seen = np.isfinite(head).all(axis=2).any(axis=1) & np.isfinite(feet).all(axis=2).any(axis=1)
+    if not seen.any():
+        return float("nan"), float("nan")
+    rises = np.nanmean(head[seen], axis=1) - np.nanmean(feet[seen], axis=1)
+    x, y, z = np.median(rises, axis=0)
+    return body_height(positions, names), float(np.degrees(np.arctan2(np.hypot(x, y), z)))
+
+
+def bone_length_variation(capture: xr.DataArray) -> dict[tuple[str, str], float]:
+    """Return the coefficient of variation of each limb's length.
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1, duration_s=2)
+    >>> max(bone_length_variation(walk).values()) < 1e-9
+    True
+
+    """
+    place = {name: index for index, name in enumerate(capture.marker.values.tolist())}
+    variation = {}
+    for upper, lower in LIMBS:
+        if upper in place and lower in place:
+            bone = capture.values[:, place[upper]] - capture.values[:, place[lower]]
+            length = np.linalg.norm(bone[np.isfinite(bone).all(axis=1)], axis=1)
+            if len(length) and length.mean() > 0:
+                variation[upper, lower] = float(length.std() / length.mean())
+    return variation
+
+
+def _steadiness(
+    walk: xr.DataArray, strides: xr.DataArray, positions: np.ndarray, rate_hz: float
+) -> dict[str, Any]:
+    """Return what `Quality` holds of steady strides: in place, in the capture, in all of it."""
+    facts = walk.attrs
+    same = ("n_strides", "straight_passes", "unwound_deg", "frequency_hz", "speed_mm_s")
+    stride = rate_hz / facts["frequency_hz"]
+    per_stride = np.nanmax([abs(facts["speed_mm_s"]) / facts["frequency_hz"], _LEAST_PROGRESS_MM])
+    movement = walk.values.reshape(len(walk), -1)
+    moving = max(1, _moving_frames(positions, stride))
+    return {name: facts[name] for name in (*same, "climb_mm", "wander_mm", "treadmill")} | {
+        "steady_share": min(1.0, len(walk) / moving),
+        "climb": float(facts["climb_mm"] / (per_stride * facts["n_strides"])),
+        "filled_share": float(np.isnan(strides.values).any(axis=2).mean()),
+        "r2": share_explained(movement, np.arange(len(walk)) / stride),
+        "periodicity": _periodicity(movement, round(stride)),
+    }
+
+
+def _moving_frames(positions: np.ndarray, stride: float) -> int:
+    """Return the number of frames in which the body moves as in walking."""
+    seen = np.isfinite(positions).all(axis=(0, 2))
+    if seen.sum() < 3:
+        return 0
+    speed = np.linalg.norm(np.diff(body_relative(positions[:, seen]), axis=0), axis=1)
+    smooth = running_mean(speed, max(1, round(stride / 2)))
+    return int((smooth > _LIVELY * np.quantile(smooth, 0.8)).sum())
+
+
+def _periodicity(movement: np.ndarray, stride: int) -> float:
+    """Return the correlation of all columns together with themselves a stride later."""
+    centred = movement - movement.mean(axis=0)
+    if len(centred) < 1.5 * stride:
+        return float("nan")
+    early, late = centred[:-stride], centred[stride:]
+    scale = np.sqrt(np.vdot(early, early) * np.vdot(late, late))
+    return float(np.vdot(early, late) / scale) if scale > 0 else float("nan")

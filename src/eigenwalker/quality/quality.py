@@ -1,0 +1,269 @@
+"""What is known of a capture, what speaks against it, and the verdict."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from eigenwalker.markers.label_repair import Repair
+
+Verdict = Literal["use", "use with care", "do not use"]
+
+STEADY_R2 = 0.90
+"""Share that two harmonics explain of any steady walk: of real ones they explain 0.95 to 0.99, of
+acted exhaustion still 0.91 and more."""
+
+HOPELESS_R2 = 0.70
+"""Below this, noise or a movement other than walking prevails."""
+
+FEWEST_STRIDES = 2
+"""A single stride has nothing to be compared with."""
+
+ENOUGH_STRIDES = 10
+"""The strides that Troje (2002) took of each walker: with so many no capture is unsteady."""
+
+STEADY_SHARE = 0.40
+"""Below this share of the time spent walking, a few steady strides make no steady walk."""
+
+BONE_VARIATION = 0.05
+"""Coefficient of variation above which a limb is no bone: markers on skin stay below 0.03."""
+
+FREQUENCIES_HZ = (0.5, 1.4)
+"""Strides a second of walking people; above this people run, below they shuffle or pause."""
+
+MISSING_SHARE = 0.10
+"""Share of filled samples above which a walk is partly interpolated."""
+
+FLICKER_SHARE = 0.01
+"""Share of a marker's samples off its path that is tolerated."""
+
+HEIGHTS_MM = (500.0, 2500.0)
+"""From ankles or feet to the head, no walking person measures less or more: with the wrong unit
+they do."""
+
+MOST_LEAN_DEG = 30.0
+"""Walkers bent with age lean by less, from the middle between their feet to the head."""
+
+CHILD_MM = 800.0
+"""Below this it is a small child, or centimetres were taken for inches."""
+
+LEVEL_CLIMB = 0.10
+"""Rise over run of a path that is no longer level: the steepest ramps built for wheelchairs have
+0.08, stairs 0.5; floors of laboratories that were set up askew 0.02."""
+
+Finding = Literal[
+    "head_below_feet",
+    "leaning",
+    "impossible_height",
+    "small_body",
+    "no_steady_walk",
+    "not_level",
+    "hardly_periodic",
+    "not_periodic",
+    "cadence",
+    "one_stride",
+    "unsteady",
+    "filled_gaps",
+    "elastic_limbs",
+    "sides_swapped",
+    "repeated_names",
+    "swapped_labels",
+    "flicker",
+    "jumps",
+]
+"""What may speak against a capture; `eigenwalker.study.reasons` says it in sentences."""
+
+RULES_OUT = frozenset[Finding](
+    {
+        "head_below_feet",
+        "leaning",
+        "impossible_height",
+        "no_steady_walk",
+        "not_level",
+        "not_periodic",
+        "sides_swapped",
+    }
+)
+"""Findings after which a capture is not to be used."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What is known of a capture, what speaks against it, and the verdict.
+
+    Parameters
+    ----------
+    rate_hz, duration_s, n_frames
+        Of the whole capture.
+    missing_share : mapping of str to float
+        Share of frames without the marker, for markers that miss any.
+    repairs : tuple of Repair
+        Labels that were repaired, and jumps.
+    rebuilt : tuple of str
+        Markers that were never seen, and what replaces them.
+    repeated : tuple of str
+        Names of several markers, of which the first is taken.
+    sides_swapped : bool
+        Whether knees bend backwards throughout: left is called right, or the capture is mirrored.
+    bone_length_variation : mapping of (str, str) to float
+        Coefficient of variation of the length of each limb, in the steady strides.
+    height_mm, lean_deg : float
+        From the feet (or ankles) to the head: the length upwards, NaN where they are not known or
+        not upright; and the angle from upright, NaN where they are not known.
+    unit : str
+        Unit of length of the file, empty if unknown; ``unit_guessed``: from the size of the body.
+    n_strides : int
+        Whole strides that are steady; 0 if there are none.
+    steady_share : float
+        Share of the time spent moving that they cover.
+    straight_passes : int
+        Straight passes from which they were chosen; 0 for a walk that was unwound.
+    unwound_deg : float
+        Range of the heading that was taken out.
+    frequency_hz, speed_mm_s : float
+        Of the steady strides.
+    climb, climb_mm : float
+        Rise over run, and rise, of the steady strides; negative downwards.
+    wander_mm : float
+        Drift: root mean square distance from a straight line walked at constant speed.
+    filled_share : float
+        Share of the samples of the steady strides that were filled.
+    r2 : float
+        Share of variance that two harmonics explain in the steady strides in place.
+    periodicity : float
+        Correlation of the movement with itself a stride later.
+    treadmill : bool
+        Whether the body stays where it is.
+    problem : str
+        Why there are no steady strides; else empty.
+
+    """
+
+    rate_hz: float
+    duration_s: float
+    n_frames: int
+    missing_share: Mapping[str, float]
+    repairs: tuple[Repair, ...]
+    rebuilt: tuple[str, ...]
+    repeated: tuple[str, ...]
+    sides_swapped: bool
+    bone_length_variation: Mapping[tuple[str, str], float]
+    height_mm: float
+    lean_deg: float
+    unit: str
+    unit_guessed: bool
+    n_strides: int = 0
+    steady_share: float = 0.0
+    straight_passes: int = 0
+    unwound_deg: float = 0.0
+    frequency_hz: float = np.nan
+    speed_mm_s: float = np.nan
+    climb: float = np.nan
+    climb_mm: float = np.nan
+    wander_mm: float = np.nan
+    filled_share: float = 0.0
+    r2: float = np.nan
+    periodicity: float = np.nan
+    treadmill: bool = False
+    problem: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """What to do with the walk."""
+        if RULES_OUT & set(self.findings):
+            return "do not use"
+        return "use with care" if self.findings else "use"
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Codes of all that speaks against the capture; empty for "use"."""
+        return (*_of_body(self), *_of_walk(self), *_of_limbs(self), *_of_labels(self))
+
+    @property
+    def level(self) -> bool:
+        """Whether the walk neither falls nor climbs."""
+        return not abs(self.climb) >= LEVEL_CLIMB
+
+    @property
+    def jumps(self) -> dict[str, int]:
+        """How often a marker was off its path, for moments or for good."""
+        repairs = sorted(self.repairs, key=lambda repair: repair.kind == "jump")
+        return dict(Counter(repair.marker for repair in repairs if repair.kind != "swap"))
+
+    @property
+    def removed_share(self) -> dict[str, float]:
+        """Share of the samples of a marker that were off its path and are taken out."""
+        removed: Counter[str] = Counter()
+        for repair in self.repairs:
+            if repair.kind == "flicker":
+                removed[repair.marker] += repair.last_frame - repair.first_frame + 1
+        return {marker: count / self.n_frames for marker, count in removed.items()}
+
+    @property
+    def left_right_swaps(self) -> int:
+        """Number of stretches in which a left and a right label had changed places."""
+        return sum(repair.kind == "swap" for repair in self.repairs)
+
+
+def _of_body(quality: Quality) -> list[Finding]:
+    """Return what speaks against an upright person in this unit of length."""
+    smallest, tallest = HEIGHTS_MM
+    if np.isnan(quality.lean_deg):
+        return []
+    if np.isnan(quality.height_mm):
+        return ["head_below_feet"]
+    if quality.lean_deg > MOST_LEAN_DEG:
+        return ["leaning"]
+    if not smallest <= quality.height_mm <= tallest:
+        return ["impossible_height"]
+    return ["small_body"] if quality.height_mm < CHILD_MM else []
+
+
+def _of_walk(quality: Quality) -> list[Finding]:
+    """Return what speaks against a steady walk on level ground."""
+    if not quality.n_strides:
+        return ["no_steady_walk"]
+    slowest, fastest = FREQUENCIES_HZ
+    findings: list[Finding] = []
+    if not quality.level:
+        findings.append("not_level")
+    if not quality.r2 >= STEADY_R2:
+        findings.append("hardly_periodic" if quality.r2 >= HOPELESS_R2 else "not_periodic")
+    if not slowest <= quality.frequency_hz <= fastest:
+        findings.append("cadence")
+    few = quality.n_strides < ENOUGH_STRIDES and quality.straight_passes <= 1
+    if quality.n_strides < FEWEST_STRIDES:
+        findings.append("one_stride")
+    elif quality.steady_share < STEADY_SHARE and few:
+        findings.append("unsteady")
+    if quality.filled_share > MISSING_SHARE:
+        findings.append("filled_gaps")
+    return findings
+
+
+def _of_limbs(quality: Quality) -> list[Finding]:
+    """Return what speaks against the limbs of a body."""
+    findings: list[Finding] = []
+    if max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION:
+        findings.append("elastic_limbs")
+    if quality.sides_swapped:
+        findings.append("sides_swapped")
+    return findings
+
+
+def _of_labels(quality: Quality) -> list[Finding]:
+    """Return what speaks against the labels of the markers."""
+    findings: list[Finding] = []
+    if quality.repeated:
+        findings.append("repeated_names")
+    if quality.left_right_swaps:
+        findings.append("swapped_labels")
+    if max(quality.removed_share.values(), default=0) > FLICKER_SHARE:
+        findings.append("flicker")
+    if any(repair.kind == "jump" for repair in quality.repairs):
+        findings.append("jumps")
+    return findings
