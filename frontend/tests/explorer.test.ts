@@ -3,18 +3,19 @@
 
 import { describe, expect, it, vi } from "vitest";
 import { choice } from "../src/explorer/choice";
-import { make } from "../src/page/element";
-import { nearest, towards } from "../src/explorer/nearestPoint";
+import { make, signed } from "../src/page/elements";
+import { nearestPoint, nextPoint } from "../src/explorer/cloud";
 import { Notices } from "../src/explorer/notices";
-import { peopleIn, warnings } from "../src/explorer/about";
-import { bundles, callIt, openFiles } from "../src/explorer/openFile";
-import { ownOf } from "../src/explorer/ownWalker";
+import { populationLabel, warnings } from "../src/explorer/about";
+import { bundles, bundleName, openFiles } from "../src/explorer/openFile";
+import { ownWalkerOf } from "../src/explorer/ownWalker";
 import { axesOf } from "../src/explorer/axis";
-import { howPlausible, reachOf } from "../src/explorer/plausibility";
-import { signed, slider } from "../src/explorer/slider";
+import { plausibilityText, reachOf } from "../src/explorer/plausibility";
+import { slider } from "../src/explorer/slider";
+import { Store } from "../src/explorer/store";
 import { goldenModel, posture, stimulusWith } from "./golden_model";
-import { vectorOf } from "../src/model/mixing";
-import { placeOf } from "../src/model/position";
+import { mixedVector } from "../src/model/mixing";
+import { positionOf } from "../src/model/position";
 import { initialState } from "../src/model/state";
 import { walkerOf } from "../src/model/features";
 
@@ -22,8 +23,8 @@ describe("a slider", () => {
   const made = (): { heard: number[]; one: ReturnType<typeof slider> } => {
     const heard: number[] = [];
     const one = slider({
-      label: "Sex", ends: ["woman", "man"], min: -6, max: 6, step: 0.05, usual: 0,
-      said: (value) => signed(value), onInput: (value) => heard.push(value),
+      label: "Sex", ends: ["woman", "man"], min: -6, max: 6, step: 0.05, initial: 0,
+      format: (value) => signed(value), onInput: (value) => heard.push(value),
     });
     return { heard, one };
   };
@@ -84,17 +85,17 @@ describe("a slider", () => {
 describe("points that are chosen", () => {
   const points = [{ x: 0, y: 0 }, { x: 10, y: 1 }, { x: 3, y: 9 }, { x: -5, y: 0 }];
 
-  it("are the nearest to the pointer, where one is near", () => {
-    expect(nearest(points, { x: 9, y: 3 }, 5)).toBe(1);
-    expect(nearest(points, { x: 50, y: 50 }, 5)).toBe(-1);
-    expect(nearest([], { x: 0, y: 0 }, 5)).toBe(-1);
+  it("are the nearestPoint to the pointer, where one is near", () => {
+    expect(nearestPoint(points, { x: 9, y: 3 }, 5)).toBe(1);
+    expect(nearestPoint(points, { x: 50, y: 50 }, 5)).toBe(-1);
+    expect(nearestPoint([], { x: 0, y: 0 }, 5)).toBe(-1);
   });
 
   it("follow one another the way of an arrow, and the last stays", () => {
-    expect(towards(points, 0, [1, 0])).toBe(1);
-    expect(towards(points, 0, [-1, 0])).toBe(3);
-    expect(towards(points, 0, [0, 1])).toBe(2);
-    expect(towards(points, 1, [1, 0])).toBe(1);
+    expect(nextPoint(points, 0, [1, 0])).toBe(1);
+    expect(nextPoint(points, 0, [-1, 0])).toBe(3);
+    expect(nextPoint(points, 0, [0, 1])).toBe(2);
+    expect(nextPoint(points, 1, [1, 0])).toBe(1);
   });
 });
 
@@ -112,7 +113,7 @@ it("one of a row of choices is checked at a time", () => {
 
 it("text of a hostile file stays text", () => {
   const notices = new Notices();
-  notices.trouble("<img src=x onerror=alert(1)>");
+  notices.error("<img src=x onerror=alert(1)>");
   expect(notices.element.querySelector("img")).toBeNull();
   expect(notices.element.querySelector("[role=alert]")!.textContent).toContain("<img");
   expect(make("p", { title: '"><b>' }).outerHTML).not.toContain("<b>");
@@ -120,7 +121,7 @@ it("text of a hostile file stays text", () => {
 
 it("trouble stays until it is sent away", () => {
   const notices = new Notices();
-  notices.trouble("This is no capture.");
+  notices.error("This is no capture.");
   notices.element.querySelector("button")!.click();
   expect(notices.element.textContent).toBe("");
 });
@@ -163,7 +164,7 @@ describe("a walker of a stimulus", () => {
   const vector = model.walkers[0]!.vector;
 
   it("comes back as the vector it was made of", () => {
-    const own = ownOf(model, stimulusWith(walkerOf(model, vector)), "mine.json");
+    const own = ownWalkerOf(model, stimulusWith(walkerOf(model, vector)), "mine.json");
     expect(own.name).toBe("mine");
     own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
   });
@@ -176,7 +177,7 @@ describe("a walker of a stimulus", () => {
       p: walker.p.map((p, i) => p.map((at) => at.map((x) => x * flip[i]!) as unknown as typeof at)),
       phases: walker.phases.map((phase, i) => phase + walker.harmonics[i]! * 0.7 + (flip[i]! < 0 ? Math.PI : 0)),
     };
-    const own = ownOf(model, stimulusWith(other), "mine.json");
+    const own = ownWalkerOf(model, stimulusWith(other), "mine.json");
     own.vector.forEach((value, i) => expect(value).toBeCloseTo(vector[i]!, 9));
   });
 
@@ -186,7 +187,7 @@ describe("a walker of a stimulus", () => {
       ...walker,
       p: walker.p.map((p, i) => (i === 0 ? p.map((at) => at.map((x) => -x) as unknown as typeof at) : p)),
     };
-    const own = walkerOf(model, ownOf(model, stimulusWith(other), "mine.json").vector);
+    const own = walkerOf(model, ownWalkerOf(model, stimulusWith(other), "mine.json").vector);
     const [was, is] = [posture(other, 0.1), posture(own, 0.1 + 0.5 / own.frequency_hz)];
     is.forEach((value, i) => expect(value).toBeCloseTo(was[i]!, 6));
   });
@@ -194,7 +195,7 @@ describe("a walker of a stimulus", () => {
   it("is refused where it lacks a marker", () => {
     const walker = walkerOf(model, vector);
     const other = { ...walker, markers: walker.markers.map((name) => `${name}_of_mine`) };
-    expect(() => ownOf(model, stimulusWith(other), "mine.json")).toThrow(/lacks head/);
+    expect(() => ownWalkerOf(model, stimulusWith(other), "mine.json")).toThrow(/lacks head/);
   });
 });
 
@@ -202,8 +203,8 @@ describe("plausibility", () => {
   const model = goldenModel();
   const reach = reachOf(model, axesOf(model));
   const said = (traits: Record<string, number>): string => {
-    const vector = vectorOf(model, { ...initialState(model), traits });
-    return howPlausible(reach, placeOf(model, vector));
+    const vector = mixedVector(model, { ...initialState(model), traits });
+    return plausibilityText(reach, positionOf(model, vector));
   };
 
   it("of the average walker is that of nobody and everybody", () => {
@@ -216,13 +217,13 @@ describe("plausibility", () => {
   });
 
   it("of one's own capture is never called a caricature", () => {
-    const vector = vectorOf(model, { ...initialState(model), traits: { sex: 6 } });
-    expect(howPlausible(reach, placeOf(model, vector), true)).toMatch(/^Unlike anyone here: 6\.0 SD/);
+    const vector = mixedVector(model, { ...initialState(model), traits: { sex: 6 } });
+    expect(plausibilityText(reach, positionOf(model, vector), true)).toMatch(/^Unlike anyone here: 6\.0 SD/);
   });
 
   it("is had by everyone of the population", () => {
     for (const { vector } of model.walkers) {
-      expect(howPlausible(reach, placeOf(model, vector))).toMatch(/^Plausible/);
+      expect(plausibilityText(reach, positionOf(model, vector))).toMatch(/^Plausible/);
     }
   });
 });
@@ -230,9 +231,9 @@ describe("plausibility", () => {
 describe("notices", () => {
   it("are two at most: what is new of a kind takes the place of what was", () => {
     const notices = new Notices();
-    notices.trouble("One.");
-    notices.trouble("Two.", "And a half.");
-    notices.told(["Three."]);
+    notices.error("One.");
+    notices.error("Two.", "And a half.");
+    notices.info(["Three."]);
     notices.news("Four.");
     const said = [...notices.element.querySelectorAll(".notice")].map(({ textContent }) => textContent);
     expect(said).toEqual(["Two.And a half.", "Four."]);
@@ -241,7 +242,7 @@ describe("notices", () => {
   it("of work that goes on come back after others, and end with it", () => {
     const notices = new Notices();
     const done = notices.busy("Reading.");
-    notices.told(["Saved."]);
+    notices.info(["Saved."]);
     expect(notices.element.textContent).toBe("Saved.");
     notices.element.querySelector("button")!.click();
     expect(notices.element.textContent).toBe("Reading.");
@@ -253,19 +254,48 @@ describe("notices", () => {
 describe("captures that were made to a population", () => {
   it("are named by their folder, else one by one", () => {
     const files = ["a.c3d", "b.c3d", "c.c3d", "d.c3d"].map((name) => new File([""], name));
-    expect(callIt(files, "walks")).toBe("walks/");
-    expect(callIt(files)).toBe("a.c3d, b.c3d and 2 more");
-    expect(callIt(files.slice(0, 3))).toBe("a.c3d, b.c3d, c.c3d");
-    expect(callIt(files.slice(0, 1), "walks")).toBe("a.c3d");
+    expect(bundleName(files, "walks")).toBe("walks/");
+    expect(bundleName(files)).toBe("a.c3d, b.c3d and 2 more");
+    expect(bundleName(files.slice(0, 3))).toBe("a.c3d, b.c3d, c.c3d");
+    expect(bundleName(files.slice(0, 1), "walks")).toBe("a.c3d");
   });
 
   it("are said in place of a file that is not there, and that they are few", () => {
     const model = { ...goldenModel(), n_walkers: 3, traits: [], source: "people.nc", captures: "walks/" };
-    expect(peopleIn(model)).toMatch(/^3 .*walkers of walks\/$/);
+    expect(populationLabel(model)).toMatch(/^3 .*walkers of walks\/$/);
     expect(warnings(model)).toEqual([
       expect.stringMatching(/^3 walkers are few/),
       expect.stringMatching(/^No trait/),
     ]);
     expect(warnings(goldenModel()).length).toBe(goldenModel().n_walkers < 10 ? 1 : 0);
+  });
+});
+
+describe("a store", () => {
+  it("calls its listeners once for each frame in which something changed", async () => {
+    const store = new Store(goldenModel());
+    const listener = vi.fn();
+    store.listen(listener);
+    store.change({ tempo: 2 });
+    store.change({ tempo: 3 });
+    await vi.waitFor(() => expect(listener).toHaveBeenCalledOnce());
+    expect(listener.mock.calls[0]![0].state.tempo).toBe(3);
+    store.change({ tempo: 3 });
+    store.end();
+    store.change({ tempo: 1 });
+    await new Promise((done) => setTimeout(done, 50));
+    expect(listener).toHaveBeenCalledOnce();
+  });
+
+  it("undoes a drag as one step, and keeps playback and theme", () => {
+    const store = new Store(goldenModel());
+    store.setDragging(true);
+    store.change({ azimuth_deg: 40 });
+    store.change({ azimuth_deg: 50 });
+    store.setDragging(false);
+    store.change({ dark: false, playing: false });
+    store.undo();
+    expect(store.state).toMatchObject({ azimuth_deg: 30, dark: false, playing: false });
+    expect(store.canUndo).toBe(false);
   });
 });

@@ -59,10 +59,10 @@ describe("random numbers are those of Python", () => {
   const { streams } = read("random.json") as { streams: Record<string, number & number[]>[] };
   it.each(streams)("stream $purpose $seed $index $life", (stream) => {
     const { purpose, seed, index, life } = stream as Record<string, number>;
-    const name = [purpose!, seed!, index!, life!] as const;
-    expect([...randomWords(...name, 8)]).toEqual(stream["words"]);
-    expect([...uniforms(...name, 4)]).toEqual(stream["uniforms"]);
-    [...normals(...name, 4)].forEach((found, i) =>
+    const key = [purpose!, seed!, index!, life!] as const;
+    expect([...randomWords(key, 8)]).toEqual(stream["words"]);
+    expect([...uniforms(key, 4)]).toEqual(stream["uniforms"]);
+    [...normals(key, 4)].forEach((found, i) =>
       expect(found).toBeCloseTo(stream["normals"]![i]!, 12),
     );
     expect(permutation(purpose!, seed!, index!, 10)).toEqual(stream["permutation_of_10"]);

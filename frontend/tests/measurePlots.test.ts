@@ -2,17 +2,17 @@
 /** The small plots: the line leads through the walker that is shown. */
 
 import { expect, it } from "vitest";
-import { changes } from "../src/explorer/measurePlots";
-import { Session } from "../src/explorer/store";
+import { measurePlots } from "../src/explorer/measurePlots";
+import { Store } from "../src/explorer/store";
 import { initialState, type State } from "../src/model/state";
 import { goldenModel } from "./golden_model";
 
 const model = goldenModel();
 
 function plotted(part: Partial<State>): { points: string[][]; dots: string[]; hidden: boolean | string } {
-  const session = new Session(model, { ...initialState(model), ...part });
-  const { element, show } = changes(session);
-  show(session.now());
+  const store = new Store(model, { ...initialState(model), ...part });
+  const { element, show } = measurePlots(store);
+  show(store.now());
   const lines = [...element.querySelectorAll("polyline")].map((line) => line.getAttribute("points")?.split(" ") ?? []);
   const dots = [...element.querySelectorAll("circle.now:not(.beyond)")].map((dot) => `${dot.getAttribute("cx")},${dot.getAttribute("cy")}`);
   return { points: lines, dots, hidden: element.hidden };

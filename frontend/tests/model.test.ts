@@ -4,15 +4,16 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 
 import { uniforms } from "../src/core/randomStream";
+import { InvalidFile } from "../src/core/schema";
 import { walking } from "../src/core/movingDots";
-import { castOf } from "../src/model/figures";
+import { figuresOf } from "../src/model/figures";
 import { captionOf } from "../src/model/captions";
 import { measuresOf, type MeasureName } from "../src/model/measures";
-import { partsOf, vectorOf } from "../src/model/mixing";
+import { partsOf, mixedVector } from "../src/model/mixing";
 import type { Model } from "../src/model/model";
-import { placeOf, positionOf, positionsInCloud } from "../src/model/position";
-import { pythonLine } from "../src/model/pythonCode";
-import { NoModel, readModel } from "../src/model/readModel";
+import { cloudPositions, positionOf, traitPosition } from "../src/model/position";
+import { pythonCode } from "../src/model/pythonCode";
+import { readModel } from "../src/model/readModel";
 import { initialState, type State } from "../src/model/state";
 import { walkerOf } from "../src/model/features";
 
@@ -47,7 +48,7 @@ const apart = (found: ArrayLike<number>, wanted: ArrayLike<number>): number => {
 
 describe("walkers are made as in Python", () => {
   it.each(cases.map((each) => [JSON.stringify(each.state), each] as const))("%s", (_, wanted) => {
-    const vector = vectorOf(model, chosen(wanted.state));
+    const vector = mixedVector(model, chosen(wanted.state));
     expect(apart(vector, wanted.vector)).toBeLessThan(CLOSE);
     const walker = walkerOf(model, vector);
     cycles.forEach((cycle, i) => {
@@ -59,29 +60,29 @@ describe("walkers are made as in Python", () => {
     for (const [name, value] of Object.entries(wanted.measures)) {
       expect(measures[name as MeasureName]).toBeCloseTo(value ?? NaN, 6);
     }
-    const place = placeOf(model, vector);
+    const place = positionOf(model, vector);
     expect(place.distance).toBeCloseTo(wanted.distance, 6);
     expect(place.percentile).toBeCloseTo(wanted.percentile, 6);
     for (const [name, value] of Object.entries(wanted.positions)) {
-      expect(place.positions[name]).toBeCloseTo(value, 6);
+      expect(place.traits[name]).toBeCloseTo(value, 6);
     }
   });
 });
 
 describe("places among the walkers", () => {
-  const at = (part: Partial<State>) => placeOf(model, vectorOf(model, chosen(part)));
+  const at = (part: Partial<State>) => positionOf(model, mixedVector(model, chosen(part)));
 
   it("puts the average walker in the middle of all axes", () => {
-    const { scores, positions, distance, percentile } = at({});
-    expect([...scores, ...Object.values(positions)].every((z) => Math.abs(z) < 1e-4)).toBe(true);
+    const { scores, traits, distance, percentile } = at({});
+    expect([...scores, ...Object.values(traits)].every((z) => Math.abs(z) < 1e-4)).toBe(true);
     expect([distance, percentile]).toEqual([0, 0]);
   });
 
   it("goes one deviation for each step of a slider, for random steps", () => {
     for (let seed = 0; seed < 20; seed++) {
-      const [first, second, third] = uniforms(1, seed, 0, 0, 3).map((u) => 12 * u - 6) as unknown as number[];
+      const [first, second, third] = uniforms([1, seed, 0, 0], 3).map((u) => 12 * u - 6) as unknown as number[];
       const moved = at({ traits: { sex: first! }, eigenwalkers: [0, 0, 0] });
-      expect(moved.positions["sex"]).toBeCloseTo(first!, 3);
+      expect(moved.traits["sex"]).toBeCloseTo(first!, 3);
       const { scores } = at({ eigenwalkers: [first!, second!, third!] });
       expect(apart(scores.slice(0, 3), [first!, second!, third!])).toBeLessThan(1e-4);
     }
@@ -89,18 +90,18 @@ describe("places among the walkers", () => {
 
   it("finds the walkers of the population where the cloud has them", () => {
     const trait = model.traits[0]!;
-    const cloud = positionsInCloud(model, trait); // of scores with two decimals
+    const cloud = cloudPositions(model, trait); // of scores with two decimals
     model.cloud.walker.forEach((number, point) => {
       const { vector } = model.walkers[number]!;
-      expect(cloud[point]).toBeCloseTo(positionOf(trait, vector), 1);
-      expect(apart(placeOf(model, vector).scores, model.cloud.scores[point]!)).toBeLessThan(0.0051);
+      expect(cloud[point]).toBeCloseTo(traitPosition(trait, vector), 1);
+      expect(apart(positionOf(model, vector).scores, model.cloud.scores[point]!)).toBeLessThan(0.0051);
     });
   });
 });
 
 describe("mixing", () => {
   it("adds up: steps of two traits, in either order", () => {
-    const steps = (traits: State["traits"]) => vectorOf(model, chosen({ traits }));
+    const steps = (traits: State["traits"]) => mixedVector(model, chosen({ traits }));
     const both = steps({ sex: 2, weight_kg: -1 });
     expect(apart(both, steps({ weight_kg: -1, sex: 2 }))).toBeLessThan(1e-9);
     const sum = steps({ sex: 2 }).map((x, i) => x + steps({ weight_kg: -1 })[i]! - model.average[i]!);
@@ -108,7 +109,7 @@ describe("mixing", () => {
   });
 
   it("leaves what a classifier did not know as it was", () => {
-    const vector = vectorOf(model, chosen({ traits: { sex: 6 }, part: "p2" }));
+    const vector = mixedVector(model, chosen({ traits: { sex: 6 }, part: "p2" }));
     const [start, end] = model.layout["p2"]!;
     const changed = [...vector.keys()].filter((i) => vector[i] !== model.average[i]);
     expect(changed.length).toBeGreaterThan(0);
@@ -120,14 +121,14 @@ describe("mixing", () => {
     const middle = means!.negative.map((low, i) => (low + means!.positive[i]!) / 2);
     const own = { name: "middle", vector: middle };
     const biased = (steps: number) =>
-      vectorOf(model, chosen({ from: "own", bias: { trait: "sex", steps } }), own);
+      mixedVector(model, chosen({ from: "own", bias: { trait: "sex", steps } }), own);
     expect(apart(biased(1), means!.positive)).toBeLessThan(1e-9);
     expect(apart(biased(-1), means!.negative)).toBeLessThan(1e-9);
   });
 
   it("passes over names that are not the model's", () => {
     const odd = { traits: { constructor: 3, __proto__: 2, tail: 1 } as never, part: "toString", from: 99 };
-    expect(apart(vectorOf(model, chosen(odd)), model.average)).toBe(0);
+    expect(apart(mixedVector(model, chosen(odd)), model.average)).toBe(0);
   });
 
   it("lets nobody walk backwards in time", () => {
@@ -138,27 +139,27 @@ describe("mixing", () => {
 });
 
 describe("casts", () => {
-  const cast = (part: Partial<State>) => castOf(model, chosen(part));
+  const figures = (part: Partial<State>) => figuresOf(model, chosen(part));
 
   it("shows women and men, and three times their difference (M5)", () => {
     const { means } = model.traits[0]!;
-    const [she, he, her, him] = cast({ scene: "four" }).map(({ vector }) => vector);
+    const [she, he, her, him] = figures({ scene: "four" }).map(({ vector }) => vector);
     expect(apart(she!, means!.negative)).toBeLessThan(1e-9);
     expect(apart(he!, means!.positive)).toBeLessThan(1e-9);
     expect(apart(him!.map((x, i) => x - her![i]!), he!.map((x, i) => 3 * (x - she![i]!)))).toBeLessThan(1e-9);
   });
 
   it("brings those side by side to one tempo (M1)", () => {
-    const four = cast({ scene: "side", walkers: [0, 2, 4, 7] });
+    const four = figures({ scene: "side", walkers: [0, 2, 4, 7] });
     expect(new Set(four.map(({ walker }) => walker.frequency_hz)).size).toBe(1);
     expect(four.map(({ known }) => known)).toEqual([0, 2, 4, 7]);
   });
 
   it("changes a whole crowd at once (W7)", () => {
-    const plain = cast({ scene: "crowd" });
-    const men = cast({ scene: "crowd", traits: { sex: 4 } });
+    const plain = figures({ scene: "crowd" });
+    const men = figures({ scene: "crowd", traits: { sex: 4 } });
     expect(men.length).toBe(model.walkers.length);
-    const step = vectorOf(model, chosen({ traits: { sex: 4 } })).map((x, i) => x - model.average[i]!);
+    const step = mixedVector(model, chosen({ traits: { sex: 4 } })).map((x, i) => x - model.average[i]!);
     men.forEach(({ vector }, i) => {
       expect(apart(vector.map((x, j) => x - plain[i]!.vector[j]!), step)).toBeLessThan(1e-9);
     });
@@ -166,9 +167,9 @@ describe("casts", () => {
 
   it("is the same object until something that makes it changes", () => {
     const state = chosen({ scene: "crowd" });
-    const before = castOf(model, state);
-    expect(castOf(model, { ...state, azimuth_deg: 90, playing: false })).toBe(before);
-    expect(castOf(model, { ...state, traits: { sex: 1 } })).not.toBe(before);
+    const before = figuresOf(model, state);
+    expect(figuresOf(model, { ...state, azimuth_deg: 90, playing: false })).toBe(before);
+    expect(figuresOf(model, { ...state, traits: { sex: 1 } })).not.toBe(before);
   });
 });
 
@@ -188,19 +189,19 @@ describe("what is no model is refused, in a sentence", () => {
   ])("%s", (_, spoil, said) => {
     const content = golden().model;
     spoil(content);
-    expect(() => readModel(content)).toThrow(NoModel);
+    expect(() => readModel(content)).toThrow(InvalidFile);
     expect(() => readModel(content)).toThrow(said);
   });
 
   it.each([null, 3, "model", [], {}])("%j", (content) => {
-    expect(() => readModel(content)).toThrow(NoModel);
+    expect(() => readModel(content)).toThrow(InvalidFile);
   });
 
   it("survives a model with any of its values replaced", () => {
     const odd = [null, -1, 1e308, "x", [], {}, true];
     for (let seed = 0; seed < 300; seed++) {
       const content = golden().model;
-      const drawn = uniforms(1, seed, 1, 0, 12);
+      const drawn = uniforms([1, seed, 1, 0], 12);
       let [place, depth]: [any, number] = [content, 0];
       for (;;) {
         const keys = Object.keys(place);
@@ -217,10 +218,10 @@ describe("what is no model is refused, in a sentence", () => {
       try {
         read = readModel(content);
       } catch (error) {
-        expect(error).toBeInstanceOf(NoModel);
+        expect(error).toBeInstanceOf(InvalidFile);
         continue;
       }
-      expect(vectorOf(read, initialState(read)).length).toBe(read.average.length);
+      expect(mixedVector(read, initialState(read)).length).toBe(read.average.length);
     }
   });
 });
@@ -240,7 +241,7 @@ describe("words", () => {
   });
 
   it("writes Python that names all that was chosen", () => {
-    const lines = pythonLine(model, chosen({
+    const lines = pythonCode(model, chosen({
       traits: { sex: 3, weight_kg: 0 },
       part: "structure",
       kind: "mean_difference",
@@ -251,7 +252,7 @@ describe("words", () => {
     }));
     expect(lines).toContain("vector = people.X[2].copy()");
     expect(lines).toContain('3 * ew.trait_axis(people, "sex", part="structure", kind="mean_difference").step');
-    expect(lines).toContain("-1 * (people.X[asked.rows[asked.y > 0]]");
+    expect(lines).toContain("-1 * (people.X[contrast.rows[contrast.y > 0]]");
     expect(lines).toContain("explained_variance_[1] ** 0.5 * space.eigenwalkers_[1]");
     expect(lines).toContain('vector[people.layout.blocks["p2"]] *= 1.5');
     expect(lines).not.toContain("weight");

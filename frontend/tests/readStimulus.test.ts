@@ -4,7 +4,8 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 
 import { frameTiming } from "../src/canvas/frameClock";
-import { MOST_WORK, NoStimulus, readStimulus } from "../src/core/readStimulus";
+import { MAX_WORK, readStimulus } from "../src/core/readStimulus";
+import { InvalidFile } from "../src/core/schema";
 
 const file = new URL("../../tests/golden/stimulus_plain.json", import.meta.url);
 const plain = (): any => JSON.parse(readFileSync(file, "utf8")).stimulus;
@@ -50,7 +51,7 @@ it.each([
 ])("refuses %s", (name, spoil, said) => {
   const content = name === "nothing" ? null : plain();
   spoil(content);
-  expect(() => readStimulus(content)).toThrow(NoStimulus);
+  expect(() => readStimulus(content)).toThrow(InvalidFile);
   expect(() => readStimulus(content)).toThrow(said);
 });
 
@@ -82,7 +83,7 @@ describe("a chain that no browser could play in time", () => {
 
   it("has Python's bound", () => {
     const python = readFileSync(new URL("../../src/eigenwalker/stimulus/schema.py", import.meta.url), "utf8");
-    expect(Number(/^MAX_WORK = ([\d_]+)$/m.exec(python)![1]!.replaceAll("_", ""))).toBe(MOST_WORK);
+    expect(Number(/^MAX_WORK = ([\d_]+)$/m.exec(python)![1]!.replaceAll("_", ""))).toBe(MAX_WORK);
   });
 });
 

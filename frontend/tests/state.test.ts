@@ -1,17 +1,16 @@
-// What was chosen, in an address and back; and who hears of changes.
+// A state as an address and back.
 
 import { readFileSync } from "node:fs";
-import { describe, expect, it, vi } from "vitest";
+import { describe, expect, it } from "vitest";
 
 import { uniforms } from "../src/core/randomStream";
 import { addressOf, stateOf } from "../src/model/address";
-import { vectorOf } from "../src/model/mixing";
+import { mixedVector } from "../src/model/mixing";
 import { readModel } from "../src/model/readModel";
 import {
-  initialState, RANGES, TRANSFORM_NAMES, TRANSFORMS, usualSettings, wrappedDegrees,
+  initialState, RANGES, TRANSFORM_NAMES, TRANSFORMS, initialSettings, wrappedDegrees,
   type Field, type State,
 } from "../src/model/state";
-import { Store } from "../src/explorer/stateStore";
 
 const file = new URL("../../tests/golden/model.json", import.meta.url);
 const model = readModel(JSON.parse(readFileSync(file, "utf8")).model);
@@ -20,7 +19,7 @@ const usual = initialState(model);
 /** A state with everything drawn at random, in steps that a slider has. */
 function drawnState(seed: number): State {
   let drawn = 0;
-  const u = (): number => uniforms(1, seed, drawn++, 0, 1)[0]!;
+  const u = (): number => uniforms([1, seed, drawn++, 0], 1)[0]!;
   const between = ([low, high]: readonly [number, number], step = 0.001): number =>
     Math.round((low + u() * (high - low)) / step) * step;
   const tidy = (value: number): number => Math.round(value * 1000) / 1000 + 0;
@@ -64,7 +63,7 @@ describe("an address", () => {
 
   it("is short", () => {
     expect(addressOf({ ...usual, traits: { sex: 3, weight_kg: 0 } }, model)).toBe("t=sex:3");
-    const state = { ...usual, strengths: [1, 1.5, 1, 1], transforms: { invert: {}, scramble: usualSettings("scramble") } };
+    const state = { ...usual, strengths: [1, 1.5, 1, 1], transforms: { invert: {}, scramble: initialSettings("scramble") } };
     expect(addressOf({ ...state, azimuth_deg: 90 }, model)).toBe("s=1,1.5&az=90&x=invert,scramble");
     expect(addressOf({ ...usual, playing: false }, model)).toBe("still");
   });
@@ -122,31 +121,15 @@ describe("an address", () => {
     for (const [name, settings] of Object.entries(state.transforms)) {
       expect(Object.keys(settings)).toEqual(Object.keys(TRANSFORMS[name as "mask"]));
     }
-    expect(vectorOf(model, state).every(Number.isFinite)).toBe(true);
+    expect(mixedVector(model, state).every(Number.isFinite)).toBe(true);
   });
 
   it("of letters drawn at random makes a state too", () => {
     const letters = "tsexvbpkw=:,;&.-019%#az";
     for (let seed = 0; seed < 500; seed++) {
-      const text = [...uniforms(1, seed, 0, 0, 40)].map((u) => letters[Math.floor(u * letters.length)]).join("");
-      expect(vectorOf(model, stateOf(text, model)).every(Number.isFinite)).toBe(true);
+      const text = [...uniforms([1, seed, 0, 0], 40)].map((u) => letters[Math.floor(u * letters.length)]).join("");
+      expect(mixedVector(model, stateOf(text, model)).every(Number.isFinite)).toBe(true);
     }
-  });
-});
-
-describe("a store", () => {
-  it("tells of what is new, once, with what was before", () => {
-    const store = new Store(usual);
-    const heard = vi.fn();
-    const silence = store.listen(heard);
-    store.change({ tempo: 2 });
-    expect(heard).toHaveBeenCalledExactlyOnceWith({ ...usual, tempo: 2 }, usual);
-    store.change({ tempo: 2 });
-    expect(heard).toHaveBeenCalledTimes(1);
-    silence();
-    store.change({ tempo: 1 });
-    expect(heard).toHaveBeenCalledTimes(1);
-    expect(store.state).toEqual(usual);
   });
 });
 

@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-// The stage: what it draws is what a stimulus file of it says, strides go on, and it rests unseen.
+// The viewer: what it draws is what a stimulus file of it says, strides go on, and it rests unseen.
 
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
@@ -7,36 +7,36 @@ import golden from "../../tests/golden/model.json";
 import { framesOf } from "../src/canvas/figureFrames";
 import { uniforms } from "../src/core/randomStream";
 import { observerAxes } from "../src/core/vector";
-import { castOf, type Cast } from "../src/model/figures";
+import { figuresOf, type SceneFigure } from "../src/model/figures";
 import { readModel } from "../src/model/readModel";
-import { initialState, usualSettings, type State } from "../src/model/state";
-import { actOf, ratesOf, type Script } from "../src/viewer/animation";
-import { Stage, type Hooks } from "../src/viewer/viewer";
-import { boxesOf, stagingOf } from "../src/viewer/arrangement";
-import { roomFor, stagedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
-import { Troupe } from "../src/viewer/walkerBatch";
+import { initialState, initialSettings, type State } from "../src/model/state";
+import { animationOf, strideRates, type AnimationSpec } from "../src/viewer/animation";
+import { Viewer, type ViewerEvents } from "../src/viewer/viewer";
+import { boxesOf, arrange } from "../src/viewer/arrangement";
+import { extentFor, arrangedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
+import { WalkerBatch } from "../src/viewer/walkerBatch";
 
 const model = readModel(golden.model);
 const chosen = (part: Partial<State> = {}): State => ({ ...initialState(model), ...part });
 const SIZE = { width_px: 900, height_px: 600 };
 
 /** All that an act is made of, beginning at 0 s. */
-function scriptOf(part: Partial<State>, others: Partial<Script> = {}): Script {
+function specOf(part: Partial<State>, others: Partial<AnimationSpec> = {}): AnimationSpec {
   const state = chosen(part);
-  const cast = castOf(model, state);
-  const staging = stagingOf(cast.length, roomFor(model, cast), SIZE, state.elevation_deg);
-  const cycles = cast.map(() => 0);
-  return { model, cast, state, size: SIZE, staging, cycles, time: 0, turned_deg: 0, mannequin: null, ...others };
+  const figures = figuresOf(model, state);
+  const arrangement = arrange(figures.length, extentFor(model, figures), SIZE, state.elevation_deg);
+  const phases = figures.map(() => 0);
+  return { model, figures, state, size: SIZE, arrangement, phases, time: 0, turned_deg: 0, mannequin: null, ...others };
 }
 
-/** Where the troupe has all dots at a time. */
-function troupePlaces({ cast, state, staging }: Script, time: number): Float64Array {
-  const troupe = new Troupe(cast.map(({ walker }) => walker));
-  ratesOf({ cast, state }).forEach((rate, i) => (troupe.rates[i] = rate));
+/** Where the batch has all dots at a time. */
+function batchPlaces({ figures, state, arrangement }: AnimationSpec, time: number): Float64Array {
+  const batch = new WalkerBatch(figures.map(({ walker }) => walker));
+  strideRates({ figures, state }).forEach((rate, i) => (batch.rates[i] = rate));
   const axes = observerAxes(state.azimuth_deg + state.turning_deg_s * time, state.elevation_deg);
-  const sight = { axes, eyeMm: state.perspective ? staging.eyeMm : null };
-  troupe.see(time, sight, staging, SIZE.width_px, SIZE.height_px);
-  return troupe.places;
+  const view = { axes, eyeMm: state.perspective ? arrangement.eyeMm : null };
+  batch.project(time, view, arrangement, SIZE);
+  return batch.places;
 }
 
 const apart = (found: ArrayLike<number>, wanted: ArrayLike<number>): number => {
@@ -54,12 +54,12 @@ describe("what is drawn quickly is what the stimulus says", () => {
     ["four at one tempo", { scene: "side", walkers: [0, 3, 5, 7] }],
     ["a crowd", { scene: "crowd", traits: { weight_kg: 2 }, elevation_deg: 50 }],
   ])("%s", (_, part) => {
-    const script = scriptOf(part);
-    const { cast, state, staging } = script;
-    const frames = framesOf(stagedStimulus(model, cast, state, SIZE, staging));
+    const spec = specOf(part);
+    const { figures, state, arrangement } = spec;
+    const frames = framesOf(arrangedStimulus(model, figures, state, SIZE, arrangement));
     for (const time of [0, 0.3, 1.7]) {
       const wanted = frames(time).flatMap(({ places }) => [...places]);
-      expect(apart(troupePlaces(script, time), wanted)).toBeLessThan(1e-6);
+      expect(apart(batchPlaces(spec, time), wanted)).toBeLessThan(1e-6);
     }
   });
 });
@@ -67,16 +67,16 @@ describe("what is drawn quickly is what the stimulus says", () => {
 describe("walkers stay in their boxes", () => {
   it("however they are turned, for random states", () => {
     for (let seed = 0; seed < 40; seed++) {
-      const [sex, azimuth, elevation, time, which] = [...uniforms(1, seed, 0, 0, 5)] as [number, number, number, number, number];
+      const [sex, azimuth, elevation, time, which] = [...uniforms([1, seed, 0, 0], 5)] as [number, number, number, number, number];
       const scene = (["one", "four", "side", "crowd"] as const)[Math.floor(4 * which)]!;
-      const script = scriptOf({
+      const spec = specOf({
         scene,
         traits: { sex: 12 * sex - 6 },
         azimuth_deg: 360 * azimuth - 180,
         elevation_deg: 120 * elevation - 30,
       });
-      const places = troupePlaces(script, 3 * time);
-      const boxes = boxesOf(script.staging, SIZE);
+      const places = batchPlaces(spec, 3 * time);
+      const boxes = boxesOf(spec.arrangement, SIZE);
       const perWalker = places.length / boxes.length;
       boxes.forEach(({ left, top, width, height }, i) => {
         const own = places.subarray(i * perWalker, (i + 1) * perWalker);
@@ -91,7 +91,7 @@ describe("walkers stay in their boxes", () => {
 
   it("and the boxes fill the picture without overlap", () => {
     for (let count = 1; count <= 100; count++) {
-      const boxes = boxesOf(stagingOf(count, { radius: 450, height: 1750 }, SIZE, 10), SIZE);
+      const boxes = boxesOf(arrange(count, { radius: 450, height: 1750 }, SIZE, 10), SIZE);
       expect(boxes.length).toBe(count);
       const area = boxes.reduce((sum, { width, height }) => sum + width * height, 0);
       expect(area).toBeLessThanOrEqual(SIZE.width_px * SIZE.height_px * 1.000001);
@@ -108,7 +108,7 @@ describe("walkers stay in their boxes", () => {
 describe("the chain", () => {
   const steps = (part: Partial<State>) => {
     const state = chosen(part);
-    return stimulusOf(model, castOf(model, state), state).transforms;
+    return stimulusOf(model, figuresOf(model, state), state).transforms;
   };
 
   it("is empty for a walker as it is", () => expect(steps({})).toEqual([]));
@@ -116,7 +116,7 @@ describe("the chain", () => {
   it("acts in one order, whatever was switched on first", () => {
     const names = ["mask", "scramble", "invert", "mirror", "arm_swing"] as const;
     const on = (order: readonly (typeof names)[number][]): State["transforms"] =>
-      Object.fromEntries(order.map((name) => [name, usualSettings(name)]));
+      Object.fromEntries(order.map((name) => [name, initialSettings(name)]));
     const found = steps({ transforms: on(names), tempo: 2, turning_deg_s: 20 }).map(({ name }) => name);
     expect(found).toEqual(["speed", "gain", "mirror", "invert", "scramble", "rotate", "mask"]);
     const other = steps({ transforms: on([...names].reverse()), tempo: 2, turning_deg_s: 20 });
@@ -124,15 +124,15 @@ describe("the chain", () => {
   });
 
   it("works out the box of a scrambled walker from the walker", () => {
-    const [front] = steps({ transforms: { scramble: usualSettings("scramble") }, azimuth_deg: 0 });
-    const [side] = steps({ transforms: { scramble: usualSettings("scramble") }, azimuth_deg: 90 });
+    const [front] = steps({ transforms: { scramble: initialSettings("scramble") }, azimuth_deg: 0 });
+    const [side] = steps({ transforms: { scramble: initialSettings("scramble") }, azimuth_deg: 90 });
     const box = (step: typeof front): readonly number[] => (step?.name === "scramble" ? step.box_mm : []);
     expect(box(front)[0]).toBeGreaterThan(box(side)[0]!);
     expect(box(front)[1]).toBe(box(side)[1]);
   });
 
   it("names the figures of a mask one by one", () => {
-    const masks = steps({ scene: "four", transforms: { mask: usualSettings("mask") } });
+    const masks = steps({ scene: "four", transforms: { mask: initialSettings("mask") } });
     expect(masks.map(({ figures }) => figures)).toEqual([[0], [1], [2], [3]]);
   });
 });
@@ -147,26 +147,26 @@ describe("strides go on", () => {
     ["in a chain", { transforms: { invert: {} } }],
     ["backwards", { transforms: { reverse: {} }, tempo: 1.4 }],
   ])("%s", (_, part) => {
-    const script = scriptOf({ ...part, scene: "side" }, { cycles: [0.1, 0.2, 5.3, -0.4], time: 7.7 });
-    const act = actOf(script);
-    const rates = ratesOf(script);
-    script.cycles.forEach((cycle, i) => {
-      expect(act.cycle(i, 7.7)).toBeCloseTo(cycle, 9);
-      expect(act.cycle(i, 8.2) - cycle).toBeCloseTo(0.5 * rates[i]!, 9);
+    const spec = specOf({ ...part, scene: "side" }, { phases: [0.1, 0.2, 5.3, -0.4], time: 7.7 });
+    const act = animationOf(spec);
+    const rates = strideRates(spec);
+    spec.phases.forEach((cycle, i) => {
+      expect(act.phase(i, 7.7)).toBeCloseTo(cycle, 9);
+      expect(act.phase(i, 8.2) - cycle).toBeCloseTo(0.5 * rates[i]!, 9);
     });
   });
 
   it("into a chain and out of it with every dot where it was", () => {
     // Twice a mirror image of walkers is they themselves, but through the chain.
-    const script = scriptOf({ azimuth_deg: 50 }, { cycles: [0.37], time: 3 });
-    const { cast, state, staging } = script;
-    const clock = 360 * (0.37 - ratesOf(script)[0]! * 3);
+    const spec = specOf({ azimuth_deg: 50 }, { phases: [0.37], time: 3 });
+    const { figures, state, arrangement } = spec;
+    const clock = 360 * (0.37 - strideRates(spec)[0]! * 3);
     const start = { name: "start", phase_deg: clock, figures: [0] } as const;
-    const chained = framesOf(stagedStimulus(model, cast, state, SIZE, staging, [start]))(3);
-    const troupe = new Troupe(cast.map(({ walker }) => walker));
-    troupe.starts[0] = 0.37 - troupe.rates[0]! * 3;
-    troupe.see(3, { axes: observerAxes(50, 0), eyeMm: null }, staging, SIZE.width_px, SIZE.height_px);
-    expect(apart(troupe.places, chained[0]!.places)).toBeLessThan(1e-6);
+    const chained = framesOf(arrangedStimulus(model, figures, state, SIZE, arrangement, [start]))(3);
+    const batch = new WalkerBatch(figures.map(({ walker }) => walker));
+    batch.starts[0] = 0.37 - batch.rates[0]! * 3;
+    batch.project(3, { axes: observerAxes(50, 0), eyeMm: null }, arrangement, SIZE);
+    expect(apart(batch.places, chained[0]!.places)).toBeLessThan(1e-6);
   });
 });
 
@@ -185,10 +185,10 @@ const silentContext: object = new Proxy({}, {
   set: () => true,
 });
 
-describe("the stage", () => {
+describe("the viewer", () => {
   let frames: FrameRequestCallback[] = [];
   let now = 0;
-  let sight: ((inSight: boolean) => void) | undefined;
+  let view: ((inSight: boolean) => void) | undefined;
   let canvas: HTMLCanvasElement;
 
   beforeEach(() => {
@@ -204,7 +204,7 @@ describe("the stage", () => {
       "IntersectionObserver",
       class {
         constructor(seen: (entries: { isIntersecting: boolean }[]) => void) {
-          sight = (isIntersecting) => seen([{ isIntersecting }]);
+          view = (isIntersecting) => seen([{ isIntersecting }]);
         }
         observe(): void {}
         disconnect(): void {}
@@ -225,15 +225,15 @@ describe("the stage", () => {
     }
   }
 
-  function staged(part: Partial<State> = {}, hooks: Hooks = {}): { stage: Stage; show: (part: Partial<State>) => void } {
-    const stage = new Stage(canvas, hooks);
+  function staged(part: Partial<State> = {}, hooks: ViewerEvents = {}): { viewer: Viewer; show: (part: Partial<State>) => void } {
+    const viewer = new Viewer(canvas, hooks);
     const show = (wish: Partial<State>): void => {
       const state = chosen(wish);
-      const cast: readonly Cast[] = castOf(model, state);
-      stage.show(model, cast, state);
+      const figures: readonly SceneFigure[] = figuresOf(model, state);
+      viewer.show(model, figures, state);
     };
     show(part);
-    return { stage, show };
+    return { viewer, show };
   }
 
   const drawnSince = (act: () => void): number => {
@@ -243,7 +243,7 @@ describe("the stage", () => {
   };
 
   it("draws each frame while it plays, and none while it is paused, hidden or gone", () => {
-    const { stage, show } = staged();
+    const { viewer, show } = staged();
     expect(drawnSince(() => run(10))).toBe(10);
     show({ playing: false });
     run(2);
@@ -251,11 +251,11 @@ describe("the stage", () => {
     expect(frames.length).toBe(0);
     show({});
     expect(drawnSince(() => run(10))).toBe(10);
-    sight?.(false);
+    view?.(false);
     expect(drawnSince(() => run(10))).toBe(0);
-    sight?.(true);
+    view?.(true);
     expect(drawnSince(() => run(10))).toBe(10);
-    stage.remove();
+    viewer.remove();
     expect(drawnSince(() => run(10))).toBe(0);
     expect(frames.length).toBe(0);
   });
@@ -267,34 +267,34 @@ describe("the stage", () => {
   });
 
   it("goes on where it was in the stride when the frequency changes, and when it is paused", () => {
-    const { stage, show } = staged();
+    const { viewer, show } = staged();
     run(31);
     for (const part of [{ traits: { sex: 5 } }, { tempo: 2.5 }, { transforms: { invert: {} } }, { playing: false }]) {
-      const before = stage.cycle;
+      const before = viewer.phase;
       show(part);
-      expect(stage.cycle).toBeCloseTo(before, 9);
+      expect(viewer.phase).toBeCloseTo(before, 9);
       run(3);
     }
   });
 
   it("stands where the state says when it is scrubbed", () => {
-    const { stage, show } = staged();
+    const { viewer, show } = staged();
     run(20);
     show({ playing: false, cycle: 0.25 });
-    expect(stage.cycle).toBeCloseTo(0.25, 9);
+    expect(viewer.phase).toBeCloseTo(0.25, 9);
     show({ playing: false, cycle: 0.75, tempo: 2, traits: { sex: -3 } });
-    expect(stage.cycle).toBeCloseTo(0.75, 9);
+    expect(viewer.phase).toBeCloseTo(0.75, 9);
   });
 
   it("lets several go on as they were to each other when it is paused and scrubbed", () => {
-    const { stage, show } = staged({ scene: "four" });
+    const { viewer, show } = staged({ scene: "four" });
     run(100);
     const seen = (): number[] => (dots = [], run(2), dots.slice(-60).flat());
     show({ scene: "four", playing: false });
     const paused = seen();
-    show({ scene: "four", playing: false, cycle: stage.cycle });
+    show({ scene: "four", playing: false, cycle: viewer.phase });
     expect(apart(seen(), paused)).toBeLessThan(1e-6);
-    const { cycle } = stage;
+    const { phase: cycle } = viewer;
     show({ scene: "four", playing: false, cycle: (cycle + 0.4) % 1 });
     expect(apart(seen(), paused)).toBeGreaterThan(1);
     show({ scene: "four", playing: false, cycle });
@@ -335,7 +335,7 @@ describe("the stage", () => {
   it("says who was tapped among several", () => {
     const picked = vi.fn();
     const boxes: unknown[] = [];
-    staged({ scene: "side", walkers: [1, 3, 5, 7] }, { picked, laid: (laid) => boxes.push(laid) });
+    staged({ scene: "side", walkers: [1, 3, 5, 7] }, { picked, arranged: (arranged) => boxes.push(arranged) });
     expect((boxes.at(-1) as unknown[]).length).toBe(4);
     pointer("pointerdown", 890, 300);
     pointer("pointerup", 891, 301);
@@ -363,9 +363,9 @@ describe("the stage", () => {
   });
 
   it("draws the mannequin flat where its module is not to be had", async () => {
-    const lacking = vi.fn();
-    const { show } = staged({ style: "mannequin" }, { lacking });
-    await vi.waitFor(() => expect(lacking).toHaveBeenCalledOnce());
+    const mannequinMissing = vi.fn();
+    const { show } = staged({ style: "mannequin" }, { mannequinMissing });
+    await vi.waitFor(() => expect(mannequinMissing).toHaveBeenCalledOnce());
     show({ style: "mannequin", playing: false });
     expect(drawnSince(() => run(3))).toBeGreaterThan(0);
   });

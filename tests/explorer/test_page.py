@@ -86,7 +86,7 @@ class Visit:
         self.page.on("console", self._heard)
         self.page.on("request", lambda request: self.asked.append(request.url))
         self.page.goto(address)
-        self.page.locator("#hero input").wait_for()
+        self.page.locator("#main-slider input").wait_for()
 
     def _heard(self, message: ConsoleMessage) -> None:
         if message.type in ("error", "warning"):
@@ -116,7 +116,7 @@ class Visit:
 
     def picture(self) -> str:
         """What the stage draws, two frames from now."""
-        drawn = "document.querySelector('#stage canvas').toDataURL()"
+        drawn = "document.querySelector('#viewer canvas').toDataURL()"
         return self.page.evaluate(f"new Promise((done) => {LATER.format(f'done({drawn})')})")
 
 
@@ -183,7 +183,7 @@ def test_everything_can_be_undone_and_reset(visit):
 
 def test_a_drag_is_one_step_that_is_undone_and_reset_knows_the_view(visit):
     there = visit("az=0&still")
-    box = there.page.locator("#stage canvas").bounding_box()
+    box = there.page.locator("#viewer canvas").bounding_box()
     there.page.mouse.move(box["x"] + 300, box["y"] + 300)
     there.page.mouse.down()
     there.page.mouse.move(box["x"] + 360, box["y"] + 300, steps=5)
@@ -202,7 +202,7 @@ def test_a_drag_is_one_step_that_is_undone_and_reset_knows_the_view(visit):
 
 def test_dragging_turns_the_walker_and_so_do_the_arrows(visit):
     there = visit("az=0&still")
-    box = there.page.locator("#stage canvas").bounding_box()
+    box = there.page.locator("#viewer canvas").bounding_box()
     there.page.mouse.move(box["x"] + 300, box["y"] + 300)
     there.page.mouse.down()
     there.page.mouse.move(box["x"] + 400, box["y"] + 300, steps=5)
@@ -332,7 +332,7 @@ def test_several_walk_at_once(visit):
         assert there.state()["show"] == said
         seen.append(there.picture())
     assert len(set(seen)) == 4
-    box = there.page.locator("#stage canvas").bounding_box()
+    box = there.page.locator("#viewer canvas").bounding_box()
     there.page.mouse.click(box["x"] + 0.05 * box["width"], box["y"] + 0.1 * box["height"])
     assert there.state()["w"] == "0"
 
@@ -369,7 +369,7 @@ def test_notices_lie_over_the_stage_alone(visit, size):
     boxes = [notices.nth(i).bounding_box() for i in range(2)]
     assert boxes[1]["y"] < boxes[0]["y"]  # the newer one, which is further down in the page
     lowest = max(box["y"] + box["height"] for box in boxes)
-    for control in ("#hero", "#tools .scrub", "#tools .round"):
+    for control in ("#main-slider", "#playback .scrub", "#playback .round"):
         place = there.page.locator(control).bounding_box()
         gone_by = place["y"] + place["height"] <= 0
         assert gone_by or lowest <= place["y"]
@@ -499,7 +499,7 @@ def test_nothing_hangs_over_the_edge_and_the_large_slider_is_in_reach(visit):
         wider = """[...document.querySelectorAll("#panel, #insight")]
             .filter((panel) => panel.scrollWidth > panel.clientWidth + 1).length"""
         assert there.page.evaluate(wider) == 0
-        box = there.page.locator("#hero input").bounding_box()
+        box = there.page.locator("#main-slider input").bounding_box()
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= width
         assert box["y"] + box["height"] <= height

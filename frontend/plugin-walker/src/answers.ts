@@ -1,4 +1,4 @@
-/** Keys and buttons, with the moment at which the browser noticed them. */
+/** Answers by keys and buttons, with their times. */
 
 import type { JsPsych } from "jspsych";
 
@@ -11,23 +11,23 @@ export interface Answer {
 
 type Keys = readonly string[] | "ALL_KEYS" | "NO_KEYS";
 
-/** When an event came; where its stamp is of another clock, it is now. */
-function momentOf(event: Event): number {
+/** The time of an event; now, if its timestamp is of another clock. */
+function timeOf(event: Event): number {
   const now = performance.now();
   return event.timeStamp > 0 && event.timeStamp <= now ? event.timeStamp : now;
 }
 
-/** Hand over each answer until the returned function is called. */
+/** Report each answer until the returned function is called. */
 export function listen(
   jsPsych: JsPsych,
   keys: Keys,
   buttons: readonly HTMLButtonElement[],
-  answered: (answer: Answer) => void,
+  onAnswer: (answer: Answer) => void,
 ): () => void {
   let pressedMs = 0;
-  // jsPsych says which keys count, but not when the event came; so its moment is kept before.
+  // jsPsych reports which keys count, but not the time of the event, so it is noted before.
   const note = (event: KeyboardEvent): void => {
-    pressedMs = momentOf(event);
+    pressedMs = timeOf(event);
   };
   document.addEventListener("keydown", note, { capture: true });
   const listener =
@@ -37,11 +37,11 @@ export function listen(
           valid_responses: keys === "ALL_KEYS" ? keys : [...keys],
           persist: true,
           allow_held_key: false,
-          callback_function: ({ key }: { key: string }) => answered({ response: key, by: "key", timeMs: pressedMs }),
+          callback_function: ({ key }: { key: string }) => onAnswer({ response: key, by: "key", timeMs: pressedMs }),
         });
   buttons.forEach((button, number) => {
     button.disabled = false;
-    button.onclick = (event) => answered({ response: number, by: "button", timeMs: momentOf(event) });
+    button.onclick = (event) => onAnswer({ response: number, by: "button", timeMs: timeOf(event) });
   });
   return () => {
     document.removeEventListener("keydown", note, { capture: true });

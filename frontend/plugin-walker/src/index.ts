@@ -6,6 +6,7 @@ import { everyFrame, frameTiming } from "../../src/canvas/frameClock";
 import type { MannequinPainter } from "../../src/canvas/mannequinLoader";
 import { painterOn, type Painter } from "../../src/canvas/painter";
 import { readStimulus } from "../../src/core/readStimulus";
+import { make } from "../../src/page/elements";
 import { listen, type Answer } from "./answers";
 import { info } from "./info";
 
@@ -22,7 +23,7 @@ export interface WalkerData {
   readonly frames_dropped: number;
 }
 
-/** Browsers know no less than microseconds. */
+/** To microseconds, the resolution of browsers. */
 const rounded = (milliseconds: number): number => Math.round(milliseconds * 1000) / 1000;
 
 class WalkerPlugin implements JsPsychPlugin<Info> {
@@ -33,19 +34,19 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
   trial(display: HTMLElement, trial: Trial, load: () => void = () => {}): void | Promise<never> {
     let waiting: Promise<never> | undefined;
     waiting = this.begin(display, trial, () => {
-      if (waiting) load(); // of a trial that begins at once, jsPsych says itself that it is loaded
+      if (waiting) load(); // for a trial that begins at once, jsPsych reports the loading itself
     });
     return waiting;
   }
 
-  /** Show the stimulus, of a mannequin once its module is there; what is returned may only fail. */
+  /** Show the stimulus, a mannequin once its module is loaded; the returned promise can only fail. */
   private begin(display: HTMLElement, trial: Trial, begun: () => void): Promise<never> | undefined {
     const stimulus = readStimulus(trial.stimulus);
     const { canvas, buttons } = build(display, trial);
     const start = (mannequin?: MannequinPainter): void => {
       const painter = painterOn(canvas, stimulus, trial.scale, mannequin);
-      const usualMs = 1000 * stimulus.timing.duration_s;
-      this.show(display, trial, painter, trial.stimulus_duration ?? usualMs, buttons);
+      const fileMs = 1000 * stimulus.timing.duration_s;
+      this.show(display, trial, painter, trial.stimulus_duration ?? fileMs, buttons);
       begun();
     };
     if (stimulus.display.style === "mannequin") {
@@ -64,13 +65,13 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
   ): void {
     const times: number[] = [];
     let answer: (Answer & { readonly rt: number }) | undefined;
-    let silence = (): void => {};
-    painter.paint(0); // the first drawing takes longest, so it is done before it is seen
+    let stopListening = (): void => {};
+    painter.paint(0); // the first drawing is the slowest, so it is done before the first frame
     painter.clear();
 
     const end = (): void => {
       stop();
-      silence();
+      stopListening();
       const timing = frameTiming(times);
       display.replaceChildren();
       this.jsPsych.finishTrial({
@@ -82,9 +83,9 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
         frames_dropped: timing.dropped,
       } satisfies WalkerData);
     };
-    const answered = (firstMs: number) => (came: Answer) => {
+    const onAnswer = (firstMs: number) => (given: Answer) => {
       if (answer) return;
-      answer = { ...came, rt: rounded(came.timeMs - firstMs) };
+      answer = { ...given, rt: rounded(given.timeMs - firstMs) };
       if (trial.response_ends_trial) end();
     };
     const stop = everyFrame((elapsedMs, firstMs) => {
@@ -98,7 +99,7 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       } else {
         painter.clear();
       }
-      if (elapsedMs === 0) silence = listen(this.jsPsych, trial.choices!, buttons, answered(firstMs));
+      if (elapsedMs === 0) stopListening = listen(this.jsPsych, trial.choices!, buttons, onAnswer(firstMs));
       return true;
     });
   }
@@ -128,11 +129,11 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     });
   }
 
-  /** What an observer might have done. */
+  /** A simulated answer. */
   private simulated(trial: Trial, options: Simulation[2]): WalkerData {
     const { pluginAPI, randomization } = this.jsPsych;
     const byKey = trial.choices !== "NO_KEYS";
-    const usual = {
+    const initial = {
       response: byKey
         ? pluginAPI.getValidKey(trial.choices as string[] | "ALL_KEYS")
         : randomization.randomInt(0, Math.max(trial.buttons!.length - 1, 0)),
@@ -142,38 +143,27 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       frame_interval: null,
       frames_dropped: 0,
     };
-    return pluginAPI.mergeSimulationData(usual, options) as WalkerData;
+    return pluginAPI.mergeSimulationData(initial, options) as WalkerData;
   }
 }
 
-/** What draws mannequins: a file of its own beside this one, fetched for the first of them. */
+/** The mannequin painter: a separate file beside this one, fetched for the first mannequin. */
 async function mannequinPainter(): Promise<MannequinPainter> {
   return (await import("../../src/mannequin/mannequin")).mannequinPainter();
 }
 
-/** The canvas, the prompt and the buttons, which wait for the first frame. */
+/** The canvas, the prompt and the buttons, which are disabled until the first frame. */
 function build(
   display: HTMLElement,
   trial: Trial,
 ): { canvas: HTMLCanvasElement; buttons: HTMLButtonElement[] } {
-  const canvas = document.createElement("canvas");
-  canvas.className = "jspsych-walker-canvas";
-  canvas.style.display = "block";
-  canvas.style.margin = "auto";
-  const row = document.createElement("div");
-  row.className = "jspsych-walker-buttons";
-  const buttons = trial.buttons!.map((label) => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.className = "jspsych-btn";
-    button.textContent = label;
-    button.disabled = true;
-    return button;
-  });
-  row.append(...buttons);
-  display.replaceChildren(canvas, row);
+  const canvas = make("canvas", { class: "jspsych-walker-canvas", style: "display: block; margin: auto" });
+  const buttons = trial.buttons!.map((label) =>
+    make("button", { type: "button", class: "jspsych-btn", disabled: true }, label),
+  );
+  display.replaceChildren(canvas, make("div", { class: "jspsych-walker-buttons" }, ...buttons));
   if (trial.prompt !== null) {
-    const prompt = document.createElement("div");
+    const prompt = make("div");
     prompt.innerHTML = trial.prompt!; // markup by the experimenter, as in every jsPsych plugin
     display.append(prompt);
   }

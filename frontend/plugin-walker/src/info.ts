@@ -1,4 +1,4 @@
-/** What the trial takes and what it gives. */
+/** The parameters and the data of the trial. */
 
 import { ParameterType } from "jspsych";
 
@@ -16,15 +16,15 @@ export const info = {
     buttons: { type: ParameterType.STRING, array: true, default: [] as string[] },
     /** Shown below the stimulus. */
     prompt: { type: ParameterType.HTML_STRING, default: null },
-    /** Milliseconds the stimulus is shown; null for the duration that stands in the file. */
+    /** Milliseconds the stimulus is shown; null for the duration in the file. */
     stimulus_duration: { type: ParameterType.INT, default: null },
-    /** Whether the stimulus begins anew when its duration is over, until the trial ends. */
+    /** Whether the stimulus repeats until the trial ends. */
     repeat: { type: ParameterType.BOOL, default: false },
     /** Milliseconds after which the trial ends without a response; null for never. */
     trial_duration: { type: ParameterType.INT, default: null },
     /** Whether a response ends the trial. */
     response_ends_trial: { type: ParameterType.BOOL, default: true },
-    /** How much larger than in the file, whose pixels are those of CSS, it is shown. */
+    /** Factor of the size in the file, whose pixels are CSS pixels. */
     scale: { type: ParameterType.FLOAT, default: 1 },
   },
   data: {
@@ -38,7 +38,7 @@ export const info = {
     frame_times: { type: ParameterType.FLOAT, array: true },
     /** Median milliseconds from frame to frame. */
     frame_interval: { type: ParameterType.FLOAT },
-    /** Frames of the screen that came and went without a new picture. */
+    /** Frames of the screen without a new picture. */
     frames_dropped: { type: ParameterType.INT },
   },
   citations: {

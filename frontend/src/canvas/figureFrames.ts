@@ -1,22 +1,22 @@
-/** Where dots are in the picture of a stimulus, in pixels, moment by moment. */
+/** Places of dots in the picture of a stimulus, in pixels, moment by moment. */
 
-import type { Moving } from "../core/movingDots";
+import type { MovingDots } from "../core/movingDots";
 import { inPicture, scene } from "../core/scene";
 import type { Stimulus } from "../core/stimulus";
 
 /** One figure, or the dots of one mask, at one moment. */
-export interface Shown {
-  readonly moving: Moving;
+export interface FigureFrame {
+  readonly moving: MovingDots;
   /** Pixels from the left and the upper edge of the picture, one dot after the other. */
   readonly places: Float64Array;
   /** Millimetres in the scene. */
   readonly positions: Float64Array;
-  /** 1 for each dot that is seen. */
+  /** 1 for each visible dot. */
   readonly visible: Uint8Array;
 }
 
 /** The function that gives all figures of a stimulus at a time in seconds. */
-export function framesOf(stimulus: Stimulus): (time: number) => Shown[] {
+export function framesOf(stimulus: Stimulus): (time: number) => FigureFrame[] {
   const figures = scene(stimulus);
   const { width_px, height_px, px_per_mm } = stimulus.display;
   return (time) =>
@@ -26,7 +26,6 @@ export function framesOf(stimulus: Stimulus): (time: number) => Shown[] {
       const inPixels = places.map((place, i) =>
         i % 2 === 0 ? width_px / 2 + px_per_mm * place : height_px / 2 - px_per_mm * place,
       );
-      const both = visible.map((isVisible, dot) => isVisible & seen[dot]!);
-      return { moving, places: inPixels, positions, visible: both };
+      return { moving, places: inPixels, positions, visible: visible.map((is, dot) => is & seen[dot]!) };
     });
 }

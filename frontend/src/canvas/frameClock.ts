@@ -1,4 +1,4 @@
-/** The screen's own clock: something is done once for each of its frames. */
+/** The frames of the screen: a function that is called for each of them, and how regular they were. */
 
 /**
  * Call `draw` for each frame of the screen until it returns false or the returned function is
@@ -15,21 +15,18 @@ export function everyFrame(draw: (elapsedMs: number, firstMs: number) => boolean
   return () => cancelAnimationFrame(request);
 }
 
-/** How regular the frames of the screen were. */
 export interface FrameTiming {
   /** Milliseconds from the first frame to each frame. */
   readonly times: readonly number[];
-  /** Median interval between frames, in milliseconds; null for less than two. */
+  /** Median interval between frames in milliseconds; null for less than two frames. */
   readonly interval: number | null;
-  /** Frames of the screen that came and went without a new picture. */
+  /** Frames of the screen without a new picture. */
   readonly dropped: number;
 }
 
 export function frameTiming(times: readonly number[]): FrameTiming {
   const intervals = times.slice(1).map((time, i) => time - times[i]!);
-  const sorted = [...intervals].sort((a, b) => a - b);
-  const interval = sorted[Math.floor(sorted.length / 2)] ?? null;
-  const lost = (lasts: number): number => Math.max(Math.round(lasts / interval!) - 1, 0);
-  const dropped = interval ? intervals.reduce((sum, lasts) => sum + lost(lasts), 0) : 0;
-  return { times, interval, dropped };
+  const interval = intervals.toSorted((a, b) => a - b)[Math.floor(intervals.length / 2)] ?? null;
+  const dropped = (duration: number): number => Math.max(Math.round(duration / interval!) - 1, 0);
+  return { times, interval, dropped: interval ? intervals.reduce((sum, each) => sum + dropped(each), 0) : 0 };
 }

@@ -1,26 +1,26 @@
 /** Frames of a stimulus on a canvas: discs, sticks, blobs, or a mannequin. */
 
 import type { Stimulus } from "../core/stimulus";
-import { framesOf, type Shown } from "./figureFrames";
+import { framesOf, type FigureFrame } from "./figureFrames";
 import { hasLimbs, type MannequinPainter } from "./mannequinLoader";
 
-/** Width of a stick beside the diameter of a dot. */
-const STICK = 0.6;
-/** Standard deviations beyond which a blob gives less light than a screen shows. */
-const LOST_SD = 3.6;
+/** Width of a stick relative to the diameter of a dot. */
+export const STICK_WIDTH = 0.6;
+/** Standard deviations beyond which the light of a blob is too weak for a screen. */
+const BLOB_REACH_SD = 3.6;
 
 export interface Painter {
-  /** Draw the stimulus as it is at a time in seconds. */
+  /** Draw the stimulus at a time in seconds. */
   paint(time: number): void;
-  /** Draw the ground alone. */
+  /** Draw the background alone. */
   clear(): void;
 }
 
 /**
- * What draws a stimulus on a canvas, which gets the stimulus' size.
+ * A painter of a stimulus on a canvas, which gets the stimulus' size.
  *
- * A pixel of the stimulus is a pixel of CSS, times `scale`; what is drawn is as fine as the screen.
- * A stimulus of the style "mannequin" needs its painter, whose module is loaded before.
+ * A pixel of the stimulus is a CSS pixel, times `scale`; the resolution is that of the screen.
+ * The style "mannequin" needs a mannequin painter, whose module is loaded before.
  */
 export function painterOn(
   canvas: HTMLCanvasElement,
@@ -29,49 +29,50 @@ export function painterOn(
   mannequin?: MannequinPainter,
 ): Painter {
   const { width_px, height_px } = stimulus.display;
-  const fine = scale * (window.devicePixelRatio || 1);
-  fit(canvas, width_px, height_px, fine);
+  const pixelRatio = scale * (window.devicePixelRatio || 1);
+  setResolution(canvas, width_px, height_px, pixelRatio);
   canvas.style.width = `${width_px * scale}px`;
   canvas.style.height = `${height_px * scale}px`;
   const context = contextOf(canvas, { alpha: false });
   const draw = drawingOf(stimulus, mannequin);
-  const clear = (): void => ground(context, stimulus, fine);
-  return { paint: (time) => draw(context, time, fine), clear };
+  const clear = (): void => drawBackground(context, stimulus, pixelRatio);
+  return { paint: (time) => draw(context, time, pixelRatio), clear };
 }
 
-/** Draws the stimulus as it is at a time; `fine` pixels of the canvas are one of the picture. */
-export type Drawing = (context: CanvasRenderingContext2D, time: number, fine: number) => void;
+/** Draws a stimulus at a time; `pixelRatio` canvas pixels are one pixel of the picture. */
+export type Drawing = (context: CanvasRenderingContext2D, time: number, pixelRatio: number) => void;
 
-/** What draws a stimulus on any canvas, over all of its picture. */
+/** A function that draws a stimulus on any canvas, over all of its picture. */
 export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Drawing {
   const layer = document.createElement("canvas");
   const frameAt = framesOf(stimulus);
-  const carved = stimulus.display.style === "mannequin";
-  if (carved && !mannequin) throw new Error("The mannequin's module was not loaded.");
-  return (context, time, fine) => {
-    ground(context, stimulus, fine);
-    const all = frameAt(time);
-    if (carved) mannequin?.paint(context, all, stimulus, fine);
-    for (const shown of all) {
+  const solid = stimulus.display.style === "mannequin";
+  if (solid && !mannequin) throw new Error("The mannequin's module was not loaded.");
+  return (context, time, pixelRatio) => {
+    drawBackground(context, stimulus, pixelRatio);
+    const frames = frameAt(time);
+    if (solid) mannequin?.paint(context, frames, stimulus, pixelRatio);
+    for (const frame of frames) {
       context.fillStyle = context.strokeStyle = stimulus.display.colour;
-      if (shown.moving.blurMm > 0) drawBlobs(context, layer, shown, stimulus);
-      else if (!carved || !hasLimbs(shown.moving)) drawDots(context, shown, stimulus);
+      if (frame.moving.blurMm > 0) drawBlobs(context, layer, frame, stimulus);
+      else if (!solid || !hasLimbs(frame.moving)) drawDots(context, frame, stimulus);
     }
   };
 }
 
-function ground(context: CanvasRenderingContext2D, { display }: Stimulus, fine: number): void {
-  context.setTransform(fine, 0, 0, fine, 0, 0);
+function drawBackground(context: CanvasRenderingContext2D, { display }: Stimulus, pixelRatio: number): void {
+  context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   context.fillStyle = display.background;
   context.fillRect(0, 0, display.width_px, display.height_px);
 }
 
-function fit(canvas: HTMLCanvasElement, width: number, height: number, fine: number): void {
-  canvas.width = Math.round(width * fine);
-  canvas.height = Math.round(height * fine);
+/** Set the resolution of a canvas for a picture of a size in pixels. */
+export function setResolution(canvas: HTMLCanvasElement, width: number, height: number, pixelRatio: number): void {
+  canvas.width = Math.round(width * pixelRatio);
+  canvas.height = Math.round(height * pixelRatio);
 }
 
-function contextOf(
+export function contextOf(
   canvas: HTMLCanvasElement,
   settings?: CanvasRenderingContext2DSettings,
 ): CanvasRenderingContext2D {
@@ -80,9 +81,9 @@ function contextOf(
   return context;
 }
 
-function drawDots(context: CanvasRenderingContext2D, shown: Shown, { display }: Stimulus): void {
-  const { places, visible } = shown;
-  if (display.style === "sticks") drawSticks(context, shown, Math.max(STICK * display.dot_px, 1));
+function drawDots(context: CanvasRenderingContext2D, frame: FigureFrame, { display }: Stimulus): void {
+  const { places, visible } = frame;
+  if (display.style === "sticks") drawSticks(context, frame, Math.max(STICK_WIDTH * display.dot_px, 1));
   context.beginPath();
   visible.forEach((isVisible, dot) => {
     if (!isVisible) return;
@@ -93,8 +94,8 @@ function drawDots(context: CanvasRenderingContext2D, shown: Shown, { display }: 
   context.fill();
 }
 
-function drawSticks(context: CanvasRenderingContext2D, shown: Shown, width: number): void {
-  const { moving, places, visible } = shown;
+function drawSticks(context: CanvasRenderingContext2D, frame: FigureFrame, width: number): void {
+  const { moving, places, visible } = frame;
   context.lineWidth = width;
   context.lineCap = "round";
   context.beginPath();
@@ -107,11 +108,11 @@ function drawSticks(context: CanvasRenderingContext2D, shown: Shown, width: numb
   context.stroke();
 }
 
-/** Gaussian blobs whose light adds up, on a layer of their own: first the light, then its colour. */
+/** Gaussian blobs whose light adds up, on a separate layer: first the light, then its colour. */
 function drawBlobs(
   context: CanvasRenderingContext2D,
   layer: HTMLCanvasElement,
-  { moving, places, visible }: Shown,
+  { moving, places, visible }: FigureFrame,
   { display }: Stimulus,
 ): void {
   const { width, height } = context.canvas;
@@ -120,7 +121,7 @@ function drawBlobs(
   light.setTransform(1, 0, 0, 1, 0, 0);
   light.clearRect(0, 0, width, height);
   light.globalCompositeOperation = "lighter";
-  const reach = LOST_SD * moving.blurMm * display.px_per_mm;
+  const reach = BLOB_REACH_SD * moving.blurMm * display.px_per_mm;
   light.fillStyle = gaussian(light, reach);
   visible.forEach((isVisible, dot) => {
     if (!isVisible) return;
@@ -136,13 +137,13 @@ function drawBlobs(
   context.drawImage(layer, 0, 0, display.width_px, display.height_px);
 }
 
-/** A gradient of light about the origin that falls as a Gaussian does. */
+/** A gradient of light about the origin with the shape of a Gaussian. */
 function gaussian(context: CanvasRenderingContext2D, reach: number): CanvasGradient {
   const gradient = context.createRadialGradient(0, 0, 0, 0, 0, reach);
   const nStops = 36;
   for (let i = 0; i <= nStops; i++) {
     const share = i / nStops;
-    const light = i === nStops ? 0 : Math.exp(-((LOST_SD * share) ** 2) / 2);
+    const light = i === nStops ? 0 : Math.exp(-((BLOB_REACH_SD * share) ** 2) / 2);
     gradient.addColorStop(share, `rgb(255 255 255 / ${light})`);
   }
   return gradient;

@@ -1,67 +1,61 @@
-/** Transforms of places: turned over, mirrored, turned, moved. */
+/** Transforms of space: inversion, mirror image, rotation, size, position. */
 
-import type { Moment, Moving } from "./movingDots";
-import type { Stage } from "./transformContext";
+import { positionOf, type Moment, type MovingDots, type TransformContext } from "./movingDots";
 import type { Parameters } from "./stimulus";
-import { dot, radians, type Vector } from "./vector";
+import { dot, minus, radians, type Vector } from "./vector";
 
 const NAMED_AXES: Record<"x" | "y" | "z", Vector> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
-/** The same figure with each place changed; `change` gets the place and the time. */
-export function placewise(moving: Moving, change: (place: Vector, time: number) => Vector): Moving {
-  const at = (time: number): Moment => {
-    const moment = moving.at(time);
-    const { positions } = moment;
+/** The same figure with each position changed; `change` gets the position and the time. */
+export function mapPositions(moving: MovingDots, change: (position: Vector, time: number) => Vector): MovingDots {
+  return moving.map(({ positions }, time) => {
     for (let i = 0; i < positions.length; i += 3) {
       positions.set(change([positions[i]!, positions[i + 1]!, positions[i + 2]!], time), i);
     }
-    return moment;
-  };
-  return moving.with({ at });
+  });
 }
 
-/** Turn the figure upside down: `z` becomes `2 m - z`, m being the middle's height. */
-export function invert(moving: Moving): Moving {
+/** Turn the figure upside down: `z` becomes `2 m - z`, where m is the height of its middle. */
+export function invert(moving: MovingDots): MovingDots {
   const double = 2 * moving.middle[2];
-  return placewise(moving, ([x, y, z]) => [x, y, -z + double]);
+  return mapPositions(moving, ([x, y, z]) => [x, y, -z + double]);
 }
 
-/** Swap the sides: `y` becomes `2 m - y`, and what was left is called right. */
-export function mirror(moving: Moving): Moving {
+/** Swap the sides: `y` becomes `2 m - y`, and left dots become right dots. */
+export function mirror(moving: MovingDots): MovingDots {
   const double = 2 * moving.middle[1];
   const partner = moving.mirrored();
   const at = (time: number): Moment => {
     const there = moving.at(time);
     const positions = new Float64Array(there.positions.length);
     partner.forEach((other, i) => {
-      const [x, y, z] = there.positions.subarray(3 * other, 3 * other + 3);
-      positions.set([x!, -y! + double, z!], 3 * i);
+      const [x, y, z] = positionOf(there.positions, other);
+      positions.set([x, -y + double, z], 3 * i);
     });
     return { positions, visible: Uint8Array.from(partner, (other) => there.visible[other]!) };
   };
   return moving.with({ at });
 }
 
-/** Turn the figure about an axis through its middle, right-handed, standing or on and on. */
-export function rotate(moving: Moving, stage: Stage, step: Parameters<"rotate">): Moving {
-  const axis = named(step.axis, stage);
+/** Turn the figure about an axis through its middle, right-handed, by an angle and at a speed. */
+export function rotate(moving: MovingDots, context: TransformContext, step: Parameters<"rotate">): MovingDots {
+  const axis = axisOf(step.axis, context);
   const length = Math.sqrt(dot(axis, axis));
   const unit: Vector = [axis[0] / length, axis[1] / length, axis[2] / length];
-  const middle = moving.middle;
-  return placewise(moving, (place, time) => {
+  const { middle } = moving;
+  return mapPositions(moving, (position, time) => {
     const angle = radians(step.angle_deg + step.speed_deg_s * time);
-    const arm: Vector = [place[0] - middle[0], place[1] - middle[1], place[2] - middle[2]];
-    const turned = turn(arm, unit, angle);
+    const turned = turn(minus(position, middle), unit, angle);
     return [turned[0] + middle[0], turned[1] + middle[1], turned[2] + middle[2]];
   });
 }
 
-function named(axis: Parameters<"rotate">["axis"], stage: Stage): Vector {
-  if (axis === "sight") return stage.observer[2];
+function axisOf(axis: Parameters<"rotate">["axis"], { observer }: TransformContext): Vector {
+  if (axis === "sight") return observer[2];
   return typeof axis === "string" ? NAMED_AXES[axis] : axis;
 }
 
-/** Rodrigues' formula. */
+/** Rodrigues' rotation formula. */
 function turn(arm: Vector, unit: Vector, angle: number): Vector {
   const cosine = Math.cos(angle);
   const sine = Math.sin(angle);
@@ -74,19 +68,15 @@ function turn(arm: Vector, unit: Vector, angle: number): Vector {
 }
 
 /** Make the figure larger or smaller about the point of the floor below its middle. */
-export function resize(moving: Moving, _: Stage, { factor }: Parameters<"resize">): Moving {
-  const [fixedX, fixedY] = moving.middle;
-  return placewise(moving, ([x, y, z]) => [
-    fixedX + factor * (x - fixedX),
-    fixedY + factor * (y - fixedY),
-    factor * z,
-  ]);
+export function resize(moving: MovingDots, _: TransformContext, { factor }: Parameters<"resize">): MovingDots {
+  const [x0, y0] = moving.middle;
+  return mapPositions(moving, ([x, y, z]) => [x0 + factor * (x - x0), y0 + factor * (y - y0), factor * z]);
 }
 
 /** Move the figure: `x + offset + velocity t`. */
-export function translate(moving: Moving, _: Stage, step: Parameters<"translate">): Moving {
+export function translate(moving: MovingDots, _: TransformContext, step: Parameters<"translate">): MovingDots {
   const { offset_mm: offset, velocity_mm_s: velocity } = step;
-  return placewise(moving, ([x, y, z], time) => [
+  return mapPositions(moving, ([x, y, z], time) => [
     x + offset[0] + velocity[0] * time,
     y + offset[1] + velocity[1] * time,
     z + offset[2] + velocity[2] * time,

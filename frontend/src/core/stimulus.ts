@@ -1,10 +1,11 @@
-/** What stands in a stimulus file, all defaults filled in; `docs/stimulus-format.md` tells of it. */
+/** The content of a stimulus file, all defaults filled in; `docs/stimulus-format.md` describes it. */
 
 import type { Vector } from "./vector";
 
 export type Link = readonly [string, string];
+type Pair = readonly [number, number];
 
-/** Coefficients of what is periodic: p0 + sum_i p_i sin(harmonic_i 2 pi f t + phase_i). */
+/** Coefficients of a periodic figure: p0 + sum_i p_i sin(harmonic_i 2 pi f t + phase_i). */
 export interface Walker {
   readonly markers: readonly string[];
   readonly p0: readonly Vector[];
@@ -14,7 +15,7 @@ export interface Walker {
   readonly frequency_hz: number;
 }
 
-/** Samples of what is not periodic: frames of dots of x, y, z; null where missing. */
+/** Samples of a figure that is not periodic: frames of dots of x, y, z; null where missing. */
 export interface Trajectories {
   readonly markers: readonly string[];
   readonly rate_hz: number;
@@ -50,92 +51,66 @@ export interface Display {
   readonly px_per_cm: number | null;
 }
 
-type Pair = readonly [number, number];
+interface TransformParameters {
+  invert: object;
+  mirror: object;
+  rotate: { axis: Vector | "x" | "y" | "z" | "sight"; angle_deg: number; speed_deg_s: number };
+  resize: { factor: number };
+  translate: { offset_mm: Vector; velocity_mm_s: Vector };
+  speed: { factor: number };
+  reverse: { end_s: number };
+  start: { phase_deg: number };
+  freeze: { time_s: number };
+  phase_scramble: { seed: number; spread: number };
+  delay: { markers: readonly string[]; phase_deg: number };
+  morph: { walker: Walker; start_s: number; end_s: number };
+  occlude: { markers: readonly string[] };
+  gain: { markers: readonly string[]; factor: number; axes: string };
+  conflict: { shoulder_width: number; hip_width: number; shoulder_sway: number; hip_sway: number };
+  ellipses: { shoulder_mm: Pair; hip_mm: Pair; phase_deg: number };
+  perturb: {
+    markers: readonly string[];
+    amount_mm: Vector;
+    frequency_hz: number;
+    phase_deg: number;
+    start_s: number;
+    end_s: number;
+  };
+  scramble: {
+    seed: number;
+    keep: "nothing" | "structure";
+    box_mm: Pair;
+    directions: "both" | "horizontal" | "vertical";
+  };
+  limb_dots: {
+    number: number;
+    lifetime_s: number | null;
+    asynchrony: number;
+    places: "limbs" | "joints";
+    seed: number;
+  };
+  blur: { sd_mm: number };
+  mask: {
+    kind: "random" | "linear" | "scrambled";
+    number: number;
+    box_mm: Pair;
+    centre_mm: Vector;
+    lifetime_s: number | null;
+    speed_mm_s: number;
+    direction_deg: number | null;
+    phases: boolean;
+    seed: number;
+  };
+}
 
-/** A transform: its name, its parameters, and the numbers of the figures it acts on. */
-export type Step = { readonly figures: readonly number[] | null } & (
-  | { readonly name: "invert" | "mirror" }
-  | {
-      readonly name: "rotate";
-      readonly axis: Vector | "x" | "y" | "z" | "sight";
-      readonly angle_deg: number;
-      readonly speed_deg_s: number;
-    }
-  | { readonly name: "resize"; readonly factor: number }
-  | { readonly name: "translate"; readonly offset_mm: Vector; readonly velocity_mm_s: Vector }
-  | { readonly name: "speed"; readonly factor: number }
-  | { readonly name: "reverse"; readonly end_s: number }
-  | { readonly name: "start"; readonly phase_deg: number }
-  | { readonly name: "freeze"; readonly time_s: number }
-  | { readonly name: "phase_scramble"; readonly seed: number; readonly spread: number }
-  | { readonly name: "delay"; readonly markers: readonly string[]; readonly phase_deg: number }
-  | {
-      readonly name: "morph";
-      readonly walker: Walker;
-      readonly start_s: number;
-      readonly end_s: number;
-    }
-  | { readonly name: "occlude"; readonly markers: readonly string[] }
-  | {
-      readonly name: "gain";
-      readonly markers: readonly string[];
-      readonly factor: number;
-      readonly axes: string;
-    }
-  | {
-      readonly name: "conflict";
-      readonly shoulder_width: number;
-      readonly hip_width: number;
-      readonly shoulder_sway: number;
-      readonly hip_sway: number;
-    }
-  | {
-      readonly name: "ellipses";
-      readonly shoulder_mm: Pair;
-      readonly hip_mm: Pair;
-      readonly phase_deg: number;
-    }
-  | {
-      readonly name: "perturb";
-      readonly markers: readonly string[];
-      readonly amount_mm: Vector;
-      readonly frequency_hz: number;
-      readonly phase_deg: number;
-      readonly start_s: number;
-      readonly end_s: number;
-    }
-  | {
-      readonly name: "scramble";
-      readonly seed: number;
-      readonly keep: "nothing" | "structure";
-      readonly box_mm: Pair;
-      readonly directions: "both" | "horizontal" | "vertical";
-    }
-  | {
-      readonly name: "limb_dots";
-      readonly number: number;
-      readonly lifetime_s: number | null;
-      readonly asynchrony: number;
-      readonly places: "limbs" | "joints";
-      readonly seed: number;
-    }
-  | { readonly name: "blur"; readonly sd_mm: number }
-  | {
-      readonly name: "mask";
-      readonly kind: "random" | "linear" | "scrambled";
-      readonly number: number;
-      readonly box_mm: Pair;
-      readonly centre_mm: Vector;
-      readonly lifetime_s: number | null;
-      readonly speed_mm_s: number;
-      readonly direction_deg: number | null;
-      readonly phases: boolean;
-      readonly seed: number;
-    }
-);
+export type TransformName = keyof TransformParameters;
 
-/** The parameters of one transform. */
-export type Parameters<Name extends Step["name"]> = Extract<Step, { readonly name: Name }>;
+/** One transform: its name, its parameters, and the numbers of the figures it acts on. */
+export type Parameters<Name extends TransformName> = Readonly<
+  { name: Name; figures: readonly number[] | null } & TransformParameters[Name]
+>;
+
+export type Step = { [Name in TransformName]: Parameters<Name> }[TransformName];
 
 export interface Stimulus {
   readonly format: "eigenwalker stimulus";

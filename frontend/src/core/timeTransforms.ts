@@ -1,53 +1,52 @@
-/** Transforms of time: faster, backwards, elsewhere in the cycle, from one walker to another. */
+/** Transforms of time: faster, backwards, another phase, from one walker to another. */
 
+import { gathered, walking, type Moment, type MovingDots, type TransformContext } from "./movingDots";
 import { Purpose, uniforms } from "./randomStream";
-import { walking, type Moment, type Moving } from "./movingDots";
-import type { Stage } from "./transformContext";
 import type { Parameters } from "./stimulus";
 
-/** Play faster or slower: what was at `factor t` is at `t`. */
-export function speed(moving: Moving, _: Stage, { factor }: Parameters<"speed">): Moving {
+/** Play faster or slower: the new figure at `t` is the old one at `factor t`. */
+export function speed(moving: MovingDots, _: TransformContext, { factor }: Parameters<"speed">): MovingDots {
   const at = (time: number): Moment => moving.at(time * factor);
   return moving.with({ at, periodS: moving.periodS / Math.abs(factor) });
 }
 
-/** Play backwards: what was at `end - t` is at `t`. */
-export function reverse(moving: Moving, _: Stage, { end_s }: Parameters<"reverse">): Moving {
+/** Play backwards: the new figure at `t` is the old one at `end - t`. */
+export function reverse(moving: MovingDots, _: TransformContext, { end_s }: Parameters<"reverse">): MovingDots {
   return moving.with({ at: (time) => moving.at(end_s - time) });
 }
 
-/** Begin elsewhere in the cycle: what was at `t + phase / 360 * period` is at `t`. */
-export function start(moving: Moving, _: Stage, { phase_deg }: Parameters<"start">): Moving {
+/** Begin at another phase: the new figure at `t` is the old one at `t + phase / 360 * period`. */
+export function start(moving: MovingDots, _: TransformContext, { phase_deg }: Parameters<"start">): MovingDots {
   const later = (phase_deg / 360) * moving.periodS;
   return moving.with({ at: (time) => moving.at(time + later) });
 }
 
-/** Stand still as at one moment. */
-export function freeze(moving: Moving, _: Stage, { time_s }: Parameters<"freeze">): Moving {
+/** Stand still in the posture of one moment. */
+export function freeze(moving: MovingDots, _: TransformContext, { time_s }: Parameters<"freeze">): MovingDots {
   return moving.with({ at: () => moving.at(time_s) });
 }
 
-/** Let each dot run on a clock of its own: dot d is shown as at `t + spread u_d period`. */
+/** Give each dot a clock of its own: dot d is shown at `t + spread u_d period`. */
 export function phaseScramble(
-  moving: Moving,
-  stage: Stage,
+  moving: MovingDots,
+  { figure }: TransformContext,
   { seed, spread }: Parameters<"phase_scramble">,
-): Moving {
+): MovingDots {
   const shifts = moving.body.dots.map((_, dot) => {
-    const [drawn] = uniforms(Purpose.phaseScramble, seed, dot, stage.figure, 1);
-    return spread * drawn! * moving.periodS;
+    const [u] = uniforms([Purpose.phaseScramble, seed, dot, figure], 1);
+    return spread * u! * moving.periodS;
   });
   return shifted(moving, shifts);
 }
 
-/** Let some dots lag: they are shown as at `t - phase / 360 * period`. */
-export function delay(moving: Moving, _: Stage, step: Parameters<"delay">): Moving {
+/** Delay some dots: they are shown at `t - phase / 360 * period`. */
+export function delay(moving: MovingDots, _: TransformContext, step: Parameters<"delay">): MovingDots {
   const lag = (step.phase_deg / 360) * moving.periodS;
   return shifted(moving, moving.named(step.markers).map((lags) => (lags ? -lag : 0)));
 }
 
-/** A figure of which each dot runs ahead by a time of its own. */
-function shifted(moving: Moving, shifts: readonly number[]): Moving {
+/** The figure with each dot shifted in time. */
+function shifted(moving: MovingDots, shifts: readonly number[]): MovingDots {
   const clocks = [...new Set(shifts)];
   const clock = shifts.map((shift) => clocks.indexOf(shift));
   const at = (time: number): Moment => {
@@ -57,38 +56,28 @@ function shifted(moving: Moving, shifts: readonly number[]): Moving {
   return moving.with({ at });
 }
 
-/** One moment of dots that are taken from several, each by its number there. */
-export function gathered(sources: readonly (readonly [Moment, number])[]): Moment {
-  const positions = new Float64Array(3 * sources.length);
-  const visible = new Uint8Array(sources.length);
-  sources.forEach(([moment, dot], i) => {
-    positions.set(moment.positions.subarray(3 * dot, 3 * dot + 3), 3 * i);
-    visible[i] = moment.visible[dot]!;
-  });
-  return { positions, visible };
-}
-
 /**
- * Pass from the figure into another walker, evenly, from start to end.
+ * Pass from the figure into another walker, at an even rate from start to end.
  *
- * Both are taken at the same phase of their cycles and their places averaged; the frequency passes
- * evenly too, so that the phase in cycles is `f_a t + (f_b - f_a) W(t)`, W being the integral of
- * the other's share.
+ * Both are taken at the same phase of their strides, and their positions are averaged. The frequency
+ * changes at the same rate, so that the phase in strides is `f_a t + (f_b - f_a) W(t)`, where W is the
+ * integral of the other walker's share.
  */
-export function morph(moving: Moving, _: Stage, step: Parameters<"morph">): Moving {
+export function morph(moving: MovingDots, _: TransformContext, step: Parameters<"morph">): MovingDots {
   const other = walking(step.walker, [], []);
   const order = moving.body.dots.map((dot) => other.index(dot));
-  const lasts = step.end_s - step.start_s;
+  const durationS = step.end_s - step.start_s;
   const ownHz = 1 / moving.periodS;
   const otherHz = 1 / other.periodS;
   const at = (time: number): Moment => {
-    const share = Math.min(Math.max((time - step.start_s) / lasts, 0), 1);
-    const integral = (share * share * lasts) / 2 + Math.max(time - step.end_s, 0);
-    const cycles = ownHz * time + (otherHz - ownHz) * integral;
-    const moment = moving.at(cycles * moving.periodS);
-    const there = gathered(order.map((dot) => [other.at(cycles * other.periodS), dot]));
-    moment.positions.forEach((place, i) => {
-      moment.positions[i] = (1 - share) * place + share * there.positions[i]!;
+    const share = Math.min(Math.max((time - step.start_s) / durationS, 0), 1);
+    const integral = (share * share * durationS) / 2 + Math.max(time - step.end_s, 0);
+    const strides = ownHz * time + (otherHz - ownHz) * integral;
+    const moment = moving.at(strides * moving.periodS);
+    const there = other.at(strides * other.periodS);
+    const { positions } = gathered(order.map((dot) => [there, dot]));
+    moment.positions.forEach((value, i) => {
+      moment.positions[i] = (1 - share) * value + share * positions[i]!;
     });
     return moment;
   };

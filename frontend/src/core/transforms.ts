@@ -1,48 +1,30 @@
-/** Every transform by its name in a stimulus file. */
+/** All transforms by their names in a stimulus file. */
 
-import * as body from "./bodyTransforms";
-import * as clocks from "./timeTransforms";
-import type { Moving } from "./movingDots";
-import * as scattered from "./dotTransforms";
-import * as space from "./spatialTransforms";
-import type { Stage } from "./transformContext";
-import type { Parameters, Step } from "./stimulus";
+import { conflict, ellipses, gain, occlude, perturb } from "./bodyTransforms";
+import { blur, limbDots, mask, scramble } from "./dotTransforms";
+import type { MovingDots, TransformContext } from "./movingDots";
+import { invert, mirror, resize, rotate, translate } from "./spatialTransforms";
+import type { Parameters, Step, TransformName } from "./stimulus";
+import { delay, freeze, morph, phaseScramble, reverse, speed, start } from "./timeTransforms";
 
-type Transform<Name extends Step["name"]> = (
-  moving: Moving,
-  stage: Stage,
+type Transform<Name extends TransformName> = (
+  moving: MovingDots,
+  context: TransformContext,
   step: Parameters<Name>,
-) => Moving;
+) => MovingDots;
 
-const TRANSFORMS: { readonly [Name in Step["name"]]: Transform<Name> } = {
-  invert: space.invert,
-  mirror: space.mirror,
-  rotate: space.rotate,
-  resize: space.resize,
-  translate: space.translate,
-  speed: clocks.speed,
-  reverse: clocks.reverse,
-  start: clocks.start,
-  freeze: clocks.freeze,
-  phase_scramble: clocks.phaseScramble,
-  delay: clocks.delay,
-  morph: clocks.morph,
-  occlude: body.occlude,
-  gain: body.gain,
-  conflict: body.conflict,
-  ellipses: body.ellipses,
-  perturb: body.perturb,
-  scramble: scattered.scramble,
-  limb_dots: scattered.limbDots,
-  blur: scattered.blur,
-  mask: scattered.mask,
+const TRANSFORMS: { readonly [Name in TransformName]: Transform<Name> } = {
+  invert, mirror, rotate, resize, translate,
+  speed, reverse, start, freeze, phase_scramble: phaseScramble, delay, morph,
+  occlude, gain, conflict, ellipses, perturb,
+  scramble, limb_dots: limbDots, blur, mask,
 };
 
-/** The figure as one transform leaves it; of a mask, the noise that joins the scene. */
-export function transformed(moving: Moving, stage: Stage, step: Step): Moving {
-  const transform = TRANSFORMS[step.name] as (m: Moving, s: Stage, p: Step) => Moving;
-  return transform(moving, stage, step);
+/** The figure after one transform; for a mask, the noise that joins the scene. */
+export function transformed(moving: MovingDots, context: TransformContext, step: Step): MovingDots {
+  const transform = TRANSFORMS[step.name] as Transform<never>;
+  return transform(moving, context, step as never);
 }
 
-/** Whether what a transform returns joins the scene, rather than taking the figure's place. */
-export const adds = (step: Step): boolean => step.name === "mask";
+/** Whether the result of a transform joins the scene instead of replacing the figure. */
+export const addsFigure = (step: Step): boolean => step.name === "mask";

@@ -1,48 +1,48 @@
-/** Directions that sliders lead along, and plots lie along: traits, then eigenwalkers. */
+/** Directions of sliders and axes of plots: traits, then eigenwalkers. */
 
+import { capitalised, endLabels, mainTrait } from "../model/axisLabels";
 import type { Model, Numbers, Trait } from "../model/model";
-import { positionsInCloud, type Place } from "../model/position";
+import { cloudPositions, type Position } from "../model/position";
 import type { State } from "../model/state";
-import { capital, ends, mainTrait } from "./labels";
 
 export interface Axis {
   readonly label: string;
   readonly ends: readonly [string, string];
   readonly trait: Trait | null;
-  /** Standard deviations at which each point of the cloud lies. */
+  /** The position of each point of the cloud, in standard deviations. */
   readonly points: Numbers;
-  /** Standard deviations at which a walker lies. */
-  at(place: Place): number;
-  /** Where its slider stands. */
+  /** The position of a walker, in standard deviations. */
+  at(position: Position): number;
+  /** The value of its slider. */
   value(state: State): number;
-  /** What changes where its slider is moved. */
+  /** The change of the state when its slider is moved. */
   moved(state: State, value: number): Partial<State>;
 }
 
-/** All of them; the first is the one whose slider is large. */
+/** All axes; the first is that of the large slider. */
 export function axesOf(model: Model): Axis[] {
   const main = mainTrait(model);
-  const traits = [...model.traits].sort((a, b) => Number(b === main) - Number(a === main));
+  const traits = model.traits.toSorted((a, b) => Number(b === main) - Number(a === main));
   return [
-    ...traits.map((trait) => alongTrait(model, trait)),
-    ...model.eigenwalkers.map((_, number) => alongEigenwalker(model, number)),
+    ...traits.map((trait) => traitAxis(model, trait)),
+    ...model.eigenwalkers.map((_, number) => eigenwalkerAxis(model, number)),
   ];
 }
 
-function alongTrait(model: Model, trait: Trait): Axis {
+function traitAxis(model: Model, trait: Trait): Axis {
   const { name, label } = trait;
   return {
-    label: capital(label),
-    ends: ends(trait),
+    label: capitalised(label),
+    ends: endLabels(trait),
     trait,
-    points: positionsInCloud(model, trait),
-    at: ({ positions }) => positions[name] ?? 0,
+    points: cloudPositions(model, trait),
+    at: ({ traits }) => traits[name] ?? 0,
     value: ({ traits }) => traits[name] ?? 0,
     moved: ({ traits }, value) => ({ traits: { ...traits, [name]: value } }),
   };
 }
 
-function alongEigenwalker({ cloud }: Model, number: number): Axis {
+function eigenwalkerAxis({ cloud }: Model, number: number): Axis {
   const label = `Eigenwalker ${number + 1}`;
   return {
     label,
@@ -51,13 +51,11 @@ function alongEigenwalker({ cloud }: Model, number: number): Axis {
     points: cloud.scores.map((scores) => scores[number]!),
     at: ({ scores }) => scores[number]!,
     value: ({ eigenwalkers }) => eigenwalkers[number]!,
-    moved: ({ eigenwalkers }, value) => ({
-      eigenwalkers: eigenwalkers.map((old, i) => (i === number ? value : old)),
-    }),
+    moved: ({ eigenwalkers }, value) => ({ eigenwalkers: eigenwalkers.with(number, value) }),
   };
 }
 
-/** From the least to the greatest of the population. */
-export function realRange({ points }: Axis): readonly [number, number] | undefined {
+/** The range of the population. */
+export function rangeOf({ points }: Axis): readonly [number, number] | undefined {
   return points.length > 0 ? [Math.min(...points), Math.max(...points)] : undefined;
 }

@@ -1,32 +1,35 @@
-/** One of a few: a row of radio buttons; and a switch for what is on or off. */
+/** Controls for a choice: radio buttons, a switch, a list. */
 
-import { freshId, make } from "../page/element";
+import { freshId, make } from "../page/elements";
 
 export interface Option<Value> {
   readonly value: Value;
   readonly label: string;
-  /** A sentence that tells more, shown when the pointer rests. */
+  /** A tooltip. */
   readonly hint?: string;
 }
 
-export interface Choice<Value> {
-  readonly element: HTMLFieldSetElement;
+export interface Control<Value, Kind extends HTMLElement = HTMLElement> {
+  readonly element: Kind;
   show(value: Value): void;
 }
 
-/** A row of radio buttons under one name. */
+/** A row of radio buttons with a name, which can be hidden from view. */
 export function choice<Value>(
   name: string,
   options: readonly Option<Value>[],
   onChoose: (value: Value) => void,
   { named = true } = {},
-): Choice<Value> {
+): Control<Value> {
   const group = freshId();
-  const inputs = options.map(() => make("input", { type: "radio", name: group }));
+  const inputs = options.map(({ value }) => {
+    const input = make("input", { type: "radio", name: group });
+    input.addEventListener("change", () => onChoose(value));
+    return input;
+  });
   const labels = options.map(({ label, hint }, i) =>
     make("label", { title: hint }, inputs[i]!, make("span", {}, label)),
   );
-  inputs.forEach((input, i) => input.addEventListener("change", () => onChoose(options[i]!.value)));
   const element = make("fieldset", { class: "choice" },
     make("legend", { class: named ? undefined : "unseen" }, name),
     make("div", { class: "row" }, ...labels),
@@ -36,42 +39,22 @@ export function choice<Value>(
   return { element, show };
 }
 
-export interface Switch {
-  readonly element: HTMLLabelElement;
-  readonly input: HTMLInputElement;
-  show(on: boolean): void;
-}
-
-/** A box to tick that looks like a switch. */
-export function toggle(label: string, onChange: (on: boolean) => void, hint?: string): Switch {
+/** A checkbox that looks like a switch. */
+export function toggle(label: string, onChange: (on: boolean) => void, hint?: string): Control<boolean> {
   const input = make("input", { type: "checkbox", role: "switch" });
   input.addEventListener("change", () => onChange(input.checked));
   const element = make("label", { class: "switch", title: hint }, input, make("span", {}, label));
-  return { element, input, show: (on) => void (input.checked = on) };
+  return { element, show: (on) => void (input.checked = on) };
 }
 
-/** A button with words on it. */
-export function button(label: string, onClick: () => unknown, kind = ""): HTMLButtonElement {
-  const element = make("button", { type: "button", class: kind || undefined }, label);
-  element.addEventListener("click", onClick);
-  return element;
-}
-
-/** One of many, by name. */
-export interface Pick<Value> {
-  readonly element: HTMLDivElement;
-  show(value: Value): void;
-}
-
+/** A list to select from. */
 export function pick<Value>(
   name: string,
   options: readonly Option<Value>[],
   onChoose: (value: Value) => void,
-): Pick<Value> {
+): Control<Value, HTMLDivElement> {
   const id = freshId();
-  const select = make("select", { id },
-    ...options.map(({ label }, i) => make("option", { value: i }, label)),
-  );
+  const select = make("select", { id }, ...options.map(({ label }, i) => make("option", { value: i }, label)));
   select.addEventListener("change", () => onChoose(options[Number(select.value)]!.value));
   const element = make("div", { class: "pick" }, make("label", { for: id }, name), select);
   const show = (value: Value): void => {

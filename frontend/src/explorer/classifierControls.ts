@@ -1,11 +1,12 @@
-/** What the classifier behind the sliders knows, and whether it tells a trait or shows it (J31, A13). */
+/** The part of the features that traits change, and the kind of their direction. */
 
+import { capitalised } from "../model/axisLabels";
 import { partsOf } from "../model/mixing";
-import type { Kind } from "../model/state";
+import type { Kind } from "../model/model";
+import { make } from "../page/elements";
 import { choice, pick, type Option } from "./choice";
-import { make } from "../page/element";
-import type { Part, Session } from "./store";
-import { capital } from "./labels";
+import { note } from "./section";
+import type { Part, Store } from "./store";
 
 const PARTS: Readonly<Record<string, Omit<Option<string>, "value">>> = {
   all: { label: "Everything", hint: "All that a walk consists of" },
@@ -25,21 +26,16 @@ const KINDS: readonly Option<Kind>[] = [
   { value: "mean_difference", label: "Differs most", hint: "The difference between mean walkers (Moler)" },
 ];
 
-/** Left out where there are no traits to change. */
-export function classifier(session: Session): Part {
-  const known = partsOf(session.model);
-  const option = (value: string): Option<string> => ({ value, ...(PARTS[value] ?? { label: capital(value) }) });
-  const choose = (part: string): void => session.change({ part });
-  const common = known.filter((part) => COMMON.includes(part)).map(option);
-  const parts = choice("What the sliders may change", common, choose);
-  const rest = known.filter((part) => !COMMON.includes(part)).map(option);
-  const single = pick<string>("or one part of the motion", [{ value: "", label: "\u2013" }, ...rest], (part) =>
-    choose(part || "all"),
-  );
-  const kind = choice("Direction", KINDS, (value) => session.change({ kind: value }));
-  const about = make("p", { class: "note" });
+export function classifierControls(store: Store): Part {
+  const options = partsOf(store.model).map((value): Option<string> => ({ value, ...(PARTS[value] ?? { label: capitalised(value) }) }));
+  const [common, rest] = [true, false].map((is) => options.filter(({ value }) => COMMON.includes(value) === is));
+  const choose = (part: string): void => store.change({ part: part || "all" });
+  const parts = choice("What the sliders may change", common!, choose);
+  const single = pick("or one part of the motion", [{ value: "", label: "\u2013" }, ...rest!], choose);
+  const kind = choice("Direction", KINDS, (value) => store.change({ kind: value }));
+  const about = note("");
   return {
-    element: make("div", {}, parts.element, ...(rest.length > 0 ? [single.element] : []), kind.element, about),
+    element: make("div", {}, parts.element, ...(rest!.length > 0 ? [single.element] : []), kind.element, about),
     show({ state }) {
       parts.show(state.part);
       single.show(COMMON.includes(state.part) ? "" : state.part);

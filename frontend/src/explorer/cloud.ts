@@ -1,25 +1,29 @@
-/** The population as a cloud of points along two axes; the walker now made moves through it. */
+/** The population as a cloud of points along two axes, with the present walker. */
 
-import { vectorOf } from "../model/mixing";
+import { capitalised, classOf, colourLegend, mainTrait } from "../model/axisLabels";
+import { mixedVector } from "../model/mixing";
 import type { Model } from "../model/model";
-import { placeOf } from "../model/position";
-import { RANGES } from "../model/state";
+import { positionOf } from "../model/position";
+import { clamped, RANGES } from "../model/state";
+import { draw, freshId, make, setAttributes } from "../page/elements";
 import type { Axis } from "./axis";
 import { pick } from "./choice";
-import { draw, freshId, make, put } from "../page/element";
-import { nearest, towards, type Place, type Way } from "./nearestPoint";
-import { words } from "./section";
-import type { Now, Part, Session } from "./store";
-import { capital, classOf, colours, mainTrait } from "./labels";
+import { note } from "./section";
+import type { Now, Part, Store } from "./store";
 
 const WIDTH = 360;
 const HEIGHT = 300;
 /** Standard deviations from the middle to each edge. */
 const REACH = 6.6;
-/** Points that can be reached have their circles; of the rest one path is drawn. */
+/** Walkers that the page holds are circles; all others are one path. */
 const RADIUS = 3.4;
-/** A click within this distance of a point means the point. */
+/** A click within this distance of a point selects it. */
 const NEAR = 24;
+
+interface Place {
+  readonly x: number;
+  readonly y: number;
+}
 
 interface Point {
   readonly walker: number;
@@ -29,178 +33,182 @@ interface Point {
   y: number;
 }
 
-const across = (sd: number): number => WIDTH / 2 + (sd / REACH) * (WIDTH / 2);
-const down = (sd: number): number => HEIGHT / 2 - (sd / REACH) * (HEIGHT / 2);
+/** Right and down. */
+type Direction = readonly [number, number];
 
-export function cloud(session: Session): Part {
-  const { model, axes } = session;
-  const [first, second = first] = [axes[0], axes[Math.max(model.traits.length, 1)]];
-  if (!first || !second) return words("Too few walkers to differ.");
-  let [x, y] = [first, second];
-  const points = pointsOf(model);
-  const rest = draw("path", { class: "rest" });
-  const trail = draw("line", { class: "trail" });
-  const cross = draw("g", { class: "here" }, draw("circle", { r: 9, class: "halo" }), draw("circle", { r: 5 }));
-  const names = [draw("text"), draw("text"), draw("text"), draw("text")];
-  const chart = draw("svg",
-    {
-      viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "listbox", tabindex: 0, class: "cloud",
-      "aria-label": "Walkers of the population. Arrow keys go to the next one, Enter lets it walk.",
-    },
-    ...grid(), rest, trail, ...names, ...points.map(({ circle }) => circle), cross,
-  );
-  const said = make("p", { class: "note steady", "aria-hidden": "true" });
-  let active = -1;
-  let last: Now | undefined;
-
-  const activate = (number: number): void => {
-    active = number;
-    points.forEach(({ circle }, i) => circle.classList.toggle("active", i === number));
-    const point = points[number];
-    if (point) chart.setAttribute("aria-activedescendant", point.circle.id);
-    else chart.removeAttribute("aria-activedescendant");
-    said.textContent = point ? model.walkers[point.walker]!.name : usually(model);
-  };
-  const walk = (number: number): void => {
-    const point = points[number];
-    if (!point) return;
-    activate(number);
-    const unchanged = { traits: {}, bias: null, eigenwalkers: model.eigenwalkers.map(() => 0) };
-    session.change({ from: point.walker, scene: "one", ...unchanged });
-  };
-  const lay = (): void => {
-    points.forEach((point) => {
-      point.x = across(held(x.points[point.cloud]!));
-      point.y = down(held(y.points[point.cloud]!));
-      put(point.circle, { cx: point.x.toFixed(1), cy: point.y.toFixed(1) });
-    });
-    put(rest, { d: restOf(model, x, y) });
-    label(names, x, y);
-    if (last) move(last);
-  };
-  const move = (now: Now): void => {
-    last = now;
-    const [h, v] = [across(held(x.at(now.place))), down(held(y.at(now.place)))];
-    cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
-    put(trail, trailOf(now, first, x, y));
-    for (const mark of [cross, trail]) put(mark, { visibility: now.state.scene === "one" ? undefined : "hidden" });
-    points.forEach(({ circle, walker }) => put(circle, { "aria-selected": String(now.state.from === walker) }));
-  };
-  const choose = (name: string, first: boolean) => {
-    const picked = pick(name, axes.map((value) => ({ value, label: value.label })), (axis) => {
-      if (first) x = axis;
-      else y = axis;
-      lay();
-    });
-    picked.show(first ? x : y);
-    return picked.element;
-  };
-
-  const meant = (event: MouseEvent): number =>
-    nearest(points, under(chart, event), (NEAR * WIDTH) / chart.clientWidth);
-  chart.addEventListener("pointermove", (event) => activate(meant(event)));
-  chart.addEventListener("pointerleave", () => activate(-1));
-  chart.addEventListener("click", (event) => walk(meant(event)));
-  chart.addEventListener("focus", () => active < 0 && chart.matches(":focus-visible") && activate(0));
-  chart.addEventListener("blur", () => activate(-1));
-  chart.addEventListener("keydown", (event) => {
-    const way = WAYS[event.key];
-    if (way) activate(towards(points, active, way));
-    else if (event.key === "Enter" || event.key === " ") walk(active);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-  });
-  lay();
-  activate(-1);
-  const axesToChoose = make("div", { class: "pair" }, choose("Across", true), choose("Up", false));
-  return {
-    element: make("div", {}, chart, said, axesToChoose),
-    show: move,
-  };
-}
-
-const held = (sd: number): number => Math.min(Math.max(sd, -REACH + 0.2), REACH - 0.2);
-
-function pointsOf(model: Model): Point[] {
-  return model.cloud.walker.flatMap((walker, cloud) => {
-    const known = model.walkers[walker];
-    if (!known) return [];
-    const kind = `person ${classOf(model, walker)}`;
-    const option = { role: "option", id: freshId(), "aria-label": known.name };
-    const circle = draw("circle", { r: RADIUS, class: kind, ...option });
-    return [{ walker, cloud, circle, x: 0, y: 0 }];
-  });
-}
-
-/** Points that stand for someone whom the page does not hold. */
-function restOf(model: Model, x: Axis, y: Axis): string {
-  return model.cloud.walker
-    .flatMap((walker, i) => {
-      if (model.walkers[walker]) return [];
-      const [h, v] = [across(held(x.points[i]!)), down(held(y.points[i]!))];
-      return [`M${h.toFixed(1)} ${v.toFixed(1)}h0`];
-    })
-    .join("");
-}
-
-function grid(): SVGElement[] {
-  const marks = [-6, -3, 0, 3, 6];
-  return marks.flatMap((mark) => {
-    const kind = mark === 0 ? "axis zero" : "axis";
-    return [
-      draw("line", { class: kind, x1: across(mark), x2: across(mark), y1: 0, y2: HEIGHT }),
-      draw("line", { class: kind, y1: down(mark), y2: down(mark), x1: 0, x2: WIDTH }),
-    ];
-  });
-}
-
-function label([left, right, lower, upper]: readonly SVGTextElement[], x: Axis, y: Axis): void {
-  type At = Readonly<Record<string, string | number>>;
-  const write = (text: SVGTextElement | undefined, words: string, at: At): void => {
-    text?.replaceChildren(words);
-    if (text) put(text, at);
-  };
-  const [toLeft, toRight] = namesOf(x);
-  const [below, above] = namesOf(y);
-  write(left, toLeft && `\u2190 ${toLeft}`, { x: 8, y: HEIGHT / 2 - 7, "text-anchor": "start" });
-  write(right, `${toRight} \u2192`, { x: WIDTH - 8, y: HEIGHT / 2 - 7, "text-anchor": "end" });
-  write(lower, below && `\u2193 ${below}`, { x: WIDTH / 2 + 8, y: HEIGHT - 9, "text-anchor": "start" });
-  write(upper, `\u2191 ${above}`, { x: WIDTH / 2 + 8, y: 16, "text-anchor": "start" });
-}
-
-const namesOf = ({ trait, ends, label }: Axis): readonly [string, string] =>
-  trait ? ends : ["", label.toLowerCase()];
-
-/** Where a slider leads: that of a trait which is an axis here, else the large one. */
-function trailOf({ model, state, own }: Now, main: Axis, x: Axis, y: Axis): Record<string, string> {
-  const axis = [x, y].find(({ trait }) => trait !== null) ?? main;
-  const [start, stop] = RANGES.trait.map((steps) =>
-    placeOf(model, vectorOf(model, { ...state, ...axis.moved(state, steps) }, own)),
-  );
-  return {
-    x1: across(x.at(start!)).toFixed(1), y1: down(y.at(start!)).toFixed(1),
-    x2: across(x.at(stop!)).toFixed(1), y2: down(y.at(stop!)).toFixed(1),
-  };
-}
-
-function usually(model: Model): string {
-  const legend = colours(mainTrait(model));
-  return `Choose a point, and that walker walks.${legend && ` ${capital(legend)}.`}`;
-}
-
-/** Where on the chart a pointer is. */
-function under(chart: SVGSVGElement, event: MouseEvent): Place {
-  const box = chart.getBoundingClientRect();
-  const scale = WIDTH / chart.clientWidth;
-  const across = event.clientX - box.left - chart.clientLeft;
-  const down = event.clientY - box.top - chart.clientTop;
-  return { x: across * scale, y: down * scale };
-}
-
-const WAYS: Readonly<Record<string, Way>> = {
+const ARROWS: Readonly<Record<string, Direction>> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, -1],
   ArrowDown: [0, 1],
 };
+
+const across = (sd: number): number => WIDTH / 2 + (sd / REACH) * (WIDTH / 2);
+const down = (sd: number): number => HEIGHT / 2 - (sd / REACH) * (HEIGHT / 2);
+const inside = (sd: number): number => clamped([-REACH + 0.2, REACH - 0.2], sd);
+
+export function cloud(store: Store): Part | HTMLElement {
+  const { model, axes } = store;
+  const [first, second = first] = [axes[0], axes[Math.max(model.traits.length, 1)]];
+  if (!first || !second) return note("Too few walkers to differ.");
+  let [x, y] = [first, second];
+  const points = pointsOf(model);
+  const rest = draw("path", { class: "rest" });
+  const trail = draw("line", { class: "trail" });
+  const cross = draw("g", { class: "here" }, draw("circle", { r: 9, class: "halo" }), draw("circle", { r: 5 }));
+  const names = draw("g");
+  const chart = draw("svg",
+    {
+      viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "listbox", tabindex: 0, class: "cloud",
+      "aria-label": "Walkers of the population. Arrow keys go to the next one, Enter lets it walk.",
+    },
+    ...grid(), rest, trail, names, ...points.map(({ circle }) => circle), cross,
+  );
+  const legend = colourLegend(mainTrait(model));
+  const help = `Choose a point, and that walker walks.${legend && ` ${capitalised(legend)}.`}`;
+  const text = make("p", { class: "note steady", "aria-hidden": "true" });
+  let active = -1;
+  let last: Now | undefined;
+
+  const activate = (number: number): void => {
+    active = number;
+    const point = points[number];
+    points.forEach(({ circle }) => circle.classList.toggle("active", circle === point?.circle));
+    setAttributes(chart, { "aria-activedescendant": point?.circle.id });
+    text.textContent = point ? model.walkers[point.walker]!.name : help;
+  };
+  const select = (number: number): void => {
+    const point = points[number];
+    if (!point) return;
+    activate(number);
+    const unchanged = { traits: {}, bias: null, eigenwalkers: model.eigenwalkers.map(() => 0) };
+    store.change({ from: point.walker, scene: "one", ...unchanged });
+  };
+  const layOut = (): void => {
+    const placeOf = (cloud: number): Place => ({ x: across(inside(x.points[cloud]!)), y: down(inside(y.points[cloud]!)) });
+    for (const point of points) {
+      Object.assign(point, placeOf(point.cloud));
+      setAttributes(point.circle, { cx: point.x.toFixed(1), cy: point.y.toFixed(1) });
+    }
+    const others = [...model.cloud.walker.keys()].filter((i) => !model.walkers[model.cloud.walker[i]!]).map(placeOf);
+    setAttributes(rest, { d: others.map((at) => `M${at.x.toFixed(1)} ${at.y.toFixed(1)}h0`).join("") });
+    names.replaceChildren(...axisNames(x, y));
+    if (last) show(last);
+  };
+  const show = (now: Now): void => {
+    last = now;
+    const [h, v] = [across(inside(x.at(now.position))), down(inside(y.at(now.position)))];
+    cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
+    setAttributes(trail, trailOf(now, first, x, y));
+    for (const mark of [cross, trail]) setAttributes(mark, { visibility: now.state.scene === "one" ? undefined : "hidden" });
+    for (const { circle, walker } of points) setAttributes(circle, { "aria-selected": String(now.state.from === walker) });
+  };
+  const axisPick = (name: string, initial: Axis, choose: (axis: Axis) => void): HTMLElement => {
+    const { element, show } = pick(name, axes.map((value) => ({ value, label: value.label })), (axis) => {
+      choose(axis);
+      layOut();
+    });
+    show(initial);
+    return element;
+  };
+
+  const atPointer = (event: MouseEvent): number =>
+    nearestPoint(points, placeInChart(chart, event), (NEAR * WIDTH) / chart.clientWidth);
+  chart.addEventListener("pointermove", (event) => activate(atPointer(event)));
+  chart.addEventListener("pointerleave", () => activate(-1));
+  chart.addEventListener("click", (event) => select(atPointer(event)));
+  chart.addEventListener("focus", () => active < 0 && chart.matches(":focus-visible") && activate(0));
+  chart.addEventListener("blur", () => activate(-1));
+  chart.addEventListener("keydown", (event) => {
+    const direction = ARROWS[event.key];
+    if (direction) activate(nextPoint(points, active, direction));
+    else if (event.key === "Enter" || event.key === " ") select(active);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  layOut();
+  activate(-1);
+  const picks = make("div", { class: "pair" },
+    axisPick("Across", x, (axis) => (x = axis)),
+    axisPick("Up", y, (axis) => (y = axis)));
+  return { element: make("div", {}, chart, text, picks), show };
+}
+
+function pointsOf(model: Model): Point[] {
+  return model.cloud.walker.flatMap((walker, cloud) => {
+    const known = model.walkers[walker];
+    if (!known) return [];
+    const option = { role: "option", id: freshId(), "aria-label": known.name };
+    const circle = draw("circle", { r: RADIUS, class: `person ${classOf(model, walker)}`, ...option });
+    return [{ walker, cloud, circle, x: 0, y: 0 }];
+  });
+}
+
+const grid = (): SVGElement[] =>
+  [-6, -3, 0, 3, 6].flatMap((sd) => {
+    const kind = sd === 0 ? "axis zero" : "axis";
+    return [
+      draw("line", { class: kind, x1: across(sd), x2: across(sd), y1: 0, y2: HEIGHT }),
+      draw("line", { class: kind, y1: down(sd), y2: down(sd), x1: 0, x2: WIDTH }),
+    ];
+  });
+
+/** Names at the ends of both axes. */
+function axisNames(x: Axis, y: Axis): SVGTextElement[] {
+  const [[left, right], [below, above]] = [x, y].map(({ trait, ends, label }) =>
+    trait ? ends : (["", label.toLowerCase()] as const),
+  ) as [readonly [string, string], readonly [string, string]];
+  const text = (words: string, x: number, y: number, anchor: string) =>
+    draw("text", { x, y, "text-anchor": anchor }, words);
+  return [
+    text(left && `\u2190 ${left}`, 8, HEIGHT / 2 - 7, "start"),
+    text(`${right} \u2192`, WIDTH - 8, HEIGHT / 2 - 7, "end"),
+    text(below && `\u2193 ${below}`, WIDTH / 2 + 8, HEIGHT - 9, "start"),
+    text(`\u2191 ${above}`, WIDTH / 2 + 8, 16, "start"),
+  ];
+}
+
+/** The line along which a slider moves the walker: that of a trait on an axis, else the large slider. */
+function trailOf({ model, state, own }: Now, main: Axis, x: Axis, y: Axis): Record<string, string> {
+  const axis = [x, y].find(({ trait }) => trait !== null) ?? main;
+  const [start, end] = RANGES.trait.map((steps) =>
+    positionOf(model, mixedVector(model, { ...state, ...axis.moved(state, steps) }, own)),
+  );
+  return {
+    x1: across(x.at(start!)).toFixed(1), y1: down(y.at(start!)).toFixed(1),
+    x2: across(x.at(end!)).toFixed(1), y2: down(y.at(end!)).toFixed(1),
+  };
+}
+
+/** The place of a pointer on the chart. */
+function placeInChart(chart: SVGSVGElement, event: MouseEvent): Place {
+  const box = chart.getBoundingClientRect();
+  const scale = WIDTH / chart.clientWidth;
+  return {
+    x: (event.clientX - box.left - chart.clientLeft) * scale,
+    y: (event.clientY - box.top - chart.clientTop) * scale,
+  };
+}
+
+/** The number of the nearest point, -1 if none is within a distance. */
+export function nearestPoint(points: readonly Place[], { x, y }: Place, within: number): number {
+  const distances = points.map((point) => Math.hypot(point.x - x, point.y - y));
+  const best = distances.indexOf(Math.min(...distances));
+  return best >= 0 && distances[best]! < within ? best : -1;
+}
+
+/** The nearest point in a direction, not too far aside; the same point if there is none. */
+export function nextPoint(points: readonly Place[], from: number, [right, below]: Direction): number {
+  const here = points[from];
+  if (!here) return 0;
+  let [best, least] = [from, Infinity];
+  points.forEach((point, number) => {
+    const [h, v] = [point.x - here.x, point.y - here.y];
+    const ahead = h * right + v * below;
+    const aside = Math.abs(h * below) + Math.abs(v * right);
+    const cost = ahead + 2 * aside;
+    if (ahead > 0 && aside <= 2 * ahead && cost < least) [best, least] = [number, cost];
+  });
+  return best;
+}

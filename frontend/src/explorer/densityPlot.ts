@@ -1,46 +1,35 @@
-/** How many real people lie where along a trait: a hill for each class, drawn behind a track. */
+/** The density of people along a trait: a curve for each class, behind the track of a slider. */
 
+import { classOf } from "../model/axisLabels";
 import type { Model } from "../model/model";
 import { RANGES } from "../model/state";
+import { draw } from "../page/elements";
 import type { Axis } from "./axis";
-import { draw } from "../page/element";
-import { classOf } from "./labels";
 
-/** Standard deviation by which each person is blurred, in standard deviations of the trait. */
-const BLUR = 0.32;
+/** Standard deviation of the kernel, in standard deviations of the trait. */
+const KERNEL_SD = 0.32;
 const N_PLACES = 121;
 const HEIGHT = 100;
 
-/** Hills over -6 to 6: one for each class of a trait of two, else one. */
-export function ridge(model: Model, axis: Axis): SVGSVGElement {
-  const groups = grouped(model, axis);
-  const heights = groups.map(({ positions }) => density(positions));
-  const highest = Math.max(...heights.flat(), Number.MIN_VALUE);
+/** Curves over the range of the slider: one for each class of a trait of two classes, else one. */
+export function densityPlot(model: Model, { points, trait }: Axis): SVGSVGElement {
+  const kinds = trait?.two_classes ? (["negative", "positive"] as const) : (["all"] as const);
+  const curves = kinds.map((kind) =>
+    density(points.filter((_, i) => kind === "all" || classOf(model, model.cloud.walker[i]!) === kind)),
+  );
+  const highest = Math.max(...curves.flat(), Number.MIN_VALUE);
   return draw(
     "svg",
     { viewBox: `0 0 ${N_PLACES - 1} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" },
-    ...groups.map(({ kind }, i) => draw("path", { class: `ridge ${kind}`, d: outline(heights[i]!, highest) })),
+    ...kinds.map((kind, i) => draw("path", { class: `density ${kind}`, d: outline(curves[i]!, highest) })),
   );
-}
-
-interface Group {
-  readonly kind: "negative" | "positive" | "all";
-  readonly positions: readonly number[];
-}
-
-function grouped(model: Model, { points, trait }: Axis): Group[] {
-  if (!trait?.two_classes) return [{ kind: "all", positions: points }];
-  return (["negative", "positive"] as const).map((kind) => ({
-    kind,
-    positions: points.filter((_, i) => classOf(model, model.cloud.walker[i]!) === kind),
-  }));
 }
 
 function density(positions: readonly number[]): number[] {
   const [low, high] = RANGES.trait;
   return Array.from({ length: N_PLACES }, (_, i) => {
     const place = low + ((high - low) * i) / (N_PLACES - 1);
-    return positions.reduce((sum, at) => sum + Math.exp(-(((place - at) / BLUR) ** 2) / 2), 0);
+    return positions.reduce((sum, at) => sum + Math.exp(-(((place - at) / KERNEL_SD) ** 2) / 2), 0);
   });
 }
 

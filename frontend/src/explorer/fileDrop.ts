@@ -1,35 +1,33 @@
-/** Where files come in: dropped anywhere on the page, folders too, or chosen. */
+/** Files and folders that are dropped anywhere on the page, and files that are chosen. */
 
-import { find } from "../page/element";
+import { find } from "../page/elements";
 
-/** More than these at once is a mistake. */
-const MOST_FILES = 500;
+/** Limit of the files in one drop. */
+const MAX_FILES = 500;
 
-/** Files that came together, and the folder in which they lay, if it was one. */
-export interface Brought {
+/** Files of one drop, and the name of their folder, if it was one. */
+export interface DroppedFiles {
   readonly files: readonly File[];
   readonly folder: string;
 }
 
-/** Hand over files that are dropped or chosen; the returned function opens the choosing. */
-export function takeFiles(take: (brought: Brought) => void): () => void {
+/** Hand over files that are dropped or chosen; the returned function opens the dialog. */
+export function takeFiles(take: (dropped: DroppedFiles) => void): () => void {
   const veil = find("#drop", HTMLDivElement);
   const input = find("#file", HTMLInputElement);
-  const brings = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
-  window.addEventListener("dragover", (event) => {
-    if (!brings(event)) return;
+  const ifFiles = (handle: (event: DragEvent) => void) => (event: DragEvent): void => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
-    veil.hidden = false;
-  });
+    handle(event);
+  };
+  window.addEventListener("dragover", ifFiles(() => (veil.hidden = false)));
   window.addEventListener("dragleave", (event) => {
     if (event.relatedTarget === null) veil.hidden = true;
   });
-  window.addEventListener("drop", (event) => {
-    if (!brings(event)) return;
-    event.preventDefault();
+  window.addEventListener("drop", ifFiles((event) => {
     veil.hidden = true;
-    void dropped(event.dataTransfer!).then(take);
-  });
+    void filesOf(event.dataTransfer!).then(take);
+  }));
   input.addEventListener("change", () => {
     take({ files: [...(input.files ?? [])], folder: "" });
     input.value = "";
@@ -37,26 +35,26 @@ export function takeFiles(take: (brought: Brought) => void): () => void {
   return () => input.click();
 }
 
-/** What was dropped, with all that is in folders. */
-async function dropped({ items, files }: DataTransfer): Promise<Brought> {
+/** The files of a drop, with those in folders. */
+async function filesOf({ items, files }: DataTransfer): Promise<DroppedFiles> {
   const plain = { files: [...files], folder: "" };
   const entries = [...items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
   if (!entries.some(({ isDirectory }) => isDirectory)) return plain;
   const found: File[] = [];
-  for (const entry of entries) await gather(entry, found);
+  for (const entry of entries) await collect(entry, found);
   return { files: found, folder: entries.length === 1 ? entries[0]!.name : "" };
 }
 
-async function gather(entry: FileSystemEntry, found: File[]): Promise<void> {
-  if (found.length >= MOST_FILES || entry.name.startsWith(".")) return;
+async function collect(entry: FileSystemEntry, found: File[]): Promise<void> {
+  if (found.length >= MAX_FILES || entry.name.startsWith(".")) return;
   if (entry.isFile) {
-    found.push(await new Promise<File>((take, fail) => (entry as FileSystemFileEntry).file(take, fail)));
+    found.push(await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject)));
     return;
   }
   const reader = (entry as FileSystemDirectoryEntry).createReader();
-  const some = (): Promise<FileSystemEntry[]> => new Promise((take, fail) => reader.readEntries(take, fail));
-  // A folder is read in pieces, the last of which is empty.
-  for (let inside = await some(); inside.length > 0; inside = await some()) {
-    for (const each of inside) await gather(each, found);
+  const next = (): Promise<FileSystemEntry[]> => new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+  // A folder is read in batches; the last one is empty.
+  for (let batch = await next(); batch.length > 0; batch = await next()) {
+    for (const each of batch) await collect(each, found);
   }
 }

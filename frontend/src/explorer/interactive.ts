@@ -1,117 +1,121 @@
-/** The page: reads the model that it holds, puts its parts together, and takes what is brought. */
+/** The interactive page: reads its model, assembles its parts, and opens files. */
 
 import { addressOf } from "../model/address";
-import type { Own } from "../model/model";
+import type { OwnWalker } from "../model/model";
 import type { State } from "../model/state";
-import { peopleIn, warnings } from "./about";
-import { address, stateAt } from "./addressBar";
-import { corner } from "./toolbar";
-import { find, make } from "../page/element";
-import { takeFiles, type Brought } from "./fileDrop";
-import { pageKeys } from "./keyboard";
-import { Notices, sentenceOf } from "./notices";
-import { onStage } from "./viewerPanel";
-import { bundles, callIt, heldIn, openFiles, type Held, type Opened } from "./openFile";
+import { button, find, messageOf } from "../page/elements";
+import { populationLabel, warnings } from "./about";
+import { addressBar, stateAt } from "./addressBar";
+import { takeFiles, type DroppedFiles } from "./fileDrop";
+import { Notices } from "./notices";
+import { bundleName, bundles, modelSourceOf, openFiles, type ModelSource, type Opened } from "./openFile";
 import { panels } from "./panels";
-import { Session, type Shown } from "./store";
+import { Store, type View } from "./store";
+import { toolbar } from "./toolbar";
 import { mainSlider } from "./traitSliders";
+import { viewerPanel } from "./viewerPanel";
 
-/** What is shown, and all that shows it. */
-interface Visit {
-  readonly held: Held;
-  readonly session: Session;
-  readonly parts: readonly Shown[];
+/** The present model, and the views of it. */
+interface Session {
+  readonly source: ModelSource;
+  readonly store: Store;
+  readonly views: readonly View[];
 }
 
-const notices = new Notices();
-let visit: Visit | null = null;
-const choose = takeFiles((brought) => void take(brought));
+/** Elements that use the space bar themselves. */
+const USES_SPACE = "button, select, summary, textarea, a, [role=listbox], input:not([type=range])";
 
-/** Open what is brought; what cannot be read is said, and all else stays. */
-async function take({ files, folder }: Brought): Promise<void> {
-  const troubles: string[] = [];
+const notices = new Notices();
+let session: Session | null = null;
+const chooseFiles = takeFiles((dropped) => void openDropped(dropped));
+
+/** Open files; errors are shown, and the page stays as it was. */
+async function openDropped({ files, folder }: DroppedFiles): Promise<void> {
+  const errors: string[] = [];
   notices.clear();
   for (const bundle of bundles(files)) {
-    const name = callIt(bundle, folder);
+    const name = bundleName(bundle, folder);
     const done = notices.busy(`Reading ${name} \u2026`);
     try {
-      const opened = await openFiles(bundle, visit?.held ?? null, folder);
-      const walks = show(opened, name);
-      const mind = opened.kind === "model" ? warnings(opened.held.model) : [];
-      const told = [...mind, ...opened.messages];
-      if (told.length > 0) notices.told([walks, ...told]);
-      else notices.news(walks);
+      const opened = await openFiles(bundle, session?.source ?? null, folder);
+      const news = show(opened, name);
+      const more = [...(opened.kind === "model" ? warnings(opened.source.model) : []), ...opened.messages];
+      if (more.length > 0) notices.info([news, ...more]);
+      else notices.news(news);
     } catch (error) {
-      troubles.push(sentenceOf(error));
-      notices.trouble(...troubles);
+      errors.push(messageOf(error));
+      notices.error(...errors);
     } finally {
       done();
     }
   }
 }
 
-/** Show what was opened; returns what to say of it. */
+/** Show opened files; returns a sentence about them. */
 function show(opened: Opened, name: string): string {
   if (opened.kind === "own") {
-    visit?.session.take(opened.own);
+    session?.store.setOwn(opened.own);
     return `${opened.own.name} walks.`;
   }
-  const before = visit && { ...visit, address: addressOf(visit.session.state, visit.held.model) };
+  const before = session;
+  const address = before ? addressOf(before.store.state, before.source.model) : "";
   try {
-    begin(opened.held, visit?.session.state.dark === false ? "dark=0" : "");
+    begin(opened.source, before?.store.state.dark === false ? "dark=0" : "");
   } catch (error) {
-    if (before) begin(before.held, before.address, before.session.own);
+    if (before) begin(before.source, address, before.store.own);
     throw error;
   }
-  const people = peopleIn(opened.held.model);
+  const people = populationLabel(opened.source.model);
   return people.endsWith(name) ? `${people}.` : `${name}: ${people}.`;
 }
 
-/** What an address tells; a capture of one's own is in no address. */
-function wanted(told: string, { model }: Held, own: Own | null): State {
-  const state = stateAt(told, model);
+/** The state in an address; an address cannot contain a visitor's own capture. */
+function stateFor(address: string, { model }: ModelSource, own: OwnWalker | null): State {
+  const state = stateAt(address, model);
   if (state.from !== "own" || own) return state;
-  notices.told(["The walker of this link was a capture of one's own, which a link does not hold: drop it again."]);
+  notices.info(["The walker of this link was a capture of one's own, which a link does not hold: drop it again."]);
   return { ...state, from: "average" };
 }
 
-/** Show a model as an address tells. */
-function begin(held: Held, told: string, own: Own | null = null): void {
-  visit?.session.end();
-  visit?.parts.forEach((part) => part.leave?.());
-  const session = new Session(held.model, wanted(told, held, own), own);
-  const hero = mainSlider(session);
-  find("#hero", HTMLDivElement).replaceChildren(hero.element);
-  const parts = [onStage(session), hero, corner(session, choose), panels(session, notices, choose), address()];
-  visit = { held, session, parts };
-  session.listen((now) => parts.forEach((part) => part.show(now)));
-  session.tell();
+/** Show a model in the state of an address. */
+function begin(source: ModelSource, address: string, own: OwnWalker | null = null): void {
+  session?.store.end();
+  session?.views.forEach((view) => view.remove?.());
+  const store = new Store(source.model, stateFor(address, source, own), own);
+  const main = mainSlider(store);
+  find("#main-slider", HTMLDivElement).replaceChildren(main.element);
+  const views = [viewerPanel(store), main, toolbar(store, chooseFiles), panels(store, notices, chooseFiles), addressBar()];
+  session = { source, store, views };
+  store.listen((now) => views.forEach((view) => view.show(now)));
+  store.publish();
 }
 
-/** The model that the page holds; null where it holds none. */
-function inPage(): Held | null {
-  const content: unknown = JSON.parse(find("#model", HTMLScriptElement).textContent ?? "null");
-  return content === null ? null : heldIn(content);
+/** Space plays or pauses; Ctrl+Z undoes. */
+function onKey(store: Store, event: KeyboardEvent): void {
+  if (event.defaultPrevented || !(event.target instanceof Element)) return;
+  const undoes = (event.ctrlKey || event.metaKey) && !event.shiftKey && event.key.toLowerCase() === "z";
+  if (undoes) store.undo();
+  else if (event.key !== " " || event.target.closest(USES_SPACE)) return;
+  else store.play(!store.state.playing);
+  event.preventDefault();
 }
 
 function start(): void {
   find("#notices", HTMLDivElement).append(notices.element);
-  document.addEventListener("keydown", (event) => visit && pageKeys(visit.session)(event));
-  document.addEventListener("pointerdown", () => visit?.session.hold(true), { capture: true });
-  for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, () => visit?.session.hold(false));
+  document.addEventListener("keydown", (event) => session && onKey(session.store, event));
+  document.addEventListener("pointerdown", () => session?.store.setDragging(true), { capture: true });
+  for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, () => session?.store.setDragging(false));
   window.addEventListener("hashchange", () => {
-    visit?.session.change(wanted(location.hash.slice(1), visit.held, visit.session.own));
+    session?.store.change(stateFor(location.hash.slice(1), session.source, session.store.own));
   });
   try {
-    const inside = inPage();
-    if (inside) return begin(inside, location.hash.slice(1));
-    notices.trouble("This page holds no walkers yet: drop a model on it, or choose one.");
+    const content: unknown = JSON.parse(find("#model", HTMLScriptElement).textContent ?? "null");
+    if (content !== null) return begin(modelSourceOf(content), location.hash.slice(1));
+    notices.error("This page holds no walkers yet: drop a model on it, or choose one.");
   } catch (error) {
     notices.caught(error);
   }
-  const ask = make("button", { type: "button" }, "Choose a file");
-  ask.addEventListener("click", choose);
-  find("#corner", HTMLDivElement).append(ask);
+  find("#toolbar", HTMLDivElement).append(button("Choose a file", chooseFiles));
 }
 
 start();

@@ -1,14 +1,11 @@
-/** What the page has to say: trouble, which stays until it is sent away, and news, which passes. */
+/** Messages of the page: errors, which stay until they are dismissed, and news, which pass. */
 
-import { icon, make } from "../page/element";
+import { button, icon, make, messageOf } from "../page/elements";
 
 const NEWS_MS = 4000;
-const MOST_SENTENCES = 20;
+const MAX_SENTENCES = 20;
 
-/**
- * One notice of trouble and one of anything else, the newer one on top: what is new of a kind takes
- * the place of what was.
- */
+/** One notice of errors and one of anything else, the newer one on top; a new one replaces the old one. */
 export class Notices {
   readonly element = make("div", { class: "notices" });
   readonly #alerts = make("div", { role: "alert" });
@@ -21,24 +18,24 @@ export class Notices {
     this.element.append(this.#alerts, this.#news);
   }
 
-  /** Sentences that stay until they are read. */
-  trouble(...sentences: string[]): void {
+  /** Errors, as sentences. */
+  error(...sentences: string[]): void {
     this.#put(this.#alerts, this.#lasting("notice trouble", sentences));
   }
 
-  /** Good news that takes longer to read than it would stay. */
-  told(sentences: readonly string[]): void {
+  /** Messages that stay until they are dismissed. */
+  info(sentences: readonly string[]): void {
     this.#put(this.#news, this.#lasting("notice", sentences));
   }
 
-  /** A word that passes. */
+  /** A message that passes. */
   news(sentence: string): void {
     const notice = make("div", { class: "notice" }, make("p", {}, sentence));
     this.#put(this.#news, notice);
     this.#timer = window.setTimeout(() => this.#remove(notice), NEWS_MS);
   }
 
-  /** A word that stays until the returned function is called, and comes back after others. */
+  /** A message that stays until the returned function is called; other news interrupt it. */
   busy(sentence: string): () => void {
     const notice = make("div", { class: "notice" }, make("p", {}, sentence), make("progress", {}));
     this.#busy = notice;
@@ -49,12 +46,12 @@ export class Notices {
     };
   }
 
-  /** Whatever was thrown, as a sentence. */
+  /** Anything thrown, as an error. */
   caught(error: unknown): void {
-    this.trouble(sentenceOf(error));
+    this.error(messageOf(error));
   }
 
-  /** Nothing of what was said before matters any more. */
+  /** Remove all messages but the busy one. */
   clear(): void {
     this.#alerts.replaceChildren();
     this.#news.replaceChildren(...(this.#busy ? [this.#busy] : []));
@@ -73,16 +70,11 @@ export class Notices {
   }
 
   #lasting(kind: string, sentences: readonly string[]): HTMLElement {
-    const close = make("button", { type: "button", class: "quiet", "aria-label": "Dismiss" }, icon("close"));
-    const more = sentences.length - MOST_SENTENCES;
-    const said = [...sentences.slice(0, MOST_SENTENCES), ...(more > 0 ? [`And ${more} more of the kind.`] : [])];
-    const paragraphs = said.map((sentence) => make("p", {}, sentence));
+    const close = button(icon("close"), () => this.#remove(notice), { class: "quiet", "aria-label": "Dismiss" });
+    const more = sentences.length - MAX_SENTENCES;
+    const shown = [...sentences.slice(0, MAX_SENTENCES), ...(more > 0 ? [`And ${more} more of the kind.`] : [])];
+    const paragraphs = shown.map((sentence) => make("p", {}, sentence));
     const notice = make("div", { class: `${kind} lasting` }, make("div", {}, ...paragraphs), close);
-    close.addEventListener("click", () => this.#remove(notice));
     return notice;
   }
 }
-
-/** What was thrown, in its own words. */
-export const sentenceOf = (error: unknown): string =>
-  error instanceof Error && error.message ? error.message : String(error);

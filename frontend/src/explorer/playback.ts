@@ -1,14 +1,14 @@
-/** Below the stage: play, pause and scrub, how fast, from where, and drawn how. */
+/** Below the viewer: play, pause and scrub, speed, view, style. */
 
 import { RANGES, type State } from "../model/state";
+import { button, icon, make } from "../page/elements";
 import { choice, type Option } from "./choice";
-import { icon, make } from "../page/element";
-import type { Part, Session } from "./store";
 import { slider } from "./slider";
+import type { Part, Store } from "./store";
 
-export interface Transport extends Part {
-  /** Let the scrub slider follow the walk. */
-  tick(cycle: number): void;
+export interface Playback extends Part {
+  /** Move the scrub bar during playback. */
+  tick(phase: number): void;
 }
 
 const STYLES: readonly Option<State["style"]>[] = [
@@ -22,17 +22,15 @@ const VIEWS: readonly Option<number>[] = [
   { value: 90, label: "Side", hint: "90 degrees" },
 ];
 /**
- * The slider itself follows the walk so seldom: what is seen of it are layers that move without being
- * painted, and to paint the slider costs as much as to paint the walker.
+ * The input follows the walk only this often: its visible parts are layers that move without being
+ * painted, and painting the input costs as much as painting the walker.
  */
-const VALUED_MS = 500;
-/** How many steps the stride has for who scrubs. */
-const FINE = 200;
+const INPUT_MS = 500;
+/** Steps of a stride for scrubbing. */
+const N_STEPS = 200;
 
-/** The button that lets it walk or stand; there are two of them, as room allows. */
-export function playButton(session: Session): Part {
-  const element = make("button", { type: "button", class: "round" });
-  element.addEventListener("click", () => session.play(!session.state.playing));
+function playButton(store: Store): Part {
+  const element = button("", () => store.play(!store.state.playing), { class: "round" });
   let shown: boolean | undefined;
   return {
     element,
@@ -46,52 +44,48 @@ export function playButton(session: Session): Part {
   };
 }
 
-export function transport(session: Session): Transport {
-  const play = playButton(session);
+export function playback(store: Store): Playback {
+  const play = playButton(store);
   const scrub = make("input", {
-    type: "range", min: 0, max: 1, step: 1 / FINE, value: 0, class: "scrub",
+    type: "range", min: 0, max: 1, step: 1 / N_STEPS, value: 0, class: "scrub",
     "aria-label": "Moment of the stride",
   });
-  scrub.addEventListener("input", () =>
-    session.change({ playing: false, cycle: Number(scrub.value) % 1 }),
-  );
-  let before: Pick<State, "playing" | "cycle"> = session.state;
-  scrub.addEventListener("pointerdown", () => (before = session.state));
-  scrub.addEventListener("pointercancel", () => session.change({ playing: before.playing, cycle: before.cycle }));
-  const run = make("div", { class: "run", "aria-hidden": "true" }, make("i"), make("b"));
-  let valued = -Infinity;
-  const tick = (cycle: number): void => {
-    const [fill, knob] = run.children as unknown as [HTMLElement, HTMLElement];
-    fill.style.transform = `translateX(${100 * (cycle - 1)}%)`;
-    knob.style.transform = `translateX(${100 * cycle}%)`;
+  scrub.addEventListener("input", () => store.change({ playing: false, cycle: Number(scrub.value) % 1 }));
+  let before: Pick<State, "playing" | "cycle"> = store.state;
+  scrub.addEventListener("pointerdown", () => (before = store.state));
+  scrub.addEventListener("pointercancel", () => store.change({ playing: before.playing, cycle: before.cycle }));
+  const [fill, knob] = [make("i"), make("b")];
+  let lastInput = -Infinity;
+  const tick = (phase: number): void => {
+    fill.style.transform = `translateX(${100 * (phase - 1)}%)`;
+    knob.style.transform = `translateX(${100 * phase}%)`;
     const time = performance.now();
-    if (session.state.playing && time - valued < VALUED_MS) return;
-    valued = time;
-    scrub.value = String(cycle);
+    if (store.state.playing && time - lastInput < INPUT_MS) return;
+    lastInput = time;
+    scrub.value = String(phase);
   };
   const tempo = slider({
-    label: "Speed", min: RANGES.tempo[0], max: RANGES.tempo[1], step: 0.05, usual: 1,
-    said: (value) => `${value.toFixed(2)}\u00d7`,
-    onInput: (value) => session.change({ tempo: value }),
+    label: "Speed", min: RANGES.tempo[0], max: RANGES.tempo[1], step: 0.05, initial: 1,
+    format: (value) => `${value.toFixed(2)}\u00d7`,
+    onInput: (value) => store.change({ tempo: value }),
   });
-  const look = (azimuth_deg: number): void => session.change({ azimuth_deg, elevation_deg: 0 });
-  const views = choice("View", VIEWS, look, { named: false });
-  const styles = choice("Drawn as", STYLES, (style) => session.change({ style }), { named: false });
+  const view = choice("View", VIEWS, (azimuth_deg) => store.change({ azimuth_deg, elevation_deg: 0 }), { named: false });
+  const style = choice("Drawn as", STYLES, (value) => store.change({ style: value }), { named: false });
   return {
     element: make("div", { class: "tools" },
       play.element,
-      make("div", { class: "time" }, scrub, run),
+      make("div", { class: "time" }, scrub, make("div", { class: "run", "aria-hidden": "true" }, fill, knob)),
       tempo.element,
-      views.element,
-      styles.element,
+      view.element,
+      style.element,
     ),
     tick,
     show(now) {
       const { state } = now;
       play.show(now);
       tempo.show(state.tempo);
-      views.show(state.elevation_deg === 0 ? Math.round(state.azimuth_deg) : NaN);
-      styles.show(state.style);
+      view.show(state.elevation_deg === 0 ? Math.round(state.azimuth_deg) : NaN);
+      style.show(state.style);
       if (!state.playing) tick(state.cycle);
     },
   };

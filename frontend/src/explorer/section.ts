@@ -1,34 +1,33 @@
-/** A part of the page that can be folded away; what is folded costs nothing. */
+/** A part of the page that can be folded; folded parts are not updated. */
 
-import { make } from "../page/element";
+import { make } from "../page/elements";
 import type { Now, Part } from "./store";
 
-export interface Fold extends Part {
+export interface Section extends Part {
   readonly element: HTMLDetailsElement;
 }
 
-/** A title that opens and closes what is below it. */
-export function section(title: string, parts: readonly Part[], open = false): Fold {
+/** A title that opens and closes the parts below it. */
+export function section(title: string, parts: readonly (Part | HTMLElement)[], open = false): Section {
+  const views = parts.filter((part) => "show" in part);
+  const elements = parts.map((part) => ("show" in part ? part.element : part));
   const element = make("details", { class: "section", open },
     make("summary", {}, make("h2", {}, title)),
-    make("div", { class: "body" }, ...parts.map((part) => part.element)),
+    make("div", { class: "body" }, ...elements),
   );
   let last: Now | undefined;
-  const tell = (): void => {
-    if (element.open && last) for (const part of parts) part.show(last);
+  const update = (): void => {
+    if (element.open && last) for (const view of views) view.show(last);
   };
-  element.addEventListener("toggle", tell);
+  element.addEventListener("toggle", update);
   return {
     element,
     show(now) {
       last = now;
-      tell();
+      update();
     },
   };
 }
 
-/** Words that never change. */
-export const words = (text: string, kind = "note"): Part => ({
-  element: make("p", { class: kind }, text),
-  show: () => {},
-});
+/** A text that never changes. */
+export const note = (text: string): HTMLElement => make("p", { class: "note" }, text);

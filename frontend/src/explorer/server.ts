@@ -1,4 +1,4 @@
-/** Python behind the page, where `eigenwalker serve` has put it there; the one module that asks it. */
+/** The Python server of `eigenwalker serve`; the one module that sends requests. */
 
 export interface Capture {
   readonly name: string;
@@ -6,73 +6,62 @@ export interface Capture {
   readonly messages: readonly string[];
 }
 
-/** Said by the server or of it; the message is a sentence to show. */
-export class ServerSays extends Error {}
-
-/** Whether there is a server behind the page. */
-export const hasServer = (): boolean =>
-  document.querySelector('meta[name="eigenwalker-server"]')?.getAttribute("content") === "1";
-
-/** A model that is not yet checked, and what became of the captures it was made of. */
+/** A model that is not checked yet, and messages about its captures. */
 export interface Population {
   readonly model: unknown;
   readonly messages: readonly string[];
 }
 
-/** A capture, and the files it needs beside it, as a walker of a population that the server keeps. */
+/** Whether the page comes from a server. */
+export const hasServer = (): boolean =>
+  document.querySelector('meta[name="eigenwalker-server"]')?.getAttribute("content") === "1";
+
+/** A capture, with the files that belong to it, as a walker of a population that the server holds. */
 export async function readCapture(files: readonly File[], population: string): Promise<Capture> {
-  const answer: unknown = await (await post("capture", { ...sent(files), population }, new Blob([...files]))).json();
-  if (!isCapture(answer)) throw new ServerSays(`The server's answer about ${files[0]?.name} is no walker.`);
-  return answer;
-}
-
-/** A population's file, or many captures and perhaps a table of their traits, as a model. */
-export async function readPopulation(files: readonly File[]): Promise<Population> {
-  const answer: unknown = await (await post("population", sent(files), new Blob([...files]))).json();
-  if (!answer || typeof answer !== "object" || !("model" in answer)) {
-    throw new ServerSays(`The server's answer about ${files[0]?.name} is no population.`);
+  const answer = await json(post("capture", { ...namesOf(files), population }, new Blob([...files])));
+  const { name, vector, messages } = answer;
+  if (typeof name === "string" && isListOf(vector, Number.isFinite) && isListOf(messages, isText)) {
+    return { name, vector: vector as number[], messages: messages as string[] };
   }
-  return { model: answer.model, messages: "messages" in answer && areSentences(answer.messages) ? answer.messages : [] };
+  throw new Error(`The server's answer about ${files[0]?.name} is no walker.`);
 }
 
-/** One file by its name; several by names and sizes, one after the other. */
-function sent(files: readonly File[]): Record<string, string> {
-  const [first, ...others] = files;
-  if (first && others.length === 0) return { name: first.name };
-  return { files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
+/** The file of a population, or many captures with or without a table of traits, as a model. */
+export async function readPopulation(files: readonly File[]): Promise<Population> {
+  const { model, messages } = await json(post("population", namesOf(files), new Blob([...files])));
+  if (model === undefined) throw new Error(`The server's answer about ${files[0]?.name} is no population.`);
+  return { model, messages: isListOf(messages, isText) ? (messages as string[]) : [] };
 }
-
-const areSentences = (messages: unknown): messages is string[] =>
-  Array.isArray(messages) && messages.every((sentence) => typeof sentence === "string");
 
 /** A film of a stimulus. */
 export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif"): Promise<Blob> {
   return (await post("film", { format }, stimulus)).blob();
 }
 
+/** One file by its name; several by names and sizes, in their order. */
+function namesOf(files: readonly File[]): Record<string, string> {
+  const [first, ...others] = files;
+  if (first && others.length === 0) return { name: first.name };
+  return { files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
+}
+
+const isText = (value: unknown): boolean => typeof value === "string";
+const isListOf = (value: unknown, isItem: (item: unknown) => boolean): boolean => Array.isArray(value) && value.every(isItem);
+
 async function post(what: string, query: Readonly<Record<string, string>>, body: BodyInit): Promise<Response> {
   let answer: Response;
   try {
     answer = await fetch(`/api/${what}?${new URLSearchParams(query)}`, { method: "POST", body });
   } catch {
-    throw new ServerSays("The server does not answer: is eigenwalker serve still running?");
+    throw new Error("The server does not answer: is eigenwalker serve still running?");
   }
   if (answer.ok) return answer;
-  throw new ServerSays(await complaint(answer));
+  const { detail } = await json(answer).catch(() => ({ detail: null }));
+  throw new Error(typeof detail === "string" ? detail : `The server refused with ${answer.status} ${answer.statusText}.`);
 }
 
-async function complaint(answer: Response): Promise<string> {
-  const said: unknown = await answer.json().catch(() => null);
-  const detail = said && typeof said === "object" && "detail" in said ? said.detail : null;
-  return typeof detail === "string" ? detail : `The server refused with ${answer.status} ${answer.statusText}.`;
-}
-
-function isCapture(answer: unknown): answer is Capture {
-  if (!answer || typeof answer !== "object") return false;
-  const { name, vector, messages } = answer as Record<string, unknown>;
-  return (
-    typeof name === "string" &&
-    Array.isArray(vector) && vector.every(Number.isFinite) &&
-    areSentences(messages)
-  );
+/** The fields of a JSON object; none of anything else. */
+async function json(answer: Response | Promise<Response>): Promise<Readonly<Record<string, unknown>>> {
+  const content: unknown = await (await answer).json();
+  return content && typeof content === "object" ? (content as Record<string, unknown>) : {};
 }

@@ -1,104 +1,85 @@
-/** A slider with named ends, its number, a soft mark where real people lie, and a way back. */
+/** A slider with named ends, its number, a band where people are, and a reset button. */
 
-import { freshId, icon, make } from "../page/element";
+import { button, freshId, icon, make } from "../page/elements";
+import type { Control } from "./choice";
 
-/** So near, as a share of the track, the usual place catches a thumb that is dragged. */
-const CATCH = 0.008;
+/** While dragged, the thumb snaps to the initial value within this share of the track. */
+const SNAP = 0.008;
 
 export interface SliderOptions {
-  /** What is set, for the eye and for a screen reader. */
+  /** The name of the value, visible and for screen readers. */
   readonly label: string;
-  /** Names of the two ends; without them the label alone stands above the track. */
+  /** Names of the two ends; without them the label stands above the track. */
   readonly ends?: readonly [string, string];
   readonly min: number;
   readonly max: number;
   readonly step: number;
-  /** Where a double click puts it. */
-  readonly usual: number;
-  /** Where real people lie. */
-  readonly real?: readonly [number, number] | undefined;
-  /** The number in words. */
-  readonly said: (value: number) => string;
+  /** The value after a double click. */
+  readonly initial: number;
+  /** The range of the population. */
+  readonly people?: readonly [number, number] | undefined;
+  /** The text of a value. */
+  readonly format: (value: number) => string;
   readonly onInput: (value: number) => void;
 }
 
-export interface Slider {
-  readonly element: HTMLDivElement;
+export interface Slider extends Control<number, HTMLDivElement> {
   readonly input: HTMLInputElement;
-  /** Let it stand at a value. */
-  show(value: number): void;
-}
-
-/** The value with its sign, as print has it. */
-export function signed(value: number, digits = 1): string {
-  const size = Math.abs(value).toFixed(digits);
-  if (Number(size) === 0) return "0";
-  return (value < 0 ? "\u2212" : "+") + size;
 }
 
 export function slider(options: SliderOptions): Slider {
-  const { label, ends, min, max, step, usual, real, said, onInput } = options;
+  const { label, ends, min, max, step, initial, people, format, onInput } = options;
   const id = freshId();
-  const input = make("input", { type: "range", id, min, max, step, value: usual });
-  const now = make("output", { for: id, class: "now" });
-  const back = make("button", { type: "button", class: "quiet back", title: "Back to where it was" },
-    icon("back"),
-    make("span", { class: "unseen" }, `Reset ${label}`),
-  );
-  const share = (value: number): string =>
-    String(Math.min(Math.max((value - min) / (max - min), 0), 1));
+  const input = make("input", { type: "range", id, min, max, step, value: initial });
+  const number = make("output", { for: id, class: "now" });
+  const reset = button(icon("back"), () => {
+    set(initial);
+    input.focus();
+  }, { class: "quiet back", title: "Back to where it was" });
+  reset.append(make("span", { class: "unseen" }, `Reset ${label}`));
+  const share = (value: number): string => String(Math.min(Math.max((value - min) / (max - min), 0), 1));
+  const end = (name: string, which: string) => make("span", { class: `end ${which}`, "aria-hidden": "true" }, name);
   const element = make("div", { class: ends ? "slider ended" : "slider" },
     make("label", { for: id }, label),
-    now,
-    back,
+    number,
+    reset,
     ...(ends ? [end(ends[0], "low"), input, end(ends[1], "high")] : [input]),
   );
-  element.style.setProperty("--usual", share(usual));
-  element.style.setProperty("--from", share(real?.[0] ?? min));
-  element.style.setProperty("--to", share(real?.[1] ?? min));
-  let value = usual;
-  const show = (wanted: number): void => {
-    value = wanted;
-    input.value = String(wanted);
-    now.value = said(wanted);
-    input.setAttribute("aria-valuetext", inWords(said(wanted), ends, wanted));
-    element.style.setProperty("--now", share(wanted));
-    element.classList.toggle("changed", wanted !== usual);
-    element.classList.toggle("below", wanted < usual);
+  element.style.setProperty("--usual", share(initial));
+  element.style.setProperty("--from", share(people?.[0] ?? min));
+  element.style.setProperty("--to", share(people?.[1] ?? min));
+  let value = initial;
+  const show = (next: number): void => {
+    value = next;
+    input.value = String(next);
+    number.value = format(next);
+    const towards = ends && next !== 0 ? ` towards ${next < 0 ? ends[0] : ends[1]}` : "";
+    input.setAttribute("aria-valuetext", format(next) + towards);
+    element.style.setProperty("--now", share(next));
+    element.classList.toggle("changed", next !== initial);
+    element.classList.toggle("below", next < initial);
   };
-  const set = (wanted: number): void => {
-    if (wanted === value) return;
-    show(wanted);
-    onInput(wanted);
+  const set = (next: number): void => {
+    if (next === value) return;
+    show(next);
+    onInput(next);
   };
   let held = false;
-  let before = usual;
+  let before = initial;
   input.addEventListener("pointerdown", () => {
     [held, before] = [true, value];
   });
   input.addEventListener("pointerup", () => (held = false));
-  // A finger that scrolls the page, and only came down on the slider, moves nothing.
+  // A finger that scrolls the page, beginning on the slider, changes nothing.
   input.addEventListener("pointercancel", () => {
     held = false;
     set(before);
   });
   input.addEventListener("input", () => {
-    const wanted = Number(input.value);
-    set(held && Math.abs(wanted - usual) < (max - min) * CATCH ? usual : wanted);
+    const next = Number(input.value);
+    set(held && Math.abs(next - initial) < (max - min) * SNAP ? initial : next);
   });
-  input.addEventListener("dblclick", () => set(usual));
-  back.addEventListener("click", () => {
-    set(usual);
-    input.focus();
-  });
-  show(usual);
+  input.addEventListener("dblclick", () => set(initial));
+  show(initial);
   return { element, input, show };
-}
-
-const end = (name: string, which: string): HTMLSpanElement =>
-  make("span", { class: `end ${which}`, "aria-hidden": "true" }, name);
-
-function inWords(said: string, ends: readonly [string, string] | undefined, value: number): string {
-  if (!ends || value === 0) return said;
-  return `${said} towards ${value < 0 ? ends[0] : ends[1]}`;
 }

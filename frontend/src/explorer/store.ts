@@ -1,106 +1,98 @@
-/** One visit: the model, what was chosen, and what follows from it, told to all parts of the page. */
+/** The store of the page: the model, the state, its history, and all values that follow from the state. */
 
-import { castOf, type Cast } from "../model/figures";
-import { measuresOf, type MeasureName } from "../model/measures";
-import { vectorOf } from "../model/mixing";
-import type { Model, Own } from "../model/model";
-import { placeOf, type Place } from "../model/position";
-import { initialState, type State } from "../model/state";
-import { Store } from "./stateStore";
 import { walkerOf } from "../model/features";
-import type { Stage } from "../viewer/viewer";
+import { figuresOf, type SceneFigure } from "../model/figures";
+import { measuresOf, type Measures } from "../model/measures";
+import { mixedVector } from "../model/mixing";
+import type { Model, OwnWalker } from "../model/model";
+import { positionOf, type Position } from "../model/position";
+import { initialState, WALKER_PARTS, type State } from "../model/state";
+import type { Viewer } from "../viewer/viewer";
 import { axesOf, type Axis } from "./axis";
 
-/** What is shown at this moment: the state, and what is computed from it once for all parts. */
+/** The state at one moment, with the values that are computed from it once for all parts of the page. */
 export interface Now {
   readonly model: Model;
   readonly state: State;
-  readonly own: Own | null;
-  readonly vector: Float64Array;
-  readonly cast: readonly Cast[];
-  readonly place: Place;
-  readonly measures: Readonly<Record<MeasureName, number>>;
+  readonly own: OwnWalker | null;
+  readonly figures: readonly SceneFigure[];
+  readonly position: Position;
+  readonly measures: Measures;
 }
 
-/** What shows something of the moment. */
-export interface Shown {
+/** A view of the store. */
+export interface View {
   show(now: Now): void;
-  /** Be gone: another session takes over. */
-  leave?(): void;
+  /** End: another store takes over. */
+  remove?(): void;
 }
 
-/** A piece of the page that does. */
-export interface Part extends Shown {
+/** A part of the page. */
+export interface Part extends View {
   readonly element: HTMLElement;
 }
 
-/** Changes that follow one another within this time are undone together, and those of one drag. */
+/** Changes that follow one another within this time are one step of undo, and so is one drag. */
 const TOGETHER_MS = 700;
-const MOST_UNDONE = 100;
-/** Not worth a step back. */
-const PASSING: readonly (keyof State)[] = ["playing", "cycle", "dark"];
+const MAX_STEPS = 100;
+/** Changes of these parts alone are no step of undo, and undo keeps them. */
+const PASSING = ["playing", "cycle", "dark"] as const satisfies readonly (keyof State)[];
 
-/** What walkers are made from; all else is how they are looked at. */
-const WALKS: readonly (keyof State)[] = [
-  "traits", "kind", "part", "from", "bias", "strengths", "eigenwalkers", "scene", "walkers",
-];
-
-export class Session {
-  /** What draws it, and knows where in its stride the walker is while it walks. */
-  stage: Pick<Stage, "cycle" | "mannequin"> | null = null;
-  readonly store: Store;
+export class Store {
+  /** The viewer, which knows the phase of the walker during playback. */
+  viewer: Pick<Viewer, "phase" | "mannequin"> | null = null;
   readonly axes: readonly Axis[];
-  #own: Own | null = null;
+  #state: State;
+  #own: OwnWalker | null;
   #past: State[] = [];
-  #lastKept = -Infinity;
-  #undoing = false;
-  #held: "no" | "new" | "kept" = "no";
-  #hears: ((now: Now) => void)[] = [];
+  #lastStep = -Infinity;
+  /** Whether a pointer is down, and whether the drag has its step of undo already. */
+  #drag: "none" | "new" | "recorded" = "none";
+  #listeners: ((now: Now) => void)[] = [];
   #request = 0;
-  #last: Now | null = null;
+  #now: Now | null = null;
 
   constructor(
     readonly model: Model,
     state: State = initialState(model),
-    own: Own | null = null,
+    own: OwnWalker | null = null,
   ) {
+    this.#state = state;
     this.#own = own;
-    this.store = new Store(state);
     this.axes = axesOf(model);
-    this.store.listen((after, before) => {
-      this.#keep(after, before);
-      this.#soon();
-    });
   }
 
   get state(): State {
-    return this.store.state;
+    return this.#state;
   }
 
-  get own(): Own | null {
+  get own(): OwnWalker | null {
     return this.#own;
   }
 
-  /** Let one's own walker walk. */
-  take(own: Own): void {
+  /** Show the visitor's own walker. */
+  setOwn(own: OwnWalker): void {
     this.#own = own;
-    this.store.change({ from: "own", scene: "one" });
-    this.#soon();
+    this.change({ from: "own", scene: "one" });
+    this.#publishSoon();
   }
 
   change(part: Partial<State>): void {
-    this.store.change(part);
+    const changed = (Object.keys(part) as (keyof State)[]).filter((name) => part[name] !== this.#state[name]);
+    if (changed.length === 0) return;
+    if (changed.some((name) => !(PASSING as readonly string[]).includes(name))) this.#record();
+    this.#state = { ...this.#state, ...part };
+    this.#publishSoon();
   }
 
-  /** Let it walk, or stand where it is. */
+  /** Play, or pause at the present phase. */
   play(playing: boolean): void {
-    this.change(playing ? { playing } : { playing, cycle: this.stage?.cycle ?? 0 });
+    this.change(playing ? { playing } : { playing, cycle: this.viewer?.phase ?? 0 });
   }
 
-  /** All as it was when the page was new, the view too; dark or light stays. */
+  /** Go back to the initial state, but for playback and theme. */
   reset(): void {
-    const { dark, playing, cycle } = this.state;
-    this.change({ ...initialState(this.model), dark, playing, cycle });
+    this.change({ ...initialState(this.model), ...this.#passing() });
   }
 
   get canUndo(): boolean {
@@ -110,63 +102,62 @@ export class Session {
   undo(): void {
     const before = this.#past.pop();
     if (!before) return;
-    const { dark, playing, cycle } = this.state;
-    this.#undoing = true;
-    this.change({ ...before, dark, playing, cycle });
-    this.#undoing = false;
-    this.#lastKept = -Infinity;
+    this.#state = { ...before, ...this.#passing() };
+    this.#lastStep = -Infinity;
+    this.#publishSoon();
   }
 
-  /** A hand holds something, or lets it go: what changes meanwhile is undone together. */
-  hold(holds: boolean): void {
-    this.#held = holds ? "new" : "no";
+  /** A pointer is down or up: changes during a drag are one step of undo. */
+  setDragging(dragging: boolean): void {
+    this.#drag = dragging ? "new" : "none";
   }
 
-  /** Be told once for each frame of the screen in which something changed. */
-  listen(hears: (now: Now) => void): void {
-    this.#hears.push(hears);
+  /** Call a function once for each frame of the screen in which something changed. */
+  listen(listener: (now: Now) => void): void {
+    this.#listeners.push(listener);
   }
 
   now(): Now {
     const { model, state, own } = this;
-    const last = this.#last;
-    const same = last && last.own === own && WALKS.every((key) => last.state[key] === state[key]);
-    if (same) this.#last = { ...last, state };
-    else {
-      const vector = vectorOf(model, state, own);
-      const cast = castOf(model, state, own);
-      const measures = measuresOf(walkerOf(model, vector));
-      this.#last = { model, state, own, vector, cast, place: placeOf(model, vector), measures };
+    const last = this.#now;
+    if (last && last.own === own && WALKER_PARTS.every((part) => last.state[part] === state[part])) {
+      return (this.#now = { ...last, state });
     }
-    return this.#last!;
+    const vector = mixedVector(model, state, own);
+    const figures = figuresOf(model, state, own);
+    const measures = measuresOf(walkerOf(model, vector));
+    return (this.#now = { model, state, own, figures, position: positionOf(model, vector), measures });
   }
 
-  /** Tell all parts now. */
-  tell(): void {
+  /** Call all listeners now. */
+  publish(): void {
     cancelAnimationFrame(this.#request);
     this.#request = 0;
     const now = this.now();
-    for (const hears of this.#hears) hears(now);
+    for (const listener of this.#listeners) listener(now);
   }
 
-  /** Be silent from now on: another session takes over. */
+  /** Call no listeners any more: another store takes over. */
   end(): void {
     cancelAnimationFrame(this.#request);
-    this.#hears = [];
+    this.#listeners = [];
   }
 
-  #soon(): void {
-    this.#request ||= requestAnimationFrame(() => this.tell());
+  #passing(): Pick<State, (typeof PASSING)[number]> {
+    const { playing, cycle, dark } = this.#state;
+    return { playing, cycle, dark };
   }
 
-  #keep(after: State, before: State): void {
-    if (this.#undoing) return;
-    const keys = Object.keys(after) as (keyof State)[];
-    if (keys.every((key) => PASSING.includes(key) || after[key] === before[key])) return;
+  #publishSoon(): void {
+    this.#request ||= requestAnimationFrame(() => this.publish());
+  }
+
+  /** Keep the present state as a step of undo, unless the change belongs to the last step. */
+  #record(): void {
     const time = performance.now();
-    const together = this.#held === "no" ? time - this.#lastKept <= TOGETHER_MS : this.#held === "kept";
-    if (this.#held === "new") this.#held = "kept";
-    if (!together) this.#past = [...this.#past, before].slice(-MOST_UNDONE);
-    this.#lastKept = time;
+    const together = this.#drag === "none" ? time - this.#lastStep <= TOGETHER_MS : this.#drag === "recorded";
+    if (this.#drag === "new") this.#drag = "recorded";
+    if (!together) this.#past = [...this.#past, this.#state].slice(-MAX_STEPS);
+    this.#lastStep = time;
   }
 }

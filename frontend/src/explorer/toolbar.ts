@@ -1,30 +1,41 @@
-/** The buttons of the page itself: open, undo, all as it was, dark or light. */
+/** The buttons of the page: open, undo, reset, dark or light. */
 
-import { find, icon, make, type Icon } from "../page/element";
-import type { Session, Shown } from "./store";
-import { theme } from "./theme";
+import { button, find, icon, make, type Icon } from "../page/elements";
+import { paletteOf } from "../viewer/drawing";
+import type { Part, Store, View } from "./store";
 
 /** `open` lets the visitor choose files. */
-export function corner(session: Session, open: () => void): Shown {
-  const undo = act("undo", "Undo", () => session.undo());
-  const switchTheme = theme(session);
-  const buttons = [
-    act("open", "Open a file", open),
-    undo,
-    act("back", "Reset all", () => session.reset()),
-    switchTheme.element,
-  ];
-  find("#corner", HTMLDivElement).replaceChildren(make("div", { class: "row" }, ...buttons));
+export function toolbar(store: Store, open: () => void): View {
+  const undo = iconButton("undo", "Undo", () => store.undo());
+  const theme = themeButton(store);
+  const reset = iconButton("back", "Reset all", () => store.reset());
+  const row = make("div", { class: "row" }, iconButton("open", "Open a file", open), undo, reset, theme.element);
+  find("#toolbar", HTMLDivElement).replaceChildren(row);
   return {
     show(now) {
-      undo.disabled = !session.canUndo;
-      switchTheme.show(now);
+      undo.disabled = !store.canUndo;
+      theme.show(now);
     },
   };
 }
 
-function act(name: Icon, words: string, does: () => void): HTMLButtonElement {
-  const button = make("button", { type: "button", class: "quiet", "aria-label": words, title: words }, icon(name));
-  button.addEventListener("click", does);
-  return button;
+const iconButton = (name: Icon, label: string, onClick: () => void): HTMLButtonElement =>
+  button(icon(name), onClick, { class: "quiet", "aria-label": label, title: label });
+
+/** Switches between dark and light, for the page and the address bar of a phone. */
+function themeButton(store: Store): Part {
+  const element = iconButton("sun", "Light page", () => store.change({ dark: !store.state.dark }));
+  let shown: boolean | undefined;
+  return {
+    element,
+    show({ state: { dark } }) {
+      if (dark === shown) return;
+      shown = dark;
+      document.documentElement.dataset["theme"] = dark ? "dark" : "light";
+      find('meta[name="theme-color"]', HTMLMetaElement).content = paletteOf(dark).background;
+      element.replaceChildren(icon(dark ? "sun" : "moon"));
+      element.title = dark ? "Light page" : "Dark page";
+      element.setAttribute("aria-label", element.title);
+    },
+  };
 }

@@ -1,27 +1,26 @@
-/** How it is looked at: trails, perspective, turning, and the transforms of psychophysics. */
+/** Controls of the view and of the transforms. */
 
 import {
-  RANGES, TRANSFORMS, TRANSFORM_NAMES, usualSettings,
+  fieldsOf, initialSettings, RANGES, TRANSFORM_NAMES,
   type Field, type TransformName, type Transforms,
 } from "../model/state";
-import { pick, toggle, type Switch } from "./choice";
-import { make } from "../page/element";
-import type { Part, Session } from "./store";
+import { make } from "../page/elements";
+import { pick, toggle, type Control } from "./choice";
 import { slider } from "./slider";
+import type { Part, Store } from "./store";
 
-export function look(session: Session): Part {
-  const trails = toggle("Trails", (on) => session.change({ trails: on }), "Where each point has been");
-  const perspective = toggle("Perspective", (on) => session.change({ perspective: on }), "What is near is larger");
-  const degrees = (value: number): string => `${Math.round(value)}\u00b0`.replace("-", "\u2212");
-  const angle = (label: string, name: "azimuth_deg" | "elevation_deg" | "turning_deg_s", usual: number, unit = "") =>
+export function viewControls(store: Store): Part {
+  const trails = toggle("Trails", (on) => store.change({ trails: on }), "Where each point has been");
+  const perspective = toggle("Perspective", (on) => store.change({ perspective: on }), "What is near is larger");
+  const angle = (label: string, name: "azimuth_deg" | "elevation_deg" | "turning_deg_s", step: number, initial: number, unit = "") =>
     slider({
-      label, min: RANGES[name][0], max: RANGES[name][1], step: name === "turning_deg_s" ? 5 : 1, usual,
-      said: (value) => degrees(value) + unit,
-      onInput: (value) => session.change({ [name]: value }),
+      label, min: RANGES[name][0], max: RANGES[name][1], step, initial,
+      format: (value) => `${Math.round(value)}\u00b0`.replace("-", "\u2212") + unit,
+      onInput: (value) => store.change({ [name]: value }),
     });
-  const azimuth = angle("Seen from", "azimuth_deg", 30);
-  const elevation = angle("Height of the eye", "elevation_deg", 0);
-  const turning = angle("Turns by itself", "turning_deg_s", 0, " a second");
+  const azimuth = angle("Seen from", "azimuth_deg", 1, 30);
+  const elevation = angle("Height of the eye", "elevation_deg", 1, 0);
+  const turning = angle("Turns by itself", "turning_deg_s", 5, 0, " a second");
   return {
     element: make("div", {},
       make("div", { class: "row switches" }, trails.element, perspective.element),
@@ -59,30 +58,30 @@ const FIELDS: Readonly<Record<string, string>> = {
   hip_forward_mm: "Hips forward, mm", hip_up_mm: "Hips up, mm", phase_deg: "By, degrees",
   number: "How many", lifetime_s: "Life, s", places: "On", sd_mm: "Width, mm", kind: "Kind", speed_mm_s: "Speed, mm/s",
 };
-/** A seed may be any whole number; the slider gives the first few. */
-const SEEDS = 99;
+/** Seeds can be any whole number; the slider gives the first few. */
+const MAX_SEED = 99;
 
-/** A switch for each transform; its parameters are there while it is on. */
-export function transforms(session: Session): Part {
-  const all = TRANSFORM_NAMES.map((name) => transform(session, name));
+/** A switch for each transform; its parameters are visible while it is on. */
+export function transformControls(store: Store): Part {
+  const all = TRANSFORM_NAMES.map((name) => transformControl(store, name));
   return {
     element: make("div", { class: "transforms" }, ...all.map(({ element }) => element)),
     show: (now) => all.forEach((one) => one.show(now)),
   };
 }
 
-function transform(session: Session, name: TransformName): Part {
+function transformControl(store: Store, name: TransformName): Part {
   const [label, hint] = NAMES[name];
   const change = (settings: unknown): void => {
-    const { [name]: _, ...others } = session.state.transforms;
+    const { [name]: _, ...others } = store.state.transforms;
     const next = settings === undefined ? others : { ...others, [name]: settings };
-    session.change({ transforms: next as Transforms });
+    store.change({ transforms: next as Transforms });
   };
-  const on: Switch = toggle(label, (is) => change(is ? usualSettings(name) : undefined), hint);
-  const fields = Object.entries(TRANSFORMS[name] as Readonly<Record<string, Field>>).map(([field, of]) => ({
+  const on = toggle(label, (is) => change(is ? initialSettings(name) : undefined), hint);
+  const fields = Object.entries(fieldsOf(name)).map(([field, of]) => ({
     field,
-    ...setting(`${label}: ${FIELDS[field] ?? field}`, FIELDS[field] ?? field, of, (value) =>
-      change({ ...session.state.transforms[name], [field]: value }),
+    ...fieldControl(label, FIELDS[field] ?? field, of, (value) =>
+      change({ ...store.state.transforms[name], [field]: value }),
     ),
   }));
   const settings = make("div", { class: "settings" }, ...fields.map(({ element }) => element));
@@ -97,25 +96,19 @@ function transform(session: Session, name: TransformName): Part {
   };
 }
 
-interface Setting {
-  readonly element: HTMLElement;
-  show(value: unknown): void;
-}
-
-function setting(full: string, label: string, field: Field, onChange: (value: unknown) => void): Setting {
+function fieldControl(transform: string, label: string, field: Field, onChange: (value: unknown) => void): Control<unknown> {
   if ("choices" in field) {
     const options = field.choices.map((value) => ({ value, label: value.replaceAll("_", " ") }));
-    const picked = pick(label, options, onChange);
-    picked.element.querySelector("select")?.setAttribute("aria-label", full);
-    return { element: picked.element, show: (value) => picked.show(String(value)) };
+    const { element, show } = pick(label, options, onChange);
+    element.querySelector("select")?.setAttribute("aria-label", `${transform}: ${label}`);
+    return { element, show: (value) => show(String(value)) };
   }
-  const { usual, low, step } = field;
-  const max = label === "Seed" ? SEEDS : field.high;
-  const one = slider({
-    label, min: low, max, step, usual,
-    said: (value) => String(Number(value.toFixed(2))),
+  const { initial, low, step } = field;
+  const { element, input, show } = slider({
+    label, min: low, max: label === "Seed" ? MAX_SEED : field.high, step, initial,
+    format: (value) => String(Number(value.toFixed(2))),
     onInput: onChange,
   });
-  one.input.setAttribute("aria-label", full);
-  return { element: one.element, show: (value) => one.show(Number(value)) };
+  input.setAttribute("aria-label", `${transform}: ${label}`);
+  return { element, show: (value) => show(Number(value)) };
 }

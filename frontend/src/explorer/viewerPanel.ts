@@ -1,68 +1,114 @@
-/** The walker itself, how it is played, and all that is written around it. */
+/** The viewer on the page: its keys, the names of several walkers, the caption, and playback. */
 
+import { plural } from "../model/axisLabels";
 import { captionOf } from "../model/captions";
-import { Stage } from "../viewer/viewer";
-import { peopleIn } from "./about";
-import { find, put } from "../page/element";
-import { stageKeys } from "./keyboard";
-import { label } from "./figureLabels";
-import type { Now, Session, Shown } from "./store";
-import { transport } from "./playback";
+import type { SceneFigure } from "../model/figures";
+import { clamped, RANGES, wrappedDegrees } from "../model/state";
+import { find, make, setAttributes } from "../page/elements";
+import type { Box } from "../viewer/arrangement";
+import { Viewer } from "../viewer/viewer";
+import { populationLabel } from "./about";
+import { playback } from "./playback";
+import type { Now, Store, View } from "./store";
 
-/** A screen reader hears what is seen once the sliders have rested so long. */
-const REST_MS = 1200;
+/** The caption for screen readers changes after a pause of this length. */
+const PAUSE_MS = 1200;
+/** More names than these overlap. */
+const MAX_NAMES = 4;
+/** Degrees for each press of an arrow key. */
+const TURN = 5;
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [TURN, 0],
+  ArrowRight: [-TURN, 0],
+  ArrowUp: [0, TURN],
+  ArrowDown: [0, -TURN],
+};
 
-export function onStage(session: Session): Shown {
-  const host = find("#stage", HTMLDivElement);
+export function viewerPanel(store: Store): View {
+  const host = find("#viewer", HTMLDivElement);
   const hint = find("#hint", HTMLParagraphElement);
   const labels = find("#labels", HTMLDivElement);
   const people = find("#people", HTMLParagraphElement);
-  const tools = transport(session);
+  const tools = playback(store);
   let last: Now | undefined;
-  const stage = new Stage(find("#stage canvas", HTMLCanvasElement), {
+  const viewer = new Viewer(find("#viewer canvas", HTMLCanvasElement), {
     turned: (azimuth_deg, elevation_deg) => {
       hint.classList.add("done");
-      session.change({ azimuth_deg, elevation_deg });
+      store.change({ azimuth_deg, elevation_deg });
     },
-    ticked: (cycle) => tools.tick(cycle),
-    picked: (known) => session.change({ from: known, scene: "one" }),
-    laid: (boxes) => label(labels, last?.cast ?? [], boxes),
+    ticked: (phase) => tools.tick(phase),
+    picked: (known) => store.change({ from: known, scene: "one" }),
+    arranged: (boxes) => showNames(labels, last?.figures ?? [], boxes),
   });
-  session.stage = stage;
-  const keys = stageKeys(session);
-  host.addEventListener("keydown", keys);
-  find("#tools", HTMLDivElement).replaceChildren(tools.element);
-  const say = caption();
+  store.viewer = viewer;
+  const onKey = (event: KeyboardEvent): void => turnByKey(store, event);
+  host.addEventListener("keydown", onKey);
+  find("#playback", HTMLDivElement).replaceChildren(tools.element);
+  const updateCaption = caption();
   return {
     show(now) {
       last = now;
-      stage.show(now.model, now.cast, now.state);
+      const { model, figures, state } = now;
+      viewer.show(model, figures, state);
       tools.show(now);
-      people.textContent = [peopleIn(now.model), ...whoWalks(now)].join(" \u00b7 ");
-      const degrees = Math.round(now.state.azimuth_deg);
-      put(host, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
-      say(now);
+      const name = state.scene === "one" && state.from !== "average" ? [figures[0]!.name] : [];
+      people.textContent = [populationLabel(model), ...name].join(" \u00b7 ");
+      const degrees = Math.round(state.azimuth_deg);
+      setAttributes(host, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });
+      updateCaption(now);
     },
-    leave() {
-      stage.remove();
-      host.removeEventListener("keydown", keys);
+    remove() {
+      viewer.remove();
+      host.removeEventListener("keydown", onKey);
     },
   };
 }
 
-/** Who it is, where it is somebody. */
-const whoWalks = ({ state, cast }: Now): string[] =>
-  state.scene === "one" && state.from !== "average" ? [cast[0]!.name] : [];
+/** Arrow keys turn the walker; Home shows it from the front. */
+function turnByKey(store: Store, event: KeyboardEvent): void {
+  const { azimuth_deg, elevation_deg } = store.state;
+  const arrow = ARROWS[event.key];
+  if (arrow) {
+    store.change({
+      azimuth_deg: wrappedDegrees(azimuth_deg + arrow[0]),
+      elevation_deg: clamped(RANGES.elevation_deg, elevation_deg + arrow[1]),
+    });
+  } else if (event.key === "Home") store.change({ azimuth_deg: 0, elevation_deg: 0 });
+  else return;
+  event.preventDefault();
+}
 
-/** Says what is seen, a moment later and never twice. */
+/** The names of a few walkers, below each of them. */
+function showNames(element: HTMLElement, figures: readonly SceneFigure[], boxes: readonly Box[]): void {
+  const few = figures.length > 1 && figures.length <= MAX_NAMES;
+  const names = (few ? figures : []).flatMap(({ name }, i) => {
+    const box = boxes[i];
+    if (!box) return [];
+    const tag = make("span", {}, displayName(name));
+    tag.style.left = `${box.left + box.width / 2}px`;
+    tag.style.top = `${box.top + box.height}px`;
+    return [tag];
+  });
+  element.replaceChildren(...names);
+}
+
+/** "woman tripled" as "women × 3". */
+function displayName(name: string): string {
+  const [first = "", ...others] = name.split(" ");
+  const people = plural(first);
+  if (people.endsWith(" walkers") || /^\d+$/.test(others[0] ?? "")) return name;
+  return [people, ...others].join(" ").replace("tripled", "\u00d7 3");
+}
+
+/** Updates the caption after a pause, if it has changed. */
 function caption(): (now: Now) => void {
   const element = find("#caption", HTMLParagraphElement);
   let timer = 0;
   return ({ model, state, own }) => {
     clearTimeout(timer);
     timer = window.setTimeout(() => {
-      const said = captionOf(model, state, own);
-      if (element.textContent !== said) element.textContent = said;
-    }, REST_MS);
+      const text = captionOf(model, state, own);
+      if (element.textContent !== text) element.textContent = text;
+    }, PAUSE_MS);
   };
 }

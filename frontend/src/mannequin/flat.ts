@@ -1,9 +1,8 @@
 /** The mannequin without WebGL: outlines of its hulls, shaded across, the farther drawn first. */
 
-import { HULL } from "./hulls";
-import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
+import { HULL, LIGHT, litColour, type DrawHulls, type RenderSettings } from "./hulls";
 
-/** How bright a hull is across its width, from where the light comes to where it does not reach. */
+/** Brightness across the width of a hull, from the lit side to the dark side. */
 const SHADES = [
   [0, 0.62],
   [0.3, 0.85],
@@ -15,17 +14,17 @@ interface Ball {
   readonly x: number;
   readonly y: number;
   readonly radius: number;
-  /** Towards the observer, and radius, in mm. */
+  /** Position towards the observer, and radius, in mm. */
   readonly near: number;
   readonly girth: number;
 }
 
-export const drawFlat: DrawHulls = (context, hulls, look) => {
+export const drawFlat: DrawHulls = (context, hulls, settings) => {
   const { numbers } = hulls;
-  const colour = litColour(look.colour);
+  const colour = litColour(settings.colour);
   const pieces = Array.from({ length: hulls.count }, (_, i) => ({
-    one: ballOf(numbers, HULL * i, look),
-    other: ballOf(numbers, HULL * i + 4, look),
+    one: ballOf(numbers, HULL * i, settings),
+    other: ballOf(numbers, HULL * i + 4, settings),
     tone: numbers[HULL * i + 8]!,
   }));
   const near = ({ one, other, tone }: (typeof pieces)[number]): number =>
@@ -39,20 +38,20 @@ export const drawFlat: DrawHulls = (context, hulls, look) => {
   }
 };
 
-function ballOf(numbers: Float32Array, at: number, look: Look): Ball {
+function ballOf(numbers: Float32Array, at: number, settings: RenderSettings): Ball {
   const [right, up, near, radius] = numbers.subarray(at, at + 4) as unknown as number[];
-  const eye = look.eye_distance_mm;
-  const scale = look.px_per_mm * (eye === null ? 1 : eye / (eye - near!));
+  const eye = settings.eye_distance_mm;
+  const scale = settings.px_per_mm * (eye === null ? 1 : eye / (eye - near!));
   return {
-    x: look.width_px / 2 + scale * right!,
-    y: look.height_px / 2 - scale * up!,
+    x: settings.width_px / 2 + scale * right!,
+    y: settings.height_px / 2 - scale * up!,
     radius: scale * radius!,
     near: near!,
     girth: radius!,
   };
 }
 
-/** Two discs and what lies between them. */
+/** Two discs and the area between them. */
 function outline(context: CanvasRenderingContext2D, one: Ball, other: Ball): void {
   const along = Math.atan2(other.y - one.y, other.x - one.x);
   const apart = Math.hypot(other.x - one.x, other.y - one.y);
@@ -68,7 +67,7 @@ function outline(context: CanvasRenderingContext2D, one: Ball, other: Ball): voi
   context.closePath();
 }
 
-/** The shade runs across a hull, away from the light. */
+/** A gradient across a hull, away from the light. */
 function shadeOf(
   context: CanvasRenderingContext2D,
   { radius }: Ball,

@@ -1,4 +1,4 @@
-// Soft light from one side, the same for every piece; edges that turn away are darker.
+// Soft light from one side, the same for all pieces; edges that face away are darker.
 uniform vec3 colour;
 uniform vec3 light;
 uniform float eye;

@@ -1,10 +1,10 @@
 // A corner of the hull of two balls. `position` has cosine and sine of the angle round the axis, and
-// which ball; `share` how far over its cap, in the sine of latitude, from the pole to the rim.
+// the number of the ball; `share` is the way over its cap from the pole to the rim, in sines of latitude.
 attribute float share;
 attribute vec4 one;
 attribute vec4 other;
 attribute float tone;
-// By how much corners lie farther out, for the faces between them to be as wide on the whole.
+// The factor that moves corners outwards, so that the faces between them have the right mean width.
 uniform float rounder;
 varying vec3 place;
 varying vec3 away;
@@ -14,7 +14,7 @@ void main() {
   vec3 way = other.xyz - one.xyz;
   float apart = length(way);
   vec3 axis = apart > 1e-6 ? way / apart : vec3(0.0, 0.0, 1.0);
-  // The rim is where the cone between the balls touches both.
+  // At the rim, the cone between the balls touches them.
   float rim = clamp((one.w - other.w) / max(apart, 1e-6), -1.0, 1.0);
   bool first = position.z < 0.5;
   float up = first ? mix(-1.0, rim, share) : mix(1.0, rim, share);

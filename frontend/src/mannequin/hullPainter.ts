@@ -1,31 +1,30 @@
-/** From the figures of a stimulus to hulls, and to whatever draws them. */
+/** From the figures of a stimulus to hulls, and to a function that draws them. */
 
 import { hasLimbs, type MannequinPainter } from "../canvas/mannequinLoader";
 import { drawFlat } from "./flat";
-import { bodyHeights, Hulls, mannequinOf, type Mannequin } from "./hulls";
-import type { DrawHulls } from "./look";
+import { bodyHeights, Hulls, mannequinOf, type DrawHulls, type Mannequin } from "./hulls";
 
-/** A painter that needs no WebGL: small, and in every page that lets itself be turned. */
+/** A small painter that needs no WebGL; pages with a viewer include it. */
 export const flatPainter = (): MannequinPainter => makePainter(drawFlat);
 
 export function makePainter(draw: DrawHulls): MannequinPainter {
   const hulls = new Hulls();
-  const carved = new WeakMap<object, readonly Mannequin[]>();
+  const mannequins = new WeakMap<object, readonly Mannequin[]>();
   return {
     solid: draw !== drawFlat,
-    paint(context, figures, stimulus, fine) {
-      let bodies = carved.get(stimulus);
+    paint(context, figures, stimulus, pixelRatio) {
+      let bodies = mannequins.get(stimulus);
       if (!bodies) {
         const heights = bodyHeights(stimulus);
         bodies = figures.map(({ moving }, i) => mannequinOf(moving.body, heights[i] ?? 0));
-        carved.set(stimulus, bodies);
+        mannequins.set(stimulus, bodies);
       }
       hulls.clear();
-      figures.forEach((shown, i) => {
-        if (hasLimbs(shown.moving)) hulls.add(bodies[i]!, shown.positions, shown.visible, stimulus.view);
+      figures.forEach(({ moving, positions, visible }, i) => {
+        if (hasLimbs(moving)) hulls.add(bodies[i]!, positions, visible, stimulus.view);
       });
       const { eye_distance_mm } = stimulus.view;
-      draw(context, hulls, { ...stimulus.display, eye_distance_mm, fine });
+      draw(context, hulls, { ...stimulus.display, eye_distance_mm, pixelRatio });
     },
   };
 }

@@ -1,10 +1,10 @@
 /**
- * The mannequin's body: pieces of wood that go with the dots, each the hull of two balls.
+ * The mannequin's body: pieces that move with the dots, each the convex hull of two balls.
  *
- * `mannequin.json`, which Python reads too, has their places as weighted means of dots and their
- * girth in shares of body height. A hull counts nine numbers: x, y, z and radius of either ball, in
+ * `mannequin.json`, which Python reads too, gives their positions as weighted means of dots and their
+ * radii in shares of body height. A hull has nine numbers: x, y, z and radius of each ball, in
  * millimetres to the observer's right, up and towards the observer from the centre of the view, and
- * its tone, 1 for as bright as the light makes it.
+ * its tone, 1 for full brightness.
  */
 
 import shape from "../../../src/eigenwalker/stimulus/mannequin.json";
@@ -15,7 +15,7 @@ import { observerAxes } from "../core/vector";
 
 /** Numbers a hull. */
 export const HULL = 9;
-/** Nearer to the eye than this, in mm, nothing is seen. */
+/** Nothing nearer to the eye than this is visible. */
 const NEAREST_MM = 1;
 
 interface Piece {
@@ -26,22 +26,46 @@ interface Piece {
   readonly unless?: string;
 }
 
-/** A ball whose middle is a weighted mean of dots. */
+/** A ball whose centre is a weighted mean of dots. */
 interface Ball {
   readonly dots: readonly number[];
   readonly weights: readonly number[];
   readonly radiusMm: number;
 }
 
-/** A piece of one figure. */
-interface Carved {
-  readonly balls: readonly [Ball, Ball];
-  readonly tone: number;
+/** The pieces of one figure. */
+export type Mannequin = readonly { readonly balls: readonly [Ball, Ball]; readonly tone: number }[];
+
+/** The picture that hulls are drawn in. */
+export interface RenderSettings {
+  readonly width_px: number;
+  readonly height_px: number;
+  readonly px_per_mm: number;
+  readonly eye_distance_mm: number | null;
+  readonly colour: string;
+  /** Canvas pixels for one pixel of the picture. */
+  readonly pixelRatio: number;
 }
 
-export type Mannequin = readonly Carved[];
+/** Draws all hulls over the present content of the canvas, the farther first. */
+export type DrawHulls = (context: CanvasRenderingContext2D, hulls: Hulls, settings: RenderSettings) => void;
 
-/** The pieces of a figure of this height: those whose dots it has, and a rod for other segments. */
+/** Direction towards the light, seen by the observer: right, up, towards. */
+export const LIGHT = [-0.44, 0.67, 0.6] as const;
+
+/** Share of white light in the specular reflection. */
+const SPECULAR = 0.1;
+
+/** Red, green and blue, 0 to 1, of a colour like `#ffffff` in full light. */
+export function litColour(colour: string): [number, number, number] {
+  const part = (i: number): number => {
+    const share = parseInt(colour.slice(i, i + 2), 16) / 255;
+    return share + SPECULAR * (1 - share);
+  };
+  return [part(1), part(3), part(5)];
+}
+
+/** The pieces of a figure of this height: those whose dots it has, and a rod for each other segment. */
 export function mannequinOf({ dots, segments }: Body, heightMm: number): Mannequin {
   const known = new Set(dots);
   const pieces = (shape.pieces as unknown as Piece[])
@@ -65,7 +89,7 @@ export function mannequinOf({ dots, segments }: Body, heightMm: number): Mannequ
   });
 }
 
-/** A piece for each side, where it names joints without one. */
+/** A piece for each side, if it names joints without a side. */
 function bothSides(piece: Piece): Piece[] {
   const sides = ["left_", "right_"].map((side): Piece => {
     const sided = (weights: Piece["from"]): Piece["from"] =>
@@ -86,9 +110,9 @@ const sidedName = (dot: string, side: string): string =>
   /^(head|sternum|pelvis|left_.*|right_.*)$/.test(dot) ? dot : side + dot;
 
 /**
- * The body height of each figure of a stimulus, in mm, by which its mannequin is as thick.
+ * The body height of each figure of a stimulus, in mm, which scales the radii of its mannequin.
  *
- * It is that of the figure as it stands in the file, times the factors by which it is resized.
+ * It is the height of the figure in the file, times the factors of its resize transforms.
  */
 export function bodyHeights({ figures, transforms }: Stimulus): number[] {
   return figures.map((figure, number) => {
@@ -99,14 +123,14 @@ export function bodyHeights({ figures, transforms }: Stimulus): number[] {
     });
     const height = shape.body_height * Math.max(...extents, 0);
     return transforms.reduce(
-      (so, step) =>
-        step.name === "resize" && (step.figures ?? [number]).includes(number) ? so * step.factor : so,
+      (scaled, step) =>
+        step.name === "resize" && (step.figures ?? [number]).includes(number) ? scaled * step.factor : scaled,
       height,
     );
   });
 }
 
-/** All hulls of one picture, in an array that is used again from frame to frame. */
+/** All hulls of one picture, in an array that all frames share. */
 export class Hulls {
   numbers = new Float32Array(64 * HULL);
   count = 0;
@@ -115,7 +139,7 @@ export class Hulls {
     this.count = 0;
   }
 
-  /** Add a figure; its pieces of which a dot is not seen are left out. */
+  /** Add a figure, without the pieces of which a dot is not visible. */
   add(pieces: Mannequin, positions: Float64Array, visible: Uint8Array, view: View): void {
     const axes = observerAxes(view.view_deg, view.elevation_deg);
     const nearest = (view.eye_distance_mm ?? Infinity) - NEAREST_MM;
@@ -128,7 +152,7 @@ export class Hulls {
     }
   }
 
-  /** Write a ball down, and say whether it is to be seen. */
+  /** Write a ball into the array; whether it is visible. */
   #put(
     at: number,
     { dots, weights, radiusMm }: Ball,
@@ -148,8 +172,8 @@ export class Hulls {
     }
     const { numbers } = this;
     for (let axis = 0; axis < 3; axis++) {
-      const [along_x, along_y, along_z] = axes[axis]!;
-      numbers[at + axis] = x * along_x + y * along_y + z * along_z;
+      const [ax, ay, az] = axes[axis]!;
+      numbers[at + axis] = x * ax + y * ay + z * az;
     }
     numbers[at + 3] = radiusMm;
     return numbers[at + 2]! + radiusMm <= nearest;

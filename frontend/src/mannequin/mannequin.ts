@@ -1,27 +1,23 @@
-/** The mannequin: a module of its own, loaded when a stimulus asks for it. */
+/** The mannequin: a module of its own, which a page loads on demand. */
 
 import type { MannequinPainter } from "../canvas/mannequinLoader";
-import { drawFlat } from "./flat";
-import type { DrawHulls } from "./look";
-import { makePainter } from "./hullPainter";
+import { flatPainter, makePainter } from "./hullPainter";
 import { solidDrawing } from "./solid";
 
-/** Under which three.js, which this module holds, may be passed on: the text goes with it. */
+/** The licence of three.js, which this module includes. */
 export { default as licence } from "../../node_modules/three/LICENSE?raw";
 
 let shared: MannequinPainter | undefined;
 
-/** What draws mannequins; one for the whole page, as browsers give few contexts of WebGL. */
-export function mannequinPainter(): MannequinPainter {
-  return (shared ??= makePainter(drawing()));
-}
+/** The painter of mannequins: one for the whole page, as browsers limit the number of WebGL contexts. */
+export const mannequinPainter = (): MannequinPainter => (shared ??= newPainter());
 
 /** In three dimensions, or flat where there is no WebGL. */
-function drawing(): DrawHulls {
+function newPainter(): MannequinPainter {
   try {
-    return solidDrawing();
+    return makePainter(solidDrawing());
   } catch (error) {
     console.warn("There is no WebGL, so the mannequin is drawn flat:", error);
-    return drawFlat;
+    return flatPainter();
   }
 }

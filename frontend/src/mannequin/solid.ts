@@ -18,25 +18,24 @@ import {
 
 import fragmentShader from "./hull.frag?raw";
 import vertexShader from "./hull.vert?raw";
-import { HULL, type Hulls } from "./hulls";
-import { LIGHT, litColour, type DrawHulls, type Look } from "./look";
+import { HULL, LIGHT, litColour, type DrawHulls, type Hulls, type RenderSettings } from "./hulls";
 
-/** Corners round a hull, and rings over each of its two caps, up to so many pixels a mm. */
+/** Corners round a hull, and rings on each of its two caps, up to a number of pixels a mm. */
 const LEVELS = [
   { upTo: 0.35, round: 24, rings: 5 },
   { upTo: 0.7, round: 32, rings: 7 },
   { upTo: Infinity, round: 40, rings: 9 },
 ] as const;
-/** Farther from the eye than this, in mm, nothing is drawn. */
+/** Nothing farther from the eye than this is drawn. */
 const FAR_MM = 1e6;
 
 type Four = [number, number, number, number];
 type Box = Readonly<Record<"left" | "top" | "width" | "height", number>>;
 
-/** What draws hulls; throws where the browser gives no WebGL. */
+/** A function that draws hulls; throws if the browser has no WebGL. */
 export function solidDrawing(): DrawHulls {
   const renderer = new WebGLRenderer({ alpha: true, antialias: true });
-  renderer.outputColorSpace = LinearSRGBColorSpace; // shades are given as the screen shows them
+  renderer.outputColorSpace = LinearSRGBColorSpace; // shades are in screen values
   renderer.setClearColor(0, 0);
   const uniforms = {
     colour: { value: new Vector3() },
@@ -54,7 +53,7 @@ export function solidDrawing(): DrawHulls {
   const near = new PerspectiveCamera();
   let buffer: InstancedInterleavedBuffer | undefined;
 
-  const give = (hulls: Hulls, look: Look): void => {
+  const upload = (hulls: Hulls, settings: RenderSettings): void => {
     if (buffer?.array !== hulls.numbers) {
       buffer = new InstancedInterleavedBuffer(hulls.numbers, HULL);
       buffer.setUsage(DynamicDrawUsage);
@@ -66,37 +65,37 @@ export function solidDrawing(): DrawHulls {
       }
     }
     buffer.needsUpdate = true;
-    const size = largest(hulls, look);
+    const size = greatestScale(hulls, settings);
     const level = levels.find(({ upTo }) => size <= upTo)!;
     mesh.geometry = level.geometry;
     mesh.geometry.instanceCount = hulls.count;
     const [a, b] = [(2 * Math.PI) / level.round, Math.PI / 2 / level.rings];
-    uniforms.rounder.value = 1 + (a * a + b * b) / 48; // faces are as far outside as inside
+    uniforms.rounder.value = 1 + (a * a + b * b) / 48; // faces lie outside as far as inside
   };
 
-  const draw: DrawHulls = (context, hulls, look) => {
-    const { fine, width_px, height_px } = look;
-    const box = boxOf(hulls, look);
+  const draw: DrawHulls = (context, hulls, settings) => {
+    const { pixelRatio, width_px, height_px } = settings;
+    const box = boxOf(hulls, settings);
     if (!box) return;
     const { left, top, width, height } = box;
     const { domElement } = renderer;
     if (domElement.width < width || domElement.height < height) {
-      // It only grows, so that pictures of several sizes take turns in its lower left corner.
+      // The canvas only grows: pictures of all sizes use its lower left corner.
       renderer.setSize(Math.max(domElement.width, width), Math.max(domElement.height, height), false);
     }
     renderer.setViewport(0, 0, width, height);
-    give(hulls, look);
-    uniforms.colour.value.set(...litColour(look.colour));
-    const camera = aimed(look);
-    camera.setViewOffset(width_px * fine, height_px * fine, left, top, width, height);
+    upload(hulls, settings);
+    uniforms.colour.value.set(...litColour(settings.colour));
+    const camera = cameraFor(settings);
+    camera.setViewOffset(width_px * pixelRatio, height_px * pixelRatio, left, top, width, height);
     renderer.render(scene, camera);
-    const placed = [left, top, width, height].map((size) => size / fine) as Four;
+    const placed = [left, top, width, height].map((size) => size / pixelRatio) as Four;
     context.drawImage(domElement, 0, domElement.height - height, width, height, ...placed);
   };
 
-  const aimed = (look: Look): OrthographicCamera | PerspectiveCamera => {
-    const { px_per_mm, eye_distance_mm: eye } = look;
-    const [right, top] = [look.width_px / 2 / px_per_mm, look.height_px / 2 / px_per_mm];
+  const cameraFor = (settings: RenderSettings): OrthographicCamera | PerspectiveCamera => {
+    const { px_per_mm, eye_distance_mm: eye } = settings;
+    const [right, top] = [settings.width_px / 2 / px_per_mm, settings.height_px / 2 / px_per_mm];
     uniforms.eye.value = eye ?? 0;
     if (eye === null) {
       return Object.assign(level, { left: -right, right, top, bottom: -top, near: -FAR_MM, far: FAR_MM });
@@ -108,39 +107,39 @@ export function solidDrawing(): DrawHulls {
   return draw;
 }
 
-/** The part of the picture in which hulls may be, in pixels of the canvas; none if there is none. */
-function boxOf({ numbers, count }: Hulls, look: Look): Box | undefined {
+/** The part of the picture that hulls can cover, in canvas pixels; undefined if there is none. */
+function boxOf({ numbers, count }: Hulls, settings: RenderSettings): Box | undefined {
   const [across, upwards] = [0, 1].map((axis) => {
     const ends = [Infinity, -Infinity] as [number, number];
     for (let ball = 0; ball < 2 * count; ball++) {
       const at = HULL * (ball >> 1) + 4 * (ball & 1);
       const [beside, towards, radius] = [numbers[at + axis]!, numbers[at + 2]!, numbers[at + 3]!];
-      ends[0] = Math.min(ends[0], reach(beside, towards, -radius, look.eye_distance_mm));
-      ends[1] = Math.max(ends[1], reach(beside, towards, radius, look.eye_distance_mm));
+      ends[0] = Math.min(ends[0], reach(beside, towards, -radius, settings.eye_distance_mm));
+      ends[1] = Math.max(ends[1], reach(beside, towards, radius, settings.eye_distance_mm));
     }
-    return ends.map((end) => end * look.px_per_mm) as [number, number];
+    return ends.map((end) => end * settings.px_per_mm) as [number, number];
   }) as [[number, number], [number, number]];
   const pixels = (end: number, size: number): number =>
-    Math.min(Math.max((size / 2 + end) * look.fine, 0), Math.round(size * look.fine));
-  const left = Math.floor(pixels(across[0] - 1, look.width_px));
-  const top = Math.floor(pixels(-upwards[1] - 1, look.height_px));
-  const width = Math.ceil(pixels(across[1] + 1, look.width_px)) - left;
-  const height = Math.ceil(pixels(-upwards[0] + 1, look.height_px)) - top;
+    Math.min(Math.max((size / 2 + end) * settings.pixelRatio, 0), Math.round(size * settings.pixelRatio));
+  const left = Math.floor(pixels(across[0] - 1, settings.width_px));
+  const top = Math.floor(pixels(-upwards[1] - 1, settings.height_px));
+  const width = Math.ceil(pixels(across[1] + 1, settings.width_px)) - left;
+  const height = Math.ceil(pixels(-upwards[0] + 1, settings.height_px)) - top;
   return width > 0 && height > 0 ? { left, top, width, height } : undefined;
 }
 
-/** The pixels of the canvas that a millimetre of what is nearest takes. */
-function largest({ numbers, count }: Hulls, look: Look): number {
-  const { px_per_mm, fine, eye_distance_mm: eye } = look;
-  if (eye === null) return px_per_mm * fine;
+/** Canvas pixels for a millimetre of the nearest hull. */
+function greatestScale({ numbers, count }: Hulls, settings: RenderSettings): number {
+  const { px_per_mm, pixelRatio, eye_distance_mm: eye } = settings;
+  if (eye === null) return px_per_mm * pixelRatio;
   let away = eye;
   for (let hull = 0; hull < count; hull++) {
     away = Math.min(away, eye - numbers[HULL * hull + 2]!, eye - numbers[HULL * hull + 6]!);
   }
-  return (px_per_mm * fine * eye) / away;
+  return (px_per_mm * pixelRatio * eye) / away;
 }
 
-/** How far a ball reaches to one side in the picture, in mm; `radius` is negative for the other. */
+/** The edge of a ball in the picture, in mm; `radius` is negative for the other edge. */
 function reach(beside: number, towards: number, radius: number, eye: number | null): number {
   if (eye === null) return beside + radius;
   const away = eye - towards;
@@ -149,7 +148,7 @@ function reach(beside: number, towards: number, radius: number, eye: number | nu
   return eye * Math.tan(Math.min(Math.max(angle, -1.57), 1.57));
 }
 
-/** Two caps of a ball on a common axis, of which the shader makes a hull. */
+/** Two caps of a ball on a common axis, which the shader makes into a hull. */
 function hullGeometry({ round, rings }: (typeof LEVELS)[number]): InstancedBufferGeometry {
   const corners: number[] = [];
   const shares: number[] = [];

@@ -1,40 +1,40 @@
 /**
- * What was chosen as the end of an address, short: all that is as it was at first is left out.
+ * A state as the fragment of an address, short: values of the initial state are left out.
  *
- * `sex:3,weight_kg:-2` reads `t=sex:3,weight_kg:-2`. An address comes from anybody: what is
- * unknown or no number is passed over, and numbers are brought within their ranges.
+ * `sex:3,weight_kg:-2` is written `t=sex:3,weight_kg:-2`. Anybody may write an address: unknown names and
+ * invalid numbers are ignored, and numbers are brought within their ranges.
  */
 
 import { partsOf } from "./mixing";
 import type { Model } from "./model";
 import {
-  initialState, MOST_SIDE_BY_SIDE, RANGES, TRANSFORM_NAMES, TRANSFORMS, usualSettings, within,
-  wrappedDegrees, type Bias, type Field, type State, type TransformName, type Transforms,
+  clamped, fieldsOf, initialSettings, initialState, MAX_SIDE_BY_SIDE, RANGES, TRANSFORM_NAMES, wrappedDegrees,
+  type Bias, type Field, type State, type TransformName, type Transforms,
 } from "./state";
 
 type Range = readonly [number, number];
 
-/** Writes a part of the state, and reads it; undefined for what says nothing. */
+/** Writes a part of the state, and reads it; undefined for an invalid text. */
 interface Code<T> {
   readonly name: string;
   write(value: T): string;
   read(text: string, model: Model): T | undefined;
 }
 
-type Coded = Exclude<keyof State, "playing">;
+type CodedPart = Exclude<keyof State, "playing">;
 
-const CODES: { readonly [Part in Coded]: Code<State[Part]> } = {
+const CODES: { readonly [Part in CodedPart]: Code<State[Part]> } = {
   traits: {
     name: "t",
     write: (traits) => pairs(Object.entries(traits).filter(([, steps]) => steps !== 0)),
-    read: (text, model) => {
-      const known = split(text).filter(([name]) => model.traits.some((trait) => trait.name === name));
+    read: (text, { traits }) => {
+      const known = splitPairs(text).filter(([name]) => traits.some((trait) => trait.name === name));
       return Object.fromEntries(
-        known.flatMap(([name, steps]) => numeric(steps, RANGES.trait).map((value) => [name, value])),
+        known.flatMap(([name, steps]) => numbersIn(steps, RANGES.trait).map((value) => [name, value])),
       );
     },
   },
-  kind: chosen("k", { discriminant: "d", mean_difference: "m" }),
+  kind: choice("k", { discriminant: "d", mean_difference: "m" }),
   part: {
     name: "p",
     write: (part) => part,
@@ -43,96 +43,94 @@ const CODES: { readonly [Part in Coded]: Code<State[Part]> } = {
   from: {
     name: "w",
     write: String,
-    read: (text, model) => {
-      if (text === "own" || text === "average") return text;
-      return wholes(text, model.walkers.length)[0];
-    },
+    read: (text, { walkers }) =>
+      text === "own" || text === "average" ? text : indices(text, walkers.length)[0],
   },
   bias: {
     name: "b",
     write: (bias) => (bias ? pairs([[bias.trait, bias.steps]]) : ""),
-    read: biasOf,
+    read: readBias,
   },
   strengths: list("s", RANGES.strength, (model) => model.harmonics.length, 1),
   eigenwalkers: list("e", RANGES.eigenwalker, (model) => model.eigenwalkers.length, 0),
-  tempo: amount("v", RANGES.tempo),
+  tempo: number("v", RANGES.tempo),
   azimuth_deg: {
     name: "az",
     write: short,
-    read: (text) => numeric(text, [-1e6, 1e6]).map(wrappedDegrees)[0],
+    read: (text) => numbersIn(text, [-1e6, 1e6]).map(wrappedDegrees)[0],
   },
-  elevation_deg: amount("el", RANGES.elevation_deg),
-  perspective: truth("eye"),
-  turning_deg_s: amount("turn", RANGES.turning_deg_s),
-  style: chosen("as", { dots: "dots", sticks: "sticks", mannequin: "body" }),
-  trails: truth("trails"),
-  dark: truth("dark"),
-  scene: chosen("show", { one: "one", four: "four", side: "side", crowd: "crowd" }),
+  elevation_deg: number("el", RANGES.elevation_deg),
+  perspective: flag("eye"),
+  turning_deg_s: number("turn", RANGES.turning_deg_s),
+  style: choice("as", { dots: "dots", sticks: "sticks", mannequin: "body" }),
+  trails: flag("trails"),
+  dark: flag("dark"),
+  scene: choice("show", { one: "one", four: "four", side: "side", crowd: "crowd" }),
   walkers: {
     name: "who",
     write: (walkers) => walkers.join(","),
-    read: (text, model) => {
-      const found = wholes(text, model.walkers.length).slice(0, MOST_SIDE_BY_SIDE);
-      return found.length > 0 ? found : undefined;
+    read: (text, { walkers }) => {
+      const numbers = indices(text, walkers.length).slice(0, MAX_SIDE_BY_SIDE);
+      return numbers.length > 0 ? numbers : undefined;
     },
   },
   transforms: {
     name: "x",
-    write: (transforms) => TRANSFORM_NAMES.filter((name) => name in transforms).map((name) => written(name, transforms)).join(","),
-    read: (text) => Object.fromEntries(text.split(",").flatMap(transformOf)) as Transforms,
+    write: (transforms) => TRANSFORM_NAMES.flatMap((name) => writeTransform(name, transforms)).join(","),
+    read: (text) => Object.fromEntries(text.split(",").flatMap(readTransform)) as Transforms,
   },
-  cycle: amount("at", RANGES.cycle),
+  cycle: number("at", RANGES.cycle),
 };
 
-const PARTS = Object.keys(CODES) as Coded[];
+const CODED_PARTS = Object.keys(CODES) as CodedPart[];
 
-/** The end of an address, without "#"; nothing where nothing was changed. */
+/** The fragment without "#"; empty for the initial state. */
 export function addressOf(state: State, model: Model): string {
-  const usual = initialState(model);
-  const said = PARTS.flatMap((part) => {
+  const initial = initialState(model);
+  const words = CODED_PARTS.flatMap((part) => {
     const { name, write } = CODES[part] as Code<unknown>;
     const text = write(state[part]);
-    return text === write(usual[part]) || (part === "cycle" && state.playing) ? [] : [`${name}=${text}`];
+    return text === write(initial[part]) || (part === "cycle" && state.playing) ? [] : [`${name}=${text}`];
   });
-  return [...said, ...(state.playing ? [] : ["still"])].join("&");
+  return [...words, ...(state.playing ? [] : ["still"])].join("&");
 }
 
-/** The state that the end of an address describes; what it does not tell is as usual. */
+/** The state in a fragment; parts that it does not have are those of the initial state. */
 export function stateOf(address: string, model: Model): State {
-  const given = new Map(
+  const words = new Map(
     address.replace(/^#/, "").slice(0, 8000).split("&").map((word) => {
       const [name = "", ...others] = word.split("=");
       return [name, others.join("=")] as const;
     }),
   );
-  const read = PARTS.flatMap((part) => {
+  const parts = CODED_PARTS.flatMap((part) => {
     const code = CODES[part] as Code<unknown>;
-    const text = given.get(code.name);
+    const text = words.get(code.name);
     const value = text === undefined ? undefined : code.read(text, model);
     return value === undefined ? [] : [[part, value] as const];
   });
-  return { ...initialState(model), ...Object.fromEntries(read), playing: !given.has("still") };
+  return { ...initialState(model), ...Object.fromEntries(parts), playing: !words.has("still") };
 }
 
-/** A number with as many decimals as anyone sets by hand. */
+/** A number with three decimals at most. */
 function short(value: number): string {
   return String(Math.round(value * 1000) / 1000 + 0);
 }
 
-/** The number in a text, in its range; nothing where there is none. */
-function numeric(text: string, range: Range): number[] {
+/** The number in a text, in its range; empty for an invalid text. */
+function numbersIn(text: string, range: Range): number[] {
   const value = text.trim() === "" ? NaN : Number(text);
-  return Number.isFinite(value) ? [within(range, value)] : [];
+  return Number.isFinite(value) ? [clamped(range, value)] : [];
 }
 
-const wholes = (text: string, below: number): number[] =>
+const indices = (text: string, below: number): number[] =>
   text.split(",").filter((word) => /^\d{1,6}$/.test(word)).map(Number).filter((value) => value < below);
 
-function amount<Name extends string>(name: Name, range: Range): Code<number> {
-  return { name, write: short, read: (text) => numeric(text, range)[0] };
+function number(name: string, range: Range): Code<number> {
+  return { name, write: short, read: (text) => numbersIn(text, range)[0] };
 }
 
-function truth(name: string): Code<boolean> {
+function flag(name: string): Code<boolean> {
   return {
     name,
     write: (value) => (value ? "1" : "0"),
@@ -140,7 +138,7 @@ function truth(name: string): Code<boolean> {
   };
 }
 
-function chosen<Choice extends string>(name: string, words: Readonly<Record<Choice, string>>): Code<Choice> {
+function choice<Choice extends string>(name: string, words: Readonly<Record<Choice, string>>): Code<Choice> {
   return {
     name,
     write: (value) => words[value],
@@ -148,14 +146,15 @@ function chosen<Choice extends string>(name: string, words: Readonly<Record<Choi
   };
 }
 
-/** Numbers in order, those at the end that are as usual left out. */
-function list(name: string, range: Range, size: (model: Model) => number, usual: number): Code<readonly number[]> {
+/** Numbers in order, without the initial values at the end. */
+function list(name: string, range: Range, size: (model: Model) => number, initial: number): Code<readonly number[]> {
+  const end = new RegExp(`(^|,)${initial}(,${initial})*$`);
   return {
     name,
-    write: (values) => values.map(short).join(",").replace(new RegExp(`(^|,)${usual}(,${usual})*$`), ""),
+    write: (values) => values.map(short).join(",").replace(end, ""),
     read: (text, model) => {
       const words = text.split(",");
-      return Array.from({ length: size(model) }, (_, i) => numeric(words[i] ?? "", range)[0] ?? usual);
+      return Array.from({ length: size(model) }, (_, i) => numbersIn(words[i] ?? "", range)[0] ?? initial);
     },
   };
 }
@@ -163,8 +162,8 @@ function list(name: string, range: Range, size: (model: Model) => number, usual:
 const pairs = (entries: readonly (readonly [string, number])[]): string =>
   entries.map(([name, value]) => `${encodeURIComponent(name)}:${short(value)}`).join(",");
 
-/** Names and what is said of them. */
-function split(text: string): [string, string][] {
+/** Names and values of a text like `a:1,b:2`. */
+function splitPairs(text: string): [string, string][] {
   return text.split(",").map((word) => {
     const [name = "", value = ""] = word.split(":");
     return [decoded(name), value];
@@ -175,42 +174,42 @@ function decoded(text: string): string {
   try {
     return decodeURIComponent(text);
   } catch {
-    return text; // a lone %, which nobody meant
+    return text; // a lone %
   }
 }
 
-function biasOf(text: string, model: Model): Bias | undefined {
-  const [[name, steps] = ["", ""]] = split(text);
-  const trait = model.traits.find((each) => each.name === name && each.means !== null);
-  const [value] = numeric(steps, RANGES.bias);
+function readBias(text: string, { traits }: Model): Bias | undefined {
+  const [[name, steps] = ["", ""]] = splitPairs(text);
+  const trait = traits.find((each) => each.name === name && each.means !== null);
+  const [value] = numbersIn(steps, RANGES.bias);
   return trait && value !== undefined ? { trait: trait.name, steps: value } : undefined;
 }
 
-/** `scramble;keep:structure`: a name, and the parameters that are not as usual. */
-function written(name: TransformName, transforms: Transforms): string {
-  const usual = usualSettings(name) as Record<string, unknown>;
-  const settings = Object.entries(transforms[name] as Record<string, number | string>);
-  const said = settings
-    .filter(([field, value]) => value !== usual[field])
+/** `scramble;keep:structure`: a name, and the parameters that differ from the initial ones. */
+function writeTransform(name: TransformName, transforms: Transforms): string[] {
+  if (!(name in transforms)) return [];
+  const initial = initialSettings(name) as Record<string, unknown>;
+  const changed = Object.entries(transforms[name] as Record<string, number | string>)
+    .filter(([field, value]) => value !== initial[field])
     .map(([field, value]) => `;${field}:${typeof value === "number" ? short(value) : value}`);
-  return [name, ...said].join("");
+  return [[name, ...changed].join("")];
 }
 
-function transformOf(text: string): [string, object][] {
-  const [word, ...said] = text.split(";");
+function readTransform(text: string): [string, object][] {
+  const [word, ...parts] = text.split(";");
   const name = TRANSFORM_NAMES.find((known) => known === word);
   if (!name) return [];
-  const fields = TRANSFORMS[name] as Readonly<Record<string, Field>>;
-  const settings = said.flatMap((part) => {
+  const fields = fieldsOf(name);
+  const settings = parts.flatMap((part) => {
     const [field = "", value = ""] = part.split(":");
     const known = Object.hasOwn(fields, field) ? fields[field] : undefined;
-    return known ? settingOf(known, value).map((setting) => [field, setting] as const) : [];
+    return known ? readSetting(known, value).map((setting) => [field, setting] as const) : [];
   });
-  return [[name, { ...usualSettings(name), ...Object.fromEntries(settings) }]];
+  return [[name, { ...initialSettings(name), ...Object.fromEntries(settings) }]];
 }
 
-function settingOf(field: Field, text: string): (number | string)[] {
+function readSetting(field: Field, text: string): (number | string)[] {
   if ("choices" in field) return field.choices.filter((choice) => choice === text);
-  const values = numeric(text, [field.low, field.high]);
+  const values = numbersIn(text, [field.low, field.high]);
   return Number.isInteger(field.step) && Number.isInteger(field.low) ? values.map(Math.round) : values;
 }

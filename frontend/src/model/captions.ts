@@ -1,13 +1,13 @@
-/** What is seen, in one sentence: for who does not see it, and for the names of files. */
+/** The present picture in one sentence, for screen readers. */
 
-import { AVERAGE, comparedIn, nameOf } from "./figures";
+import { endLabels } from "./axisLabels";
+import { AVERAGE, comparedTrait, nameOf } from "./figures";
 import { traitOf } from "./mixing";
-import type { Model, Own } from "./model";
-import { ends } from "./axisLabels";
-import { MOST_IN_CROWD, MOST_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
+import type { Model, OwnWalker } from "./model";
+import { MAX_IN_CROWD, MAX_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
 
-/** Moler's names of the components (M4). */
-export const COMPONENTS = ["stride", "sway", "hop", "bounce"] as const;
+/** Moler's names of the components. */
+const COMPONENTS = ["stride", "sway", "hop", "bounce"];
 
 export const componentName = (number: number): string => COMPONENTS[number] ?? `component ${number + 1}`;
 
@@ -27,47 +27,43 @@ const TRANSFORMED: Readonly<Record<TransformName, string>> = {
   mask: "among noise",
 };
 
-export function captionOf(model: Model, state: State, own: Own | null = null): string {
-  const said = [whoIsSeen(model, state, own), ...changes(model, state), viewed(state)];
+export function captionOf(model: Model, state: State, own: OwnWalker | null = null): string {
   const transformed = TRANSFORM_NAMES.filter((name) => name in state.transforms).map((name) => TRANSFORMED[name]);
-  return `${[...said, ...transformed].join(", ")}.`;
+  const parts = [figuresCaption(model, state, own), ...changes(model, state), viewpoint(state), ...transformed];
+  return `${parts.join(", ")}.`;
 }
 
-function whoIsSeen(model: Model, state: State, own: Own | null): string {
-  const [side, crowd] = [Math.min(state.walkers.length, MOST_SIDE_BY_SIDE), Math.min(model.walkers.length, MOST_IN_CROWD)];
-  const trait = comparedIn(model, state);
+function figuresCaption(model: Model, state: State, own: OwnWalker | null): string {
+  const trait = comparedTrait(model, state);
   if (state.scene === "four" && trait) {
-    return `The mean ${ends(trait).join(" and the mean ")}, and both with their difference tripled`;
+    return `The mean ${endLabels(trait).join(" and the mean ")}, and both with their difference tripled`;
   }
-  if (state.scene === "side") return `${side} walkers at one tempo`;
-  if (state.scene === "crowd") return `${crowd} walkers`;
+  if (state.scene === "side") return `${Math.min(state.walkers.length, MAX_SIDE_BY_SIDE)} walkers at one tempo`;
+  if (state.scene === "crowd") return `${Math.min(model.walkers.length, MAX_IN_CROWD)} walkers`;
   const name = nameOf(model, state, own);
   return name === AVERAGE ? `The ${name}` : name;
 }
 
-function changes(model: Model, state: State): string[] {
-  const traits = Object.entries(state.traits).flatMap(([name, steps]) => {
+function changes(model: Model, { scene, traits, bias, strengths }: State): string[] {
+  const towards = (name: string, steps: number, unit: string): string[] => {
     const trait = traitOf(model, name);
-    if (!trait || steps === 0) return [];
-    return [`${plain(Math.abs(steps))} SD towards ${ends(trait)[Number(steps > 0)]}`];
-  });
-  const strengths = state.strengths.flatMap((strength, i) =>
-    strength === 1 ? [] : [`${componentName(i)} times ${plain(strength)}`],
+    return trait && steps !== 0 ? [`${unit} towards ${endLabels(trait)[Number(steps > 0)]}`] : [];
+  };
+  const moved = [
+    ...Object.entries(traits).flatMap(([name, steps]) => towards(name, steps, `${short(Math.abs(steps))} SD`)),
+    ...(bias ? towards(bias.trait, bias.steps, `bias ${short(Math.abs(bias.steps))}`) : []),
+  ];
+  const components = strengths.flatMap((strength, i) =>
+    strength === 1 ? [] : [`${componentName(i)} times ${short(strength)}`],
   );
-  return [...(state.scene === "four" ? [] : [...traits, ...biased(model, state)]), ...strengths];
+  return [...(scene === "four" ? [] : moved), ...components];
 }
 
-function biased(model: Model, { bias }: State): string[] {
-  const trait = bias ? traitOf(model, bias.trait) : undefined;
-  if (!bias || !trait || bias.steps === 0) return [];
-  return [`bias ${plain(Math.abs(bias.steps))} towards ${ends(trait)[Number(bias.steps > 0)]}`];
-}
-
-function viewed({ azimuth_deg, elevation_deg }: State): string {
+function viewpoint({ azimuth_deg, elevation_deg }: State): string {
   const around = Math.round(azimuth_deg);
   const from = around === 0 ? "the front" : Math.abs(around) === 90 ? "the side" : `${around} degrees`;
   const above = Math.round(elevation_deg);
   return above === 0 ? `from ${from}` : `from ${from}, ${Math.abs(above)} degrees ${above > 0 ? "above" : "below"}`;
 }
 
-const plain = (value: number): string => String(Math.round(value * 100) / 100);
+const short = (value: number): string => String(Math.round(value * 100) / 100);

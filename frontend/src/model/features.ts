@@ -1,13 +1,47 @@
-/** A feature vector as a walker, as `FeatureLayout.walker` of Python makes it (J29). */
+/** Feature vectors: which number is what, and the walker they make, as in Python's `FeatureLayout`. */
 
 import type { Walker } from "../core/stimulus";
 import type { Vector } from "../core/vector";
-import { blockOf } from "./layout";
-import type { Model } from "./model";
+import type { Model, Span } from "./model";
 
-/** Nobody walks backwards in time: a caricature whose frequency would be less has this one. */
-export const SLOWEST_HZ = 0.05;
+/** The lowest frequency of a walker: a caricature whose frequency would be lower gets this one. */
+export const MIN_FREQUENCY_HZ = 0.05;
 
+type HasLayout = Pick<Model, "layout">;
+
+export const blockOf = ({ layout }: HasLayout, block: string): Span | undefined =>
+  Object.hasOwn(layout, block) ? layout[block] : undefined;
+
+const cache = new WeakMap<Model["layout"], Map<string, readonly number[]>>();
+
+/** Columns of a part of the features, in increasing order: a block, or several joined by "+". */
+export function columnsOf({ layout }: HasLayout, part: string): readonly number[] {
+  const known = cache.get(layout) ?? new Map<string, readonly number[]>();
+  cache.set(layout, known);
+  const columns = known.get(part) ?? findColumns({ layout }, part);
+  known.set(part, columns);
+  return columns;
+}
+
+function findColumns(model: HasLayout, part: string): number[] {
+  const blocks = Object.keys(model.layout);
+  const groups: Readonly<Record<string, readonly string[]>> = {
+    all: blocks,
+    structure: ["p0"],
+    dynamics: blocks.filter((block) => block !== "p0"),
+    postures: blocks.filter((block) => /^p\d+$/.test(block)),
+    timing: blocks.filter((block) => !/^p\d+$/.test(block)),
+  };
+  const members = part.split("+").flatMap((name) => (Object.hasOwn(groups, name) ? groups[name]! : [name]));
+  const columns = members.flatMap((block) => {
+    const span = blockOf(model, block);
+    if (!span) throw new Error(`There is no part "${block}"; there are ${blocks.join(", ")}.`);
+    return Array.from({ length: span[1] - span[0] }, (_, i) => span[0] + i);
+  });
+  return [...new Set(columns)].sort((a, b) => a - b);
+}
+
+/** The walker that a feature vector describes. */
 export function walkerOf(model: Model, vector: ArrayLike<number>): Walker {
   const { markers, harmonics } = model;
   const block = (name: string): number[] => {
@@ -25,6 +59,6 @@ export function walkerOf(model: Model, vector: ArrayLike<number>): Walker {
     p: harmonics.map((_, i) => posture(`p${i + 1}`)),
     harmonics,
     phases: harmonics.map((_, i) => model.fixed_phases[i] ?? free[i]!),
-    frequency_hz: Math.max(block("frequency")[0]!, SLOWEST_HZ),
+    frequency_hz: Math.max(block("frequency")[0]!, MIN_FREQUENCY_HZ),
   };
 }

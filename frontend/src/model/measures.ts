@@ -1,11 +1,15 @@
-/** What the eye takes in of a walk, in numbers, as `eigenwalker.gait.appearance` has them (J32, W11). */
+/** Visible measures of a walk, as in Python's `eigenwalker.gait.appearance`. */
 
+import { coefficientsOf, posture } from "../core/posture";
 import type { Walker } from "../core/stimulus";
-import { stanceSpeed, type Path } from "./stanceSpeed";
 
 const N_SAMPLES = 200;
+/** Share of the stride in which an ankle is in its stance phase: when it is lowest. */
+const STANCE_SHARE = 0.35;
+/** A low ankle stands if it moves with the ground at least at this share of the median speed. */
+const MIN_STANDING_SPEED = 0.7;
 
-/** What each is called, its unit, and the decimals worth showing. */
+/** Name, label, unit, and the number of decimals to show. */
 export const MEASURES = [
   { name: "shoulder_width_mm", label: "shoulder width", unit: "mm", digits: 0 },
   { name: "hip_width_mm", label: "hip width", unit: "mm", digits: 0 },
@@ -17,58 +21,94 @@ export const MEASURES = [
 ] as const;
 
 export type MeasureName = (typeof MEASURES)[number]["name"];
+export type Measures = Readonly<Record<MeasureName, number>>;
 
-/** The measures of a walker; NaN where it lacks the markers. */
-export function measuresOf(walker: Walker): Record<MeasureName, number> {
-  const stride = sinesOf(walker, Array.from({ length: N_SAMPLES }, (_, i) => i / N_SAMPLES));
-  const strides = sinesOf(walker, Array.from({ length: N_SAMPLES }, (_, i) => (2 * i) / (N_SAMPLES - 1)));
-  const rateHz = ((N_SAMPLES - 1) * walker.frequency_hz) / 2;
-  const trunk = walker.markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
-  const ankles = ["left_ankle", "right_ankle"].map((name): Path => {
-    const [x, y, z] = [0, 1, 2].map((axis) => along(walker, name, axis, strides));
-    return { x: x!, y: y!, z: z! };
-  });
+/** The measures of a walker; NaN if it lacks the markers. */
+export function measuresOf(walker: Walker): Measures {
+  const { markers, frequency_hz } = walker;
+  const one = sampled(walker, (i) => i / N_SAMPLES);
+  const two = sampled(walker, (i) => (2 * i) / (N_SAMPLES - 1));
+  const rateHz = ((N_SAMPLES - 1) * frequency_hz) / 2;
+  const trunk = markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
+  const ankles = ["left_ankle", "right_ankle"].map((name) =>
+    [0, 1, 2].map((axis) => pathOf(markers, two, name, axis)),
+  );
   const range = (names: readonly string[], axis: number): number =>
-    rangeOf(names.map((name) => along(walker, name, axis, stride)));
+    rangeOf(names.map((name) => pathOf(markers, one, name, axis)));
   return {
-    shoulder_width_mm: Math.hypot(...apart(walker, "shoulder")),
-    hip_width_mm: Math.hypot(...apart(walker, "hip")),
-    elbow_distance_mm: apart(walker, "elbow")[1]!,
+    shoulder_width_mm: Math.hypot(...sideDistance(walker, "shoulder")),
+    hip_width_mm: Math.hypot(...sideDistance(walker, "hip")),
+    elbow_distance_mm: sideDistance(walker, "elbow")[1]!,
     lateral_sway_mm: range(["left_shoulder", "right_shoulder"], 1),
     vertical_movement_mm: range(trunk, 2),
-    frequency_hz: walker.frequency_hz,
-    stride_length_mm: stanceSpeed(ankles, rateHz) / walker.frequency_hz,
+    frequency_hz,
+    stride_length_mm: stanceSpeed(ankles, rateHz) / frequency_hz,
   };
 }
 
 /** From the right joint to the left one in the mean posture. */
-function apart({ markers, p0 }: Walker, part: string): number[] {
+function sideDistance({ markers, p0 }: Walker, part: string): number[] {
   const [left, right] = ["left", "right"].map((side) => p0[markers.indexOf(`${side}_${part}`)]);
   return [0, 1, 2].map((axis) => (left?.[axis] ?? NaN) - (right?.[axis] ?? NaN));
 }
 
-/** The sine that each posture rides on, at some times in cycles. */
-function sinesOf({ harmonics, phases }: Walker, times: readonly number[]): Float64Array[] {
-  return harmonics.map((harmonic, i) =>
-    Float64Array.from(times, (time) => Math.sin(harmonic * 2 * Math.PI * time + phases[i]!)),
-  );
+/** Postures at moments of the walk, in strides. */
+function sampled(walker: Walker, strides: (sample: number) => number): Float64Array[] {
+  const coefficients = coefficientsOf(walker);
+  return Array.from({ length: N_SAMPLES }, (_, i) => posture(coefficients, 2 * Math.PI * strides(i)));
 }
 
-/** Where one marker is on one axis, moment by moment. */
-function along({ markers, p0, p }: Walker, name: string, axis: number, sines: readonly Float64Array[]): Float64Array {
+type Path = Float64Array;
+
+/** One coordinate of one marker, moment by moment. */
+function pathOf(markers: readonly string[], postures: readonly Float64Array[], name: string, axis: number): Path {
   const marker = markers.indexOf(name);
-  const path = new Float64Array(N_SAMPLES).fill(p0[marker]?.[axis] ?? NaN);
-  sines.forEach((sine, i) => {
-    const far = p[i]![marker]?.[axis] ?? NaN;
-    for (let moment = 0; moment < N_SAMPLES; moment++) path[moment]! += sine[moment]! * far;
-  });
-  return path;
+  return Float64Array.from(postures, (positions) => positions[3 * marker + axis] ?? NaN);
 }
 
-/** How far the middle of some paths moves. */
-function rangeOf(paths: readonly Float64Array[]): number {
-  const middles = paths[0]!.map(
-    (_, moment) => paths.reduce((sum, path) => sum + path[moment]!, 0) / paths.length,
-  );
+/** The range of the mean of some paths. */
+function rangeOf(paths: readonly Path[]): number {
+  const middles = paths[0]!.map((_, moment) => mean(paths.map((path) => path[moment]!)));
   return Math.max(...middles) - Math.min(...middles);
 }
+
+/**
+ * The forward speed of a walk in place, in mm/s, from the feet that stand: the ground moves backwards
+ * with them. As Python's `stance_speed`; each ankle has paths of x, y and z.
+ */
+function stanceSpeed(ankles: readonly Path[][], rateHz: number): number {
+  return -mean(ankles.map(([x, y, z]) => standingVelocity(x!, y!, z!, rateHz)));
+}
+
+/** The velocity of an ankle along x while it stands. */
+function standingVelocity(x: Path, y: Path, z: Path, rateHz: number): number {
+  const velocity = { x: gradient(x, rateHz), y: gradient(y, rateHz) };
+  const limit = quantile([...z], STANCE_SHARE);
+  const low = [...z.keys()].filter((moment) => z[moment]! <= limit);
+  const usual = [mean(low.map((m) => velocity.x[m]!)), mean(low.map((m) => velocity.y[m]!))] as const;
+  const length = Math.max(Math.hypot(...usual), 1e-9);
+  const along = low.map((m) => (velocity.x[m]! * usual[0] + velocity.y[m]! * usual[1]) / length);
+  const least = MIN_STANDING_SPEED * quantile(along, 0.5);
+  return mean(low.filter((_, i) => along[i]! >= least).map((m) => velocity.x[m]!));
+}
+
+/** Change per second: over two samples, over one at the ends. */
+function gradient(path: Path, rateHz: number): Path {
+  const last = path.length - 1;
+  return path.map((_, i) => {
+    const [before, after] = [Math.max(i - 1, 0), Math.min(i + 1, last)];
+    return ((path[after]! - path[before]!) * rateHz) / (after - before);
+  });
+}
+
+/** A quantile, by linear interpolation between neighbours. */
+function quantile(values: readonly number[], share: number): number {
+  const sorted = values.toSorted((a, b) => a - b);
+  const place = share * (sorted.length - 1);
+  const below = Math.floor(place);
+  const [low, high] = [sorted[below]!, sorted[Math.min(below + 1, sorted.length - 1)]!];
+  return low + (place - below) * (high - low);
+}
+
+const mean = (values: readonly number[]): number =>
+  values.reduce((sum, value) => sum + value, 0) / values.length;

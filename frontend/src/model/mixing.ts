@@ -1,39 +1,41 @@
-/** From what a visitor has chosen to the feature vector of the walker that is made of it. */
+/** From the state of a page to the feature vector of its walker, as in Python's `explorer/mixing.py`. */
 
-import { blockOf, columnsOf } from "./layout";
-import type { Model, Numbers, Own, Trait } from "./model";
+import { blockOf, columnsOf } from "./features";
+import type { Model, Numbers, OwnWalker, Trait } from "./model";
 import type { State } from "./state";
 
 /**
- * The walker now made, as features: eq. 13 of Troje (2002) from any walker (W7), with Moler's bias,
- * eigenwalkers added, and each component as strong as wished.
+ * The feature vector of the present walker: eq. 13 of Troje (2002) from any walker, with Moler's bias,
+ * eigenwalkers added, and each component at its strength.
  */
-export function vectorOf(model: Model, state: State, own: Own | null = null): Float64Array {
-  const vector = Float64Array.from(startOf(model, state, own));
-  for (const [name, steps] of Object.entries(state.traits)) {
-    addTrait(vector, model, state, traitOf(model, name), steps);
-  }
+export function mixedVector(model: Model, state: State, own: OwnWalker | null = null): Float64Array {
+  const vector = Float64Array.from(startVector(model, state, own));
+  for (const [name, steps] of Object.entries(state.traits)) addTrait(vector, model, state, traitOf(model, name), steps);
   if (state.bias) addBias(vector, traitOf(model, state.bias.trait), state.bias.steps);
-  state.eigenwalkers.forEach((steps, i) => add(vector, model.eigenwalkers[i]?.vector, steps));
-  state.strengths.forEach((strength, i) => strengthen(vector, model, i + 1, strength));
+  state.eigenwalkers.forEach((steps, i) => {
+    if (steps !== 0) model.eigenwalkers[i]?.vector.forEach((by, column) => (vector[column]! += steps * by));
+  });
+  state.strengths.forEach((strength, i) => {
+    const [start, end] = (strength !== 1 && blockOf(model, `p${i + 1}`)) || [0, 0];
+    for (let column = start; column < end; column++) vector[column]! *= strength;
+  });
   return vector;
 }
 
 export const traitOf = (model: Model, name: string): Trait | undefined =>
   model.traits.find((trait) => trait.name === name);
 
-/** Parts of the features that the classifiers of all traits are there for. */
+/** Parts of the features for which all traits have a direction. */
 export function partsOf(model: Model): string[] {
   const [first, ...others] = model.traits;
   const parts = Object.keys(first?.steps.discriminant ?? {});
   return parts.filter((part) => others.every(({ steps }) => Object.hasOwn(steps.discriminant, part)));
 }
 
-/** Who is changed. */
-export function startOf(model: Model, state: State, own: Own | null): Numbers {
-  if (state.from === "own" && own) return own.vector;
-  if (typeof state.from === "number") return model.walkers[state.from]?.vector ?? model.average;
-  return model.average;
+/** The walker that the changes start from. */
+export function startVector(model: Model, { from }: State, own: OwnWalker | null): Numbers {
+  if (from === "own" && own) return own.vector;
+  return (typeof from === "number" ? model.walkers[from]?.vector : undefined) ?? model.average;
 }
 
 function addTrait(
@@ -45,23 +47,11 @@ function addTrait(
 ): void {
   const parts = trait?.steps[kind];
   if (!parts || !Object.hasOwn(parts, part) || steps === 0) return;
-  const step = parts[part]!;
-  columnsOf(model, part).forEach((column, i) => (vector[column]! += steps * step[i]!));
+  columnsOf(model, part).forEach((column, i) => (vector[column]! += steps * parts[part]![i]!));
 }
 
 function addBias(vector: Float64Array, trait: Trait | undefined, steps: number): void {
   if (!trait?.means) return;
   const { negative, positive } = trait.means;
   vector.forEach((_, i) => (vector[i]! += (steps * (positive[i]! - negative[i]!)) / 2));
-}
-
-function add(vector: Float64Array, step: Numbers | undefined, steps: number): void {
-  if (!step || steps === 0) return;
-  step.forEach((by, i) => (vector[i]! += steps * by));
-}
-
-function strengthen(vector: Float64Array, model: Model, component: number, strength: number): void {
-  const block = blockOf(model, `p${component}`);
-  if (!block || strength === 1) return;
-  for (let i = block[0]; i < block[1]; i++) vector[i]! *= strength;
 }

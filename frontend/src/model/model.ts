@@ -1,11 +1,13 @@
-/** The model that a page holds: a population, what varies in it, and what tells its traits. */
+/** The model of a page: a population, the variation in it, and the directions of its traits. */
 
 import type { Link } from "../core/stimulus";
-import type { Kind } from "./state";
+
+/** The direction that tells a trait best, or the difference between the means of its two ends. */
+export type Kind = "discriminant" | "mean_difference";
 
 export type Numbers = readonly number[];
 
-/** Columns of the features: from one to before the other. */
+/** Columns of the features: from the first to before the second. */
 export type Span = readonly [number, number];
 
 export interface Eigenwalker {
@@ -25,30 +27,29 @@ export interface KnownWalker {
 }
 
 export interface Trait {
-  /** As Python's `trait_axis` takes it. */
+  /** As an argument of Python's `trait_axis`. */
   readonly name: string;
   /** Its column in the traits of the walkers. */
   readonly column: string;
-  /** What to call it. */
   readonly label: string;
   readonly unit: string;
   readonly negative: string;
   readonly positive: string;
   readonly two_classes: boolean;
-  /** One standard deviation of the walkers along the trait, of the columns of each part (A12). */
+  /** One standard deviation of the walkers along the trait, for the columns of each part. */
   readonly steps: Readonly<Record<Kind, Readonly<Record<string, Numbers>>>>;
-  /** Where a walker lies along it: offset + gradient . vector. */
+  /** The position of a walker along the trait: offset + gradient . vector. */
   readonly projection: { readonly gradient: Numbers; readonly offset: number };
-  /** Mean walkers of two classes (M5). */
+  /** Mean walkers of two classes. */
   readonly means: { readonly negative: Numbers; readonly positive: Numbers } | null;
 }
 
-/** Every walker of the population as a point, of those the page has room for. */
+/** The walkers of the population as points; at most as many as the page has room for. */
 export interface Cloud {
   readonly n: number;
-  /** Of each, its scores on the eigenwalkers in standard deviations. */
+  /** For each point, its scores on the eigenwalkers in standard deviations. */
   readonly scores: readonly Numbers[];
-  /** Its number among the model's walkers, -1 where it is not among them. */
+  /** For each point, its number among the model's walkers; -1 if it is not one of them. */
   readonly walker: Numbers;
 }
 
@@ -57,9 +58,9 @@ export interface Model {
   readonly version: 1;
   readonly program: string;
   readonly title: string;
-  /** File of the population; empty for the one that comes with the program. */
+  /** File of the population; empty for the built-in population. */
   readonly source: string;
-  /** Captures that it was made of just now, of which there is no file of a population. */
+  /** Name of the captures that the server has just made into this population. */
   readonly captures?: string;
   readonly simulated: boolean;
   readonly provenance: Readonly<Record<string, string>>;
@@ -72,21 +73,21 @@ export interface Model {
   readonly groups: Readonly<Record<string, readonly string[]>>;
   readonly form: "eigenposture" | "fourier";
   readonly harmonics: Numbers;
-  /** Of each posture; null for a phase that is a feature. */
+  /** For each posture its phase; null if the phase is a feature. */
   readonly fixed_phases: readonly (number | null)[];
   readonly layout: Readonly<Record<string, Span>>;
   readonly average: Numbers;
   readonly scale: Numbers;
   readonly eigenwalkers: readonly Eigenwalker[];
-  /** Root mean square distance from the average; the distance of each walker in units of it. */
+  /** Root mean square distance from the average; the distances of the walkers in units of it. */
   readonly spread: { readonly rms: number; readonly distances: Numbers };
   readonly walkers: readonly KnownWalker[];
   readonly cloud: Cloud;
   readonly traits: readonly Trait[];
 }
 
-/** A walker that is not the population's: someone's own capture, fitted. */
-export interface Own {
+/** A walker that is not in the population: a visitor's own capture or stimulus. */
+export interface OwnWalker {
   readonly name: string;
   readonly vector: Numbers;
 }

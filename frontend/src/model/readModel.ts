@@ -1,141 +1,138 @@
-/** A model from parsed JSON, checked: its shapes fit each other and every number is one. */
+/** A model from parsed JSON, checked: its shapes fit each other, and all numbers are finite. */
 
-import { columnsOf } from "./layout";
-import type { Cloud, Eigenwalker, KnownWalker, Model, Span, Trait } from "./model";
-import * as is from "./reading";
-import { MOST_IN_CROWD } from "./state";
+import { checked, explained, refuse, type Schema } from "../core/schema";
+import { columnsOf } from "./features";
+import type { Model } from "./model";
+import { MAX_IN_CROWD } from "./state";
 
-export { NoModel } from "./reading";
+const MAX_MARKERS = 200;
+const MAX_POSTURES = 32;
+const MAX_POINTS = 5000;
+const MAX_WALKERS = 10_000_000;
 
-const MOST_MARKERS = 200;
-const MOST_POSTURES = 32;
-const MOST_POINTS = 5000;
+const number = (minimum = -1e9, maximum = 1e9): Schema => ({ type: "number", minimum, maximum });
+const integer = (minimum: number, maximum: number): Schema => ({ type: "integer", minimum, maximum });
+const list = (items: Schema, minItems: number, maxItems = minItems): Schema => ({ type: "array", items, minItems, maxItems });
+const map = (additionalProperties: Schema): Schema => ({ type: "object", additionalProperties, maxProperties: 1000 });
+/** An object with at least these names. */
+const record = (properties: Record<string, Schema>): Schema => ({
+  type: "object",
+  properties,
+  required: Object.entries(properties).flatMap(([name, schema]) => ("default" in schema ? [] : [name])),
+});
+const orNull = (schema: Schema): Schema => ({ anyOf: [schema, { type: "null" }], default: null });
+const numbers = (length: number): Schema => list(number(), length);
+const positive = number(Number.MIN_VALUE);
+/** Text to show, never HTML. */
+const text: Schema = { type: "string", maxLength: 2000 };
+const flag: Schema = { type: "boolean" };
 
 /**
- * The model that the parsed content of a file describes.
+ * The model in the parsed content of a file.
  *
- * Throws `NoModel` with the first thing amiss.
+ * Throws `InvalidFile` with the first problem.
  */
-export function readModel(content: unknown): Model {
-  const head = is.record({
-    format: is.oneOf("eigenwalker model"),
-    version: is.oneOf(1),
-    program: is.text,
-    title: is.text,
-    source: is.text,
-    simulated: is.truth,
-    provenance: is.named(is.text),
-    n_walkers: is.whole(1, 10_000_000),
-    n_flagged: is.whole(0, 10_000_000),
-    markers: is.list(is.text, 1, MOST_MARKERS),
-    form: is.oneOf("eigenposture", "fourier"),
-    harmonics: is.list(is.whole(1, 64), 1, MOST_POSTURES),
-  })(content, "model");
-  const marker = is.oneOf(...head.markers);
-  const link: is.Reader<readonly [string, string]> = (value, where) =>
-    is.list(marker, 2, 2)(value, where) as unknown as readonly [string, string];
-  const body = is.record({
-    segments: is.list(link, 0, 1000),
-    pairs: is.list(link, 0, 1000),
-    groups: is.named(is.list(marker)),
-    fixed_phases: is.list(is.orNull(is.number(-1000, 1000)), head.harmonics.length, head.harmonics.length),
-    layout: readLayout(head.markers.length, head.harmonics.length, head.form),
-  })(content, "model");
-  const size = Math.max(...Object.values(body.layout).map(([, end]) => end));
-  const content_ = is.record({
-    average: is.numbers(size),
-    scale: is.list(is.number(Number.MIN_VALUE), size, size),
-    eigenwalkers: is.list(eigenwalker(size), 0, 100),
-    spread: is.record({
-      rms: is.number(0),
-      distances: is.list(is.number(0), 1, MOST_POINTS),
+export const readModel = (content: unknown): Model =>
+  explained("This is no model of walkers", () => {
+    const head = checked<Model>(content, HEAD, "model");
+    const body = checked<Model>(content, bodySchema(head), "model");
+    checkLayout(head, body.layout);
+    const size = Math.max(...Object.values(body.layout).map(([, end]) => end));
+    const walkers = checked<Model>(content, walkersSchema(size), "model");
+    const { n } = checked<Model>(content, record({ cloud: record({ n: integer(0, MAX_POINTS) }) }), "model").cloud;
+    const cloud = checked<Model>(content, cloudSchema(n, walkers), "model");
+    const model = { ...head, ...body, ...walkers, ...cloud };
+    model.traits.forEach((trait, i) => checkSteps(model, trait, `model.traits[${i}].steps`));
+    return model;
+  });
+
+const HEAD = record({
+  format: { const: "eigenwalker model" },
+  version: { const: 1 },
+  program: text,
+  title: text,
+  source: text,
+  simulated: flag,
+  provenance: map(text),
+  n_walkers: integer(1, MAX_WALKERS),
+  n_flagged: integer(0, MAX_WALKERS),
+  markers: list(text, 1, MAX_MARKERS),
+  form: { enum: ["eigenposture", "fourier"] },
+  harmonics: list(integer(1, 64), 1, MAX_POSTURES),
+});
+
+function bodySchema({ markers, harmonics }: Model): Schema {
+  const marker: Schema = { enum: markers };
+  const links = list(list(marker, 2), 0, 1000);
+  return record({
+    segments: links,
+    pairs: links,
+    groups: map(list(marker, 0, 100_000)),
+    fixed_phases: list(orNull(number(-1000, 1000)), harmonics.length),
+    layout: map(list(integer(0, 100_000), 2)),
+  });
+}
+
+/** Blocks p0, p1 ... of all coordinates, the frequency, and free phases, without gaps. */
+function checkLayout({ markers, harmonics, form }: Model, layout: Model["layout"]): void {
+  const where = "model.layout";
+  const sizes = new Map([["frequency", 1], ...(form === "eigenposture" ? [["phases", harmonics.length - 1] as const] : [])]);
+  for (let i = 0; i <= harmonics.length; i++) sizes.set(`p${i}`, 3 * markers.length);
+  for (const [block, size] of sizes) {
+    const [start, end] = layout[block] ?? refuse(where, `the block "${block}"`, Object.keys(layout));
+    if (end - start !== size) refuse(`${where}.${block}`, `${size} columns`, [start, end]);
+  }
+  const spans = Object.values(layout).sort((a, b) => a[0] - b[0]);
+  const total = spans.reduce((at, [start, end]) => (start === at ? end : NaN), 0);
+  if (Number.isNaN(total)) refuse(where, "blocks without gaps", layout);
+}
+
+function walkersSchema(size: number): Schema {
+  const vector = numbers(size);
+  const traitValue: Schema = { anyOf: [flag, { type: "null" }, number(), text] };
+  const steps = map({});
+  return record({
+    average: vector,
+    scale: list(positive, size),
+    eigenwalkers: list(record({ vector, sd: positive, share: number(0, 1) }), 0, 100),
+    spread: record({ rms: number(0), distances: list(number(0), 1, MAX_POINTS) }),
+    walkers: list(record({ name: text, row: integer(0, MAX_WALKERS), vector, traits: map(traitValue) }), 0, MAX_IN_CROWD),
+    traits: list(
+      record({
+        ...{ name: text, column: text, label: text, unit: text, negative: text, positive: text, two_classes: flag },
+        steps: record({ discriminant: steps, mean_difference: steps }),
+        projection: record({ gradient: vector, offset: number() }),
+        means: orNull(record({ negative: vector, positive: vector })),
+      }),
+      0,
+      100,
+    ),
+  });
+}
+
+const cloudSchema = (n: number, { eigenwalkers, walkers }: Model): Schema =>
+  record({
+    cloud: record({
+      n: integer(n, n),
+      scores: list(numbers(eigenwalkers.length), n),
+      walker: list(integer(-1, walkers.length - 1), n),
     }),
-    walkers: is.list(knownWalker(size), 0, MOST_IN_CROWD),
-    traits: is.list(trait(size, body), 0, 100),
-  })(content, "model");
-  const cloud = is.record({ cloud: readCloud(content_) })(content, "model");
-  return { ...head, ...body, ...content_, ...cloud };
-}
+  });
 
-/** Blocks p0, p1 ... of all coordinates, the frequency, and free phases, one after the other. */
-function readLayout(nMarkers: number, nPostures: number, form: Model["form"]): is.Reader<Model["layout"]> {
-  const postures = Array.from({ length: nPostures + 1 }, (_, i) => [`p${i}`, 3 * nMarkers] as const);
-  const free = form === "eigenposture" ? ([["phases", nPostures - 1]] as const) : [];
-  const wanted = new Map<string, number>([...postures, ["frequency", 1], ...free]);
-  const span = is.list(is.whole(0, 100_000), 2, 2);
-  return (value, where) => {
-    const spans = is.named(span)(value, where) as unknown as Record<string, Span>;
-    for (const [block, size] of wanted) {
-      const [start, end] = spans[block] ?? is.refuse(where, `the block "${block}"`, Object.keys(spans));
-      if (end - start !== size) is.refuse(`${where}.${block}`, `${size} columns`, [start, end]);
+/** Each step has as many numbers as its part has columns. */
+function checkSteps(model: Model, { steps }: Model["traits"][number], where: string): void {
+  for (const [kind, parts] of Object.entries(steps)) {
+    for (const [part, step] of Object.entries(parts)) {
+      const place = `${where}.${kind}.${part}`;
+      checked(step, numbers(partSize(model, part, place)), place);
     }
-    const inOrder = Object.values(spans).sort((a, b) => a[0] - b[0]);
-    const total = inOrder.reduce((at, [start, end]) => (start === at ? end : NaN), 0);
-    if (Number.isNaN(total)) is.refuse(where, "blocks that lie side by side", spans);
-    return spans;
-  };
-}
-
-const eigenwalker = (size: number): is.Reader<Eigenwalker> =>
-  is.record({
-    vector: is.numbers(size),
-    sd: is.number(Number.MIN_VALUE),
-    share: is.number(0, 1),
-  });
-
-const knownWalker = (size: number): is.Reader<KnownWalker> =>
-  is.record({
-    name: is.text,
-    row: is.whole(0, 10_000_000),
-    vector: is.numbers(size),
-    traits: is.named(traitValue),
-  });
-
-const traitValue: is.Reader<string | number | boolean | null> = (value, where) => {
-  if (value === null || typeof value === "boolean") return value;
-  return typeof value === "number" ? is.number()(value, where) : is.text(value, where);
-};
-
-function trait(size: number, model: Pick<Model, "layout">): is.Reader<Trait> {
-  const steps: is.Reader<Record<string, readonly number[]>> = (value, where) => {
-    const given = is.named((part) => part)(value, where);
-    const read = Object.entries(given).map(([part, step]) => {
-      const place = `${where}.${part}`;
-      return [part, is.numbers(partSize(model, part, place))(step, place)] as const;
-    });
-    return Object.fromEntries(read);
-  };
-  return is.record({
-    name: is.text,
-    column: is.text,
-    label: is.text,
-    unit: is.text,
-    negative: is.text,
-    positive: is.text,
-    two_classes: is.truth,
-    steps: is.record({ discriminant: steps, mean_difference: steps }),
-    projection: is.record({ gradient: is.numbers(size), offset: is.number() }),
-    means: is.orNull(is.record({ negative: is.numbers(size), positive: is.numbers(size) })),
-  });
-}
-
-function partSize(model: Pick<Model, "layout">, part: string, where: string): number {
-  try {
-    return columnsOf(model, part).length;
-  } catch (error) {
-    if (!(error instanceof Error)) throw error;
-    return is.refuse(where, "a part of the features", part);
   }
 }
 
-/** Scores and numbers, as many as there are points. */
-function readCloud(model: Pick<Model, "eigenwalkers" | "walkers">): is.Reader<Cloud> {
-  return (value, where) => {
-    const { n } = is.record({ n: is.whole(0, MOST_POINTS) })(value, where);
-    return is.record({
-      n: is.whole(n, n),
-      scores: is.list(is.numbers(model.eigenwalkers.length), n, n),
-      walker: is.list(is.whole(-1, model.walkers.length - 1), n, n),
-    })(value, where);
-  };
+function partSize(model: Model, part: string, where: string): number {
+  try {
+    return columnsOf(model, part).length;
+  } catch {
+    return refuse(where, "a part of the features", part);
+  }
 }

@@ -1,17 +1,12 @@
 /** The stand-alone page: plays the stimulus that it holds, again and again. */
 
 import { everyFrame } from "../canvas/frameClock";
-import { heldMannequin, type MannequinPainter } from "../canvas/mannequinLoader";
+import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
 import { painterOn, type Painter } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
 import type { Stimulus } from "../core/stimulus";
-import { aboutStimulus } from "./stimulusFacts";
-
-function find<Kind extends Element>(selector: string, kind: new () => Kind): Kind {
-  const found = document.querySelector(selector);
-  if (!(found instanceof kind)) throw new Error(`The page lacks ${selector}.`);
-  return found;
-}
+import { find, make, messageOf } from "../page/elements";
+import { stimulusFacts } from "./stimulusFacts";
 
 const canvas = find("canvas", HTMLCanvasElement);
 const footer = find("footer", HTMLElement);
@@ -20,18 +15,18 @@ const slider = find("#time", HTMLInputElement);
 const now = find("#now", HTMLOutputElement);
 const details = find("details", HTMLDetailsElement);
 
-/** `#t=0.5` stands still at that moment; `#bare` leaves out the controls, for a frame in a page. */
-const wish = new URLSearchParams(location.hash.slice(1));
+/** `#t=0.5` stands still at that moment; `#bare` hides the controls, for a frame in another page. */
+const options = new URLSearchParams(location.hash.slice(1));
 
-/** How large the stimulus can be shown, 1 at most. */
-function room({ display }: Stimulus): number {
+/** The scale that fits the window, 1 at most. */
+function scaleFor({ display }: Stimulus): number {
   const height = window.innerHeight - (footer.hidden ? 0 : footer.offsetHeight);
   return Math.min(1, window.innerWidth / display.width_px, Math.max(height, 1) / display.height_px);
 }
 
 function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
   const { duration_s, rate_hz } = stimulus.timing;
-  const still = wish.get("t");
+  const still = options.get("t");
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
   let time = Number(still ?? 0) || 0;
   let playing = false;
@@ -43,9 +38,9 @@ function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
     slider.value = String(time);
     now.value = `${time.toFixed(2)} s`;
   };
-  const setPlaying = (wanted: boolean): void => {
+  const setPlaying = (on: boolean): void => {
     stop();
-    playing = wanted;
+    playing = on;
     button.textContent = playing ? "Pause" : "Play";
     const from = time;
     if (!playing) return;
@@ -55,31 +50,32 @@ function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
       return true;
     });
   };
-  const stand = (at: number): void => {
+  const seek = (to: number): void => {
     setPlaying(false);
-    time = Math.min(Math.max(at, 0), duration_s);
+    time = Math.min(Math.max(to, 0), duration_s);
     show();
   };
   const layOut = (): void => {
-    const scale = room(stimulus);
+    const scale = scaleFor(stimulus);
     painter = painterOn(canvas, stimulus, scale, mannequin);
-    describe(stimulus, scale);
+    const facts = stimulusFacts(stimulus, scale).flatMap(([term, fact]) => [make("dt", {}, term), make("dd", {}, fact)]);
+    find("dl", HTMLDListElement).replaceChildren(...facts);
     show();
   };
 
   document.body.style.background = stimulus.display.background;
-  footer.hidden = wish.has("bare");
+  footer.hidden = options.has("bare");
   slider.max = String(duration_s);
   slider.step = String(1 / rate_hz);
   button.addEventListener("click", () => setPlaying(!playing));
-  slider.addEventListener("input", () => stand(Number(slider.value)));
+  slider.addEventListener("input", () => seek(Number(slider.value)));
   window.addEventListener("resize", layOut);
   details.addEventListener("toggle", layOut);
   document.addEventListener("keydown", (event) => {
     if (event.target !== document.body) return;
     if (event.key === " ") setPlaying(!playing);
-    else if (event.key === "ArrowRight") stand(time + 1 / rate_hz);
-    else if (event.key === "ArrowLeft") stand(time - 1 / rate_hz);
+    else if (event.key === "ArrowRight") seek(time + 1 / rate_hz);
+    else if (event.key === "ArrowLeft") seek(time - 1 / rate_hz);
     else return;
     event.preventDefault();
   });
@@ -87,31 +83,20 @@ function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
   setPlaying(still === null && !calm);
 }
 
-function describe(stimulus: Stimulus, scale: number): void {
-  const entries = aboutStimulus(stimulus, scale).flatMap(([term, said]) => {
-    const dt = document.createElement("dt");
-    const dd = document.createElement("dd");
-    dt.textContent = term;
-    dd.textContent = said;
-    return [dt, dd];
-  });
-  find("dl", HTMLDListElement).replaceChildren(...entries);
-}
-
-/** Play what a text of JSON describes, or say why it cannot be played. */
+/** Play the stimulus in a JSON text, or show why that is not possible. */
 async function playText(text: string): Promise<void> {
   try {
     const stimulus = readStimulus(JSON.parse(text));
-    play(stimulus, stimulus.display.style === "mannequin" ? await heldMannequin() : undefined);
+    play(stimulus, stimulus.display.style === "mannequin" ? await mannequinInPage() : undefined);
   } catch (error) {
-    const trouble = find("#trouble", HTMLParagraphElement);
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    trouble.hidden = false;
+    const message = find("#trouble", HTMLParagraphElement);
+    message.textContent = messageOf(error);
+    message.hidden = false;
     canvas.hidden = true;
   }
 }
 
-/** Ask for a file, where the page holds no stimulus. */
+/** Ask for a file, if the page holds no stimulus. */
 function askForFile(): void {
   const form = find("#open", HTMLFormElement);
   form.hidden = false;
@@ -126,6 +111,6 @@ function askForFile(): void {
   });
 }
 
-const held = find("#stimulus", HTMLScriptElement).textContent ?? "null";
-if (held.trim() === "null") askForFile();
-else void playText(held);
+const content = find("#stimulus", HTMLScriptElement).textContent ?? "null";
+if (content.trim() === "null") askForFile();
+else void playText(content);

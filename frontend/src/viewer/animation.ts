@@ -1,136 +1,128 @@
-/** What moves on the stage: walkers as they are, or as the chain of transforms leaves them. */
+/** The animation in the viewer: walkers as they are, or after a chain of transforms. */
 
 import { framesOf } from "../canvas/figureFrames";
 import type { MannequinPainter } from "../canvas/mannequinLoader";
 import { drawingOf } from "../canvas/painter";
-import type { Link, Step } from "../core/stimulus";
+import type { Step } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
-import type { Cast } from "../model/figures";
+import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import type { State } from "../model/state";
+import type { Arrangement, Size } from "./arrangement";
+import { clear, drawDots, drawGround, drawSticks, drawTrails, paletteOf, type Brush } from "./drawing";
 import { isPlain } from "./transformChain";
-import { clear, drawDots, drawGround, drawSticks, drawTrails, type Ink } from "./drawing";
-import { paletteOf } from "./palette";
-import type { Size, Staging } from "./arrangement";
-import { DURATION_S, stagedStimulus } from "./viewedStimulus";
-import { Troupe, type Sight } from "./walkerBatch";
+import { arrangedStimulus, DURATION_S } from "./viewedStimulus";
+import { WalkerBatch, type ViewPoint } from "./walkerBatch";
 
-/** Walkers of whom trails and the ground are drawn; with more there is no room for them. */
-const MOST_WITH_TRAILS = 4;
+/** Trails and the ground are drawn for at most this many walkers. */
+const MAX_WITH_TRAILS = 4;
 
-/** What an act is made of. */
-export interface Script {
+export interface AnimationSpec {
   readonly model: Model;
-  readonly cast: readonly Cast[];
+  readonly figures: readonly SceneFigure[];
   readonly state: State;
   readonly size: Size;
-  readonly staging: Staging;
-  /** Where in its stride each walker is, in cycles, at the time given. */
-  readonly cycles: readonly number[];
+  readonly arrangement: Arrangement;
+  /** The phase of each walker at `time`, in strides. */
+  readonly phases: readonly number[];
   readonly time: number;
-  /** How far it has turned by itself at that time. */
+  /** Azimuth that has been added at `time` by turning by itself. */
   readonly turned_deg: number;
   readonly mannequin: MannequinPainter | null;
 }
 
-export interface Act {
-  /** Draw all as it is at a time in seconds; `fine` pixels of the canvas are one of the picture. */
-  draw(context: CanvasRenderingContext2D, time: number, fine: number): void;
-  /** Where in its stride a walker is, in cycles. */
-  cycle(number: number, time: number): number;
-  /** See it from elsewhere; false where a new act is needed for that. */
-  turn(azimuth_deg: number, elevation_deg: number, staging: Staging): boolean;
+export interface ViewerAnimation {
+  /** Draw everything at a time in seconds; `pixelRatio` canvas pixels are one pixel of the picture. */
+  draw(context: CanvasRenderingContext2D, time: number, pixelRatio: number): void;
+  /** The phase of a walker, in strides. */
+  phase(number: number, time: number): number;
+  /** Change the view; false if that needs a new animation. */
+  turn(azimuth_deg: number, elevation_deg: number, arrangement: Arrangement): boolean;
 }
 
-/** How far apart in their strides the walkers of a crowd are: no two are ever alike. */
+/** The phases of a crowd are spaced by the golden ratio: no two are alike. */
 const GOLDEN = (Math.sqrt(5) - 1) / 2;
 
-/** How far a walker is ahead of the first one, in cycles. */
-export const lead = ({ scene }: State, number: number): number =>
+/** The phase of a walker relative to the first one, in strides. */
+export const phaseOffset = ({ scene }: State, number: number): number =>
   scene === "crowd" ? (GOLDEN * number) % 1 : 0;
 
-export function actOf(script: Script): Act {
-  const { state, mannequin } = script;
-  const carved = state.style === "mannequin" && mannequin !== null;
-  return isPlain(state) && !carved ? plainAct(script) : chainedAct(script);
+export function animationOf(spec: AnimationSpec): ViewerAnimation {
+  const solid = spec.state.style === "mannequin" && spec.mannequin !== null;
+  return isPlain(spec.state) && !solid ? plainAnimation(spec) : chainAnimation(spec);
 }
 
-/** Strides a second of each walker as it is played; backwards is less than 0. */
-export const ratesOf = ({ cast, state }: Pick<Script, "cast" | "state">): number[] => {
+/** Strides a second of each walker during playback; negative when it plays backwards. */
+export const strideRates = ({ figures, state }: Pick<AnimationSpec, "figures" | "state">): number[] => {
   const factor = "reverse" in state.transforms ? -state.tempo : state.tempo;
-  return cast.map(({ walker }) => factor * walker.frequency_hz);
+  return figures.map(({ walker }) => factor * walker.frequency_hz);
 };
 
-function plainAct(script: Script): Act {
-  const { model, cast, state, size } = script;
-  const troupe = new Troupe(cast.map(({ walker }) => walker));
-  ratesOf(script).forEach((rate, i) => {
-    troupe.rates[i] = rate;
-    troupe.starts[i] = script.cycles[i]! - rate * script.time;
+function plainAnimation(spec: AnimationSpec): ViewerAnimation {
+  const { model: { markers, segments }, figures, state, size } = spec;
+  const batch = new WalkerBatch(figures.map(({ walker }) => walker));
+  strideRates(spec).forEach((rate, i) => {
+    batch.rates[i] = rate;
+    batch.starts[i] = spec.phases[i]! - rate * spec.time;
   });
-  const segments = segmentsOf(model.markers, model.segments);
-  const few = cast.length <= MOST_WITH_TRAILS;
-  let { staging } = script;
+  const links = Uint16Array.from(segments.flat().map((name) => markers.indexOf(name)));
+  const few = figures.length <= MAX_WITH_TRAILS;
+  let { arrangement } = spec;
   let { azimuth_deg, elevation_deg } = state;
   return {
-    cycle: (number, time) => troupe.cycle(number, time),
-    turn(azimuth, elevation, stagingThere) {
-      [azimuth_deg, elevation_deg, staging] = [azimuth, elevation, stagingThere];
+    phase: (number, time) => batch.strides(number, time),
+    turn(azimuth, elevation, next) {
+      [azimuth_deg, elevation_deg, arrangement] = [azimuth, elevation, next];
       return true;
     },
-    draw(context, time, fine) {
-      const turned = azimuth_deg + script.turned_deg + state.turning_deg_s * (time - script.time);
-      const sight: Sight = {
+    draw(context, time, pixelRatio) {
+      const turned = azimuth_deg + spec.turned_deg + state.turning_deg_s * (time - spec.time);
+      const view: ViewPoint = {
         axes: observerAxes(turned, elevation_deg),
-        eyeMm: state.perspective ? staging.eyeMm : null,
+        eyeMm: state.perspective ? arrangement.eyeMm : null,
       };
-      const ink = inkOf(state, staging, context);
-      const see = (when: number, into: Float64Array): void =>
-        troupe.see(when, sight, staging, size.width_px, size.height_px, into);
-      clear(ink, size, fine);
-      if (few) drawGround(ink, staging, sight, size);
-      if (few && state.trails) drawTrails(ink, see, time, troupe.places.length);
-      see(time, troupe.places);
-      if (state.style !== "dots") drawSticks(ink, troupe.places, segments, troupe.nDots);
-      drawDots(ink, troupe.places, troupe.nDots);
+      const brush = brushOf(state, arrangement, context);
+      const project = (at: number, into: Float64Array): void => batch.project(at, view, arrangement, size, into);
+      clear(brush, size, pixelRatio);
+      if (few) drawGround(brush, arrangement, view, size);
+      if (few && state.trails) drawTrails(brush, project, time, batch.places.length);
+      project(time, batch.places);
+      if (state.style !== "dots") drawSticks(brush, batch.places, links, batch.nDots);
+      drawDots(brush, batch.places, batch.nDots);
     },
   };
 }
 
-function chainedAct(script: Script): Act {
-  const { model, cast, state, size, staging, mannequin } = script;
+function chainAnimation(spec: AnimationSpec): ViewerAnimation {
+  const { model, figures, state, size, arrangement, mannequin } = spec;
   const style = state.style === "mannequin" && !mannequin ? "sticks" : state.style;
-  const rates = ratesOf(script);
-  // Played backwards, what is shown at t is what was at the end of the file less t.
-  const [end, way] = "reverse" in state.transforms ? [DURATION_S, -1] : [0, 1];
-  const starts = rates.map((rate, i) => script.cycles[i]! - rate * (script.time + way * end));
-  const clocks: Step[] = starts.map((cycles, i) => ({ name: "start", phase_deg: 360 * cycles, figures: [i] }));
-  const turn = script.turned_deg - state.turning_deg_s * script.time;
-  const played = { ...state, style };
-  const stimulus = stagedStimulus(model, cast, played, size, staging, clocks, turn);
+  const rates = strideRates(spec);
+  // When it plays backwards, the picture at t is the one at the end of the file minus t.
+  const [end, direction] = "reverse" in state.transforms ? [DURATION_S, -1] : [0, 1];
+  const starts = rates.map((rate, i) => spec.phases[i]! - rate * (spec.time + direction * end));
+  const clocks: Step[] = starts.map((phase, i) => ({ name: "start", phase_deg: 360 * phase, figures: [i] }));
+  const turn = spec.turned_deg - state.turning_deg_s * spec.time;
+  const stimulus = arrangedStimulus(model, figures, { ...state, style }, size, arrangement, clocks, turn);
   const draw = drawingOf(stimulus, mannequin ?? undefined);
   const frameAt = framesOf(stimulus);
-  const trailed = state.trails && cast.length <= MOST_WITH_TRAILS && !("limb_dots" in state.transforms);
-  const see = (time: number, into: Float64Array): void => {
-    const figures = frameAt(time).slice(0, cast.length);
-    figures.reduce((at, { places }) => (into.set(places, at), at + places.length), 0);
+  const trails = state.trails && figures.length <= MAX_WITH_TRAILS && !("limb_dots" in state.transforms);
+  const project = (time: number, into: Float64Array): void => {
+    const frames = frameAt(time).slice(0, figures.length);
+    frames.reduce((at, { places }) => (into.set(places, at), at + places.length), 0);
   };
   return {
-    cycle: (number, time) => starts[number]! + rates[number]! * (time + way * end),
+    phase: (number, time) => starts[number]! + rates[number]! * (time + direction * end),
     turn: () => false,
-    draw(context, time, fine) {
-      draw(context, time, fine);
-      if (trailed) drawTrails(inkOf(state, staging, context), see, time, 2 * cast.length * model.markers.length);
+    draw(context, time, pixelRatio) {
+      draw(context, time, pixelRatio);
+      const brush = brushOf(state, arrangement, context);
+      if (trails) drawTrails(brush, project, time, 2 * figures.length * model.markers.length);
     },
   };
 }
 
-const inkOf = ({ dark }: State, { dotPx }: Staging, context: CanvasRenderingContext2D): Ink => ({
+const brushOf = ({ dark }: State, { dotPx }: Arrangement, context: CanvasRenderingContext2D): Brush => ({
   context,
   palette: paletteOf(dark),
   dotPx,
 });
-
-function segmentsOf(markers: readonly string[], segments: readonly Link[]): Uint16Array {
-  return Uint16Array.from(segments.flatMap((ends) => ends.map((name) => markers.indexOf(name))));
-}

@@ -1,24 +1,23 @@
-/** A pointer that is dragged over an element, or taps it; mouse, pen and finger alike. */
+/** Dragging, throwing and tapping an element with mouse, pen or finger. */
 
 export interface Gestures {
-  /** By so many pixels to the right and down since the last time. */
-  dragged(right: number, down: number): void;
-  /** Let go while moving, at so many pixels a second. */
-  thrown(rightPerS: number, downPerS: number): void;
-  /** Without moving, at a place in pixels from the left and upper edge. */
-  tapped(x: number, y: number): void;
   begun(): void;
+  /** By a number of pixels to the right and down since the last call. */
+  dragged(right: number, down: number): void;
+  /** Released while moving, in pixels a second. */
+  thrown(rightPerS: number, downPerS: number): void;
+  /** Released without moving, at a place in pixels from the left and upper edge. */
+  tapped(x: number, y: number): void;
 }
 
-/** A finger trembles. */
+/** Movements of a tap are no longer than this. */
 const TAP_PX = 6;
-/** Only what was moved in so short a time before letting go counts as a throw. */
+/** The speed of a throw is measured over this time before the release. */
 const THROW_MS = 80;
 
-/** Tell of gestures until the returned function is called. */
+/** Report gestures until the returned function is called. */
 export function watchGestures(element: HTMLElement, gestures: Gestures): () => void {
   const ending = new AbortController();
-  const how = { signal: ending.signal };
   let held: { id: number; x: number; y: number; far: number } | null = null;
   let trail: { time: number; x: number; y: number }[] = [];
 
@@ -48,15 +47,19 @@ export function watchGestures(element: HTMLElement, gestures: Gestures): () => v
       return;
     }
     const first = trail.find(({ time }) => event.timeStamp - time < THROW_MS);
-    const lasted = first ? (event.timeStamp - first.time) / 1000 : 0;
-    if (first && lasted > 0) gestures.thrown((x - first.x) / lasted, (y - first.y) / lasted);
+    const seconds = first ? (event.timeStamp - first.time) / 1000 : 0;
+    if (first && seconds > 0) gestures.thrown((x - first.x) / seconds, (y - first.y) / seconds);
   };
-  const lost = (event: PointerEvent): void => {
+  const cancel = (event: PointerEvent): void => {
     if (event.pointerId === held?.id) held = null;
   };
-  element.addEventListener("pointerdown", down, how);
-  element.addEventListener("pointermove", move, how);
-  element.addEventListener("pointerup", up, how);
-  element.addEventListener("pointercancel", lost, how);
+  for (const [type, listener] of [
+    ["pointerdown", down],
+    ["pointermove", move],
+    ["pointerup", up],
+    ["pointercancel", cancel],
+  ] as const) {
+    element.addEventListener(type, listener, { signal: ending.signal });
+  }
   return () => ending.abort();
 }

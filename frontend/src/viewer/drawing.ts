@@ -1,34 +1,46 @@
-/** Dots, sticks, trails and the ground, for many walkers with few calls to the canvas. */
+/** Dots, sticks, trails and the ground of many walkers, with few calls to the canvas. */
 
+import { STICK_WIDTH } from "../canvas/painter";
 import { dot, type Vector } from "../core/vector";
-import type { Palette } from "./palette";
-import type { Size, Staging } from "./arrangement";
-import type { Sight } from "./walkerBatch";
+import type { Arrangement, Size } from "./arrangement";
+import type { ViewPoint } from "./walkerBatch";
 
-/** Width of a stick beside the diameter of a dot. */
-const STICK = 0.6;
 const TRAIL_S = 0.6;
-const TRAIL_STEPS = 18;
-/** How strong a trail is where it begins. */
-const TRAIL_LIGHT = 0.8;
+const N_TRAIL_STEPS = 18;
+/** Opacity of a trail at the dot. */
+const TRAIL_OPACITY = 0.8;
 const GROUND_MM = 470;
-const GROUND_CORNERS = 48;
+const N_GROUND_CORNERS = 48;
 
-export interface Ink {
+/** Colours of the viewer; the style sheet of the page has the same. */
+export interface Palette {
+  readonly background: string;
+  readonly colour: string;
+  /** Of the mannequin, whose shades are darker. */
+  readonly body: string;
+  readonly ground: string;
+}
+
+const DARK: Palette = { background: "#0c0d0f", colour: "#ffffff", body: "#ffffff", ground: "#16191e" };
+const LIGHT: Palette = { background: "#f8f7f3", colour: "#16181c", body: "#c9bfae", ground: "#efede6" };
+
+export const paletteOf = (dark: boolean): Palette => (dark ? DARK : LIGHT);
+
+export interface Brush {
   readonly context: CanvasRenderingContext2D;
   readonly palette: Palette;
   readonly dotPx: number;
 }
 
-/** Begin a frame: from here on a unit is a pixel of the picture, `fine` pixels of the canvas. */
-export function clear({ context, palette }: Ink, { width_px, height_px }: Size, fine: number): void {
-  context.setTransform(fine, 0, 0, fine, 0, 0);
+/** Begin a frame: one unit is a pixel of the picture, `pixelRatio` canvas pixels. */
+export function clear({ context, palette }: Brush, { width_px, height_px }: Size, pixelRatio: number): void {
+  context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   context.fillStyle = palette.background;
   context.fillRect(0, 0, width_px, height_px);
 }
 
 /** One path for each walker: a single path of all dots is slower to fill. */
-export function drawDots({ context, palette, dotPx }: Ink, places: Float64Array, nDots: number): void {
+export function drawDots({ context, palette, dotPx }: Brush, places: Float64Array, nDots: number): void {
   const radius = dotPx / 2;
   context.fillStyle = palette.colour;
   for (let from = 0; from < places.length; from += 2 * nDots) {
@@ -41,15 +53,15 @@ export function drawDots({ context, palette, dotPx }: Ink, places: Float64Array,
   }
 }
 
-/** Ends of segments are numbers of dots, two by two. */
+/** `segments` has pairs of numbers of dots. */
 export function drawSticks(
-  { context, palette, dotPx }: Ink,
+  { context, palette, dotPx }: Brush,
   places: Float64Array,
   segments: Uint16Array,
   nDots: number,
 ): void {
   context.strokeStyle = palette.colour;
-  context.lineWidth = Math.max(STICK * dotPx, 1);
+  context.lineWidth = Math.max(STICK_WIDTH * dotPx, 1);
   context.lineCap = "round";
   for (let from = 0; from < places.length; from += 2 * nDots) {
     context.beginPath();
@@ -62,21 +74,21 @@ export function drawSticks(
   }
 }
 
-/** Where the dots were in the last moments, fainter the longer ago; `see` tells it of a time. */
+/** The paths of the dots in the last moments, fading; `project` gives the places at a time. */
 export function drawTrails(
-  { context, palette, dotPx }: Ink,
-  see: (time: number, into: Float64Array) => void,
+  { context, palette, dotPx }: Brush,
+  project: (time: number, into: Float64Array) => void,
   time: number,
   size: number,
 ): void {
   context.strokeStyle = palette.colour;
   context.lineCap = "butt";
   let [newer, older] = [new Float64Array(size), new Float64Array(size)];
-  see(time, newer);
-  for (let step = 1; step <= TRAIL_STEPS; step++) {
-    see(time - (step * TRAIL_S) / TRAIL_STEPS, older);
-    const left = 1 - step / (TRAIL_STEPS + 1);
-    context.globalAlpha = TRAIL_LIGHT * left;
+  project(time, newer);
+  for (let step = 1; step <= N_TRAIL_STEPS; step++) {
+    project(time - (step * TRAIL_S) / N_TRAIL_STEPS, older);
+    const left = 1 - step / (N_TRAIL_STEPS + 1);
+    context.globalAlpha = TRAIL_OPACITY * left;
     context.lineWidth = Math.max(0.5 * dotPx * left, 0.75);
     context.beginPath();
     for (let i = 0; i < size; i += 2) {
@@ -89,19 +101,21 @@ export function drawTrails(
   context.globalAlpha = 1;
 }
 
-/** A disc on the floor below each walker, which shows how the view is tilted. */
-export function drawGround({ context, palette }: Ink, staging: Staging, { axes, eyeMm }: Sight, size: Size): void {
-  const [right, up, towards] = axes;
-  context.fillStyle = palette.faint;
-  for (const [across, above] of staging.offsets) {
+/** A disc on the floor below each walker, which shows the elevation of the view. */
+export function drawGround(
+  { context, palette }: Brush,
+  { offsets, middleMm, pxPerMm }: Arrangement,
+  { axes: [right, up, towards], eyeMm }: ViewPoint,
+  { width_px, height_px }: Size,
+): void {
+  context.fillStyle = palette.ground;
+  for (const [across, above] of offsets) {
     context.beginPath();
-    for (let corner = 0; corner < GROUND_CORNERS; corner++) {
-      const angle = (2 * Math.PI * corner) / GROUND_CORNERS;
-      const at: Vector = [GROUND_MM * Math.cos(angle), GROUND_MM * Math.sin(angle), -staging.middleMm];
-      const scale = staging.pxPerMm * (eyeMm === null ? 1 : eyeMm / (eyeMm - dot(at, towards)));
-      const x = size.width_px / 2 + scale * (dot(at, right) + across);
-      const y = size.height_px / 2 - scale * (dot(at, up) + above);
-      context.lineTo(x, y);
+    for (let corner = 0; corner < N_GROUND_CORNERS; corner++) {
+      const angle = (2 * Math.PI * corner) / N_GROUND_CORNERS;
+      const at: Vector = [GROUND_MM * Math.cos(angle), GROUND_MM * Math.sin(angle), -middleMm];
+      const scale = pxPerMm * (eyeMm === null ? 1 : eyeMm / (eyeMm - dot(at, towards)));
+      context.lineTo(width_px / 2 + scale * (dot(at, right) + across), height_px / 2 - scale * (dot(at, up) + above));
     }
     context.fill();
   }

@@ -1,19 +1,20 @@
-/** Films made in the browser: H.264 in MP4, or what else this browser can encode. */
+/** Films made in the browser: H.264 in MP4, or another codec that the browser has. */
 
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat } from "mediabunny";
+import { contextOf } from "../canvas/painter";
 
-/** This browser makes no films; the message says what does. */
-export class NoFilm extends Error {}
+/** This browser cannot make the film; the message names an alternative. */
+export class FilmError extends Error {}
 
-export interface FilmWish {
-  /** Of the picture in pixels; both even. */
+export interface FilmSpec {
+  /** Size of the picture in pixels; even numbers. */
   readonly width: number;
   readonly height: number;
   readonly frames: number;
   readonly rateHz: number;
   /** Draw a frame of the film, by its number. */
   readonly draw: (context: CanvasRenderingContext2D, frame: number) => void;
-  /** Told after each frame, the share that is done. */
+  /** Called after each frame with the share that is done. */
   readonly progress?: ((share: number) => void) | undefined;
   readonly signal?: AbortSignal | undefined;
 }
@@ -24,84 +25,83 @@ export interface Film {
 }
 
 type Codec = "avc" | "vp9" | "vp8";
-interface Choice {
+interface Encoding {
   readonly codec: Codec;
-  /** As WebCodecs calls it: H.264 high and baseline, VP9 and VP8. */
+  /** Its name in WebCodecs: H.264 high and baseline, VP9, VP8. */
   readonly string: string;
   readonly suffix: Film["suffix"];
 }
 
-/** The best first. */
-const CHOICES: readonly Choice[] = [
+/** In order of preference. */
+const ENCODINGS: readonly Encoding[] = [
   { codec: "avc", string: "avc1.640033", suffix: "mp4" },
   { codec: "avc", string: "avc1.42003e", suffix: "mp4" },
   { codec: "vp9", string: "vp09.00.51.08", suffix: "webm" },
   { codec: "vp8", string: "vp8", suffix: "webm" },
 ];
-/** Bits a pixel and frame: dots with sharp edges are to stay sharp. */
-const BITS_A_PIXEL = 0.2;
+/** Enough for dots with sharp edges. */
+const BITS_PER_PIXEL = 0.2;
 const KEY_FRAME_S = 1;
-/** Frames that may wait for the encoder. */
-const MOST_WAITING = 8;
+/** Limit of the frames that wait for the encoder. */
+const MAX_QUEUE = 8;
 
 /** Make a film, frame by frame. */
-export async function encodeFilm(wish: FilmWish): Promise<Film> {
-  const { choice, config } = await choose(wish);
+export async function encodeFilm(spec: FilmSpec): Promise<Film> {
+  const { encoding, config } = await chooseEncoding(spec);
   const output = new Output({
-    format: choice.suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
+    format: encoding.suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
     target: new BufferTarget(),
   });
-  const source = new EncodedVideoPacketSource(choice.codec);
-  output.addVideoTrack(source, { frameRate: wish.rateHz });
+  const source = new EncodedVideoPacketSource(encoding.codec);
+  output.addVideoTrack(source, { frameRate: spec.rateHz });
   await output.start();
-  await encodeFrames(wish, config, source);
+  await encodeFrames(spec, config, source);
   await output.finalize();
   const { buffer } = output.target;
-  if (!buffer) throw new NoFilm("The film came out empty.");
-  return { blob: new Blob([buffer], { type: `video/${choice.suffix}` }), suffix: choice.suffix };
+  if (!buffer) throw new FilmError("The film came out empty.");
+  return { blob: new Blob([buffer], { type: `video/${encoding.suffix}` }), suffix: encoding.suffix };
 }
 
-/** What this browser encodes of what was wished for. */
-async function choose({ width, height, rateHz }: FilmWish): Promise<{ choice: Choice; config: VideoEncoderConfig }> {
+/** The first encoding that this browser supports. */
+async function chooseEncoding({ width, height, rateHz }: FilmSpec): Promise<{ encoding: Encoding; config: VideoEncoderConfig }> {
   if (typeof VideoEncoder === "undefined") {
-    throw new NoFilm("This browser encodes no films; eigenwalker serve makes them, and so does eigenwalker stimulus of a saved stimulus file.");
+    throw new FilmError("This browser encodes no films; eigenwalker serve makes them, and so does eigenwalker stimulus of a saved stimulus file.");
   }
-  for (const choice of CHOICES) {
+  for (const encoding of ENCODINGS) {
     const config: VideoEncoderConfig = {
-      codec: choice.string,
+      codec: encoding.string,
       width,
       height,
       framerate: rateHz,
-      bitrate: Math.round(width * height * rateHz * BITS_A_PIXEL),
+      bitrate: Math.round(width * height * rateHz * BITS_PER_PIXEL),
       latencyMode: "quality",
     };
     const support = await VideoEncoder.isConfigSupported(config).catch(() => null);
-    if (support?.supported) return { choice, config };
+    if (support?.supported) return { encoding, config };
   }
-  throw new NoFilm(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
+  throw new FilmError(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
 }
 
-async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig, source: EncodedVideoPacketSource): Promise<void> {
-  const { width, height, frames, rateHz, progress, signal } = wish;
+async function encodeFrames(spec: FilmSpec, config: VideoEncoderConfig, source: EncodedVideoPacketSource): Promise<void> {
+  const { width, height, frames, rateHz, progress, signal } = spec;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });
-  const context = canvas.getContext("2d", { alpha: false, willReadFrequently: true });
-  if (!context) throw new NoFilm("This browser gives no canvas to draw on.");
+  const context = contextOf(canvas, { alpha: false, willReadFrequently: true });
   let fail = (_: Error): void => {};
-  const failed = new Promise<never>((_, refuse) => (fail = refuse));
-  failed.catch(() => {}); // heard below, or too late to matter
+  const failed = new Promise<never>((_, reject) => (fail = reject));
+  failed.catch(() => {}); // handled below, or too late to matter
   let written: Promise<unknown> = Promise.resolve();
   const encoder = new VideoEncoder({
     output: (chunk, meta) => {
       written = written.then(() => source.add(EncodedPacket.fromEncodedChunk(chunk), meta));
     },
-    error: (error) => fail(new NoFilm(`The encoder of this browser failed: ${error.message}`)),
+    error: (error) => fail(new FilmError(`The encoder of this browser failed: ${error.message}`)),
   });
   try {
     encoder.configure(config);
     for (let number = 0; number < frames; number++) {
       signal?.throwIfAborted();
-      wish.draw(context, number);
+      spec.draw(context, number);
       const frame = new VideoFrame(canvas, {
         timestamp: Math.round((1e6 * number) / rateHz),
         duration: Math.round(1e6 / rateHz),
@@ -109,7 +109,7 @@ async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig, source: 
       encoder.encode(frame, { keyFrame: number % Math.round(KEY_FRAME_S * rateHz) === 0 });
       frame.close();
       progress?.((number + 1) / frames);
-      await Promise.race([roomIn(encoder), failed]);
+      await Promise.race([queueSpace(encoder), failed]);
     }
     await Promise.race([encoder.flush(), failed]);
     await written;
@@ -118,10 +118,10 @@ async function encodeFrames(wish: FilmWish, config: VideoEncoderConfig, source: 
   }
 }
 
-/** Waits until the encoder takes frames again, and lets the page breathe meanwhile. */
-async function roomIn(encoder: VideoEncoder): Promise<void> {
-  await new Promise((go) => setTimeout(go));
-  while (encoder.encodeQueueSize > MOST_WAITING) {
-    await new Promise<void>((go) => encoder.addEventListener("dequeue", () => go(), { once: true }));
+/** Wait until the encoder accepts frames again; the page can react meanwhile. */
+async function queueSpace(encoder: VideoEncoder): Promise<void> {
+  await new Promise((done) => setTimeout(done));
+  while (encoder.encodeQueueSize > MAX_QUEUE) {
+    await new Promise<void>((done) => encoder.addEventListener("dequeue", () => done(), { once: true }));
   }
 }

@@ -1,24 +1,24 @@
-/** What is on the stage as a file: a stimulus, a picture, a film, a page of its own. */
+/** The present picture as a file: a stimulus, a picture, a film, a page of its own. */
 
 import type { MannequinPainter } from "../canvas/mannequinLoader";
+import { contextOf, setResolution } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
 import type { Stimulus } from "../core/stimulus";
-import type { Cast } from "../model/figures";
+import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import type { State } from "../model/state";
-import { actOf, lead, type Act } from "./animation";
-import { encodeFilm, type FilmWish } from "./filmEncoder";
-import { DURATION_S, MOST_FIGURES, roomFor, stimulusOf } from "./viewedStimulus";
-import { stagingOf, type Size } from "./arrangement";
+import { animationOf, phaseOffset, type ViewerAnimation } from "./animation";
+import { arrange, type Size } from "./arrangement";
+import { encodeFilm, type FilmSpec } from "./filmEncoder";
+import { DURATION_S, extentFor, MAX_FIGURES, stimulusOf } from "./viewedStimulus";
 
-/** What is to be kept. */
-export interface Kept {
+/** The picture to save. */
+export interface Snapshot {
   readonly model: Model;
-  readonly cast: readonly Cast[];
+  readonly figures: readonly SceneFigure[];
   readonly state: State;
-  /** Where in its stride the first walker is, for pictures. */
-  readonly cycle?: number;
-  /** Of the picture; left out, a usual one. */
+  /** Phase of the first walker, for pictures. */
+  readonly phase?: number;
   readonly size?: Size;
   readonly mannequin?: MannequinPainter | null;
 }
@@ -26,45 +26,47 @@ export interface Kept {
 export interface SavedFile {
   readonly name: string;
   readonly blob: Blob;
-  /** What a visitor should know of it; mostly nothing. */
-  readonly told?: string;
+  /** A message about the file, if there is one. */
+  readonly note?: string;
 }
 
-const ONE: Size = { width_px: 720, height_px: 720 };
-const SEVERAL: Size = { width_px: 1280, height_px: 720 };
+const SIZE_OF_ONE: Size = { width_px: 720, height_px: 720 };
+const SIZE_OF_SEVERAL: Size = { width_px: 1280, height_px: 720 };
 const RATE_HZ = 60;
-/** Pixels of a picture for one of the stage. */
-const FINE = 2;
-const HELD = '<script id="stimulus" type="application/json">null</script>';
-const SCRIPTS = "script-src 'unsafe-inline'";
+/** Resolution of a picture relative to the viewer. */
+const PIXEL_RATIO = 2;
+const STIMULUS_SCRIPT = '<script id="stimulus" type="application/json">null</script>';
+const SCRIPT_POLICY = "script-src 'unsafe-inline'";
 
-const sizeOf = ({ size, cast }: Kept): Size => size ?? (cast.length === 1 ? ONE : SEVERAL);
+const sizeOf = ({ size, figures }: Snapshot): Size => size ?? (figures.length === 1 ? SIZE_OF_ONE : SIZE_OF_SEVERAL);
 
-/** The stimulus, held against its schema: what is written can be read. */
-export const keptStimulus = (kept: Kept): Stimulus =>
-  readStimulus(stimulusOf(kept.model, kept.cast, kept.state, sizeOf(kept)));
+/** The stimulus, checked against its schema: files that are written can be read. */
+const checkedStimulus = (snapshot: Snapshot): Stimulus =>
+  readStimulus(stimulusOf(snapshot.model, snapshot.figures, snapshot.state, sizeOf(snapshot)));
 
-/** The stimulus file, which `Stimulus.load` of Python takes. */
-export function stimulusFile(kept: Kept): SavedFile {
-  const blob = new Blob([`${jsonOf(keptStimulus(kept))}\n`], { type: "application/json" });
-  const file = { name: `${nameFor(kept)}.json`, blob };
-  const left = kept.cast.length - MOST_FIGURES;
-  return left > 0 ? { ...file, told: `A stimulus holds ${MOST_FIGURES} walkers at most; the last ${left} are not in it.` } : file;
+/** The stimulus file, which Python's `Stimulus.load` reads. */
+export function stimulusFile(snapshot: Snapshot): SavedFile {
+  const blob = new Blob([`${jsonOf(checkedStimulus(snapshot))}\n`], { type: "application/json" });
+  const file = { name: `${fileName(snapshot)}.json`, blob };
+  const left = snapshot.figures.length - MAX_FIGURES;
+  if (left <= 0) return file;
+  return { ...file, note: `A stimulus holds ${MAX_FIGURES} walkers at most; the last ${left} are not in it.` };
 }
 
-/** A page of its own that plays the stimulus, again and again, with nothing but itself. */
-export function pageFile(kept: Kept): SavedFile {
-  const player = heldText("player");
-  if (!player?.includes(HELD)) throw new Error("This page does not hold the player; save the stimulus file instead.");
-  const stimulus = keptStimulus(kept);
-  const content = HELD.replace("null", () => jsonOf(stimulus).replaceAll("<", "\\u003c"));
-  const page = player.replace(HELD, () => content + carved(stimulus));
-  const whole = stimulus.display.style === "mannequin" ? page.replace(SCRIPTS, `${SCRIPTS} blob:`) : page;
-  return { name: `${nameFor(kept)}.html`, blob: new Blob([whole], { type: "text/html" }) };
+/** A page of its own that plays the stimulus again and again, without other files. */
+export function pageFile(snapshot: Snapshot): SavedFile {
+  const player = textInPage("player");
+  if (!player?.includes(STIMULUS_SCRIPT)) throw new Error("This page does not hold the player; save the stimulus file instead.");
+  const stimulus = checkedStimulus(snapshot);
+  const content = STIMULUS_SCRIPT.replace("null", () => jsonOf(stimulus).replaceAll("<", "\\u003c"));
+  const page = player.replace(STIMULUS_SCRIPT, () => content + mannequinScript(stimulus));
+  const solid = stimulus.display.style === "mannequin";
+  const whole = solid ? page.replace(SCRIPT_POLICY, `${SCRIPT_POLICY} blob:`) : page;
+  return { name: `${fileName(snapshot)}.html`, blob: new Blob([whole], { type: "text/html" }) };
 }
 
-/** The module that draws the mannequin, where the stimulus asks for it. */
-function carved({ display }: Stimulus): string {
+/** The module that draws the mannequin, if the stimulus needs it. */
+function mannequinScript({ display }: Stimulus): string {
   if (display.style !== "mannequin") return "";
   const module = document.querySelector("script#mannequin")?.textContent ?? "";
   if (module.trim().length < 10) throw new Error("This page does not hold the mannequin; choose points or sticks.");
@@ -72,59 +74,53 @@ function carved({ display }: Stimulus): string {
 }
 
 /** A text that the page holds as JSON. */
-function heldText(id: string): string | null {
+function textInPage(id: string): string | null {
   const content = document.querySelector(`script#${id}`)?.textContent?.trim() ?? "";
   const text: unknown = content === "" ? null : JSON.parse(content);
   return typeof text === "string" ? text : null;
 }
 
-/** The picture of this moment, twice as fine as the stage. */
-export async function pictureFile(kept: Kept): Promise<SavedFile> {
-  const { width_px, height_px } = sizeOf(kept);
+/** The picture of this moment, at twice the resolution of the viewer. */
+export async function pictureFile(snapshot: Snapshot): Promise<SavedFile> {
+  const { width_px, height_px } = sizeOf(snapshot);
   const canvas = document.createElement("canvas");
-  Object.assign(canvas, { width: Math.round(FINE * width_px), height: Math.round(FINE * height_px) });
-  actFor(kept).draw(contextOf(canvas), 0, FINE);
-  const blob = await new Promise<Blob | null>((take) => canvas.toBlob(take, "image/png"));
+  setResolution(canvas, width_px, height_px, PIXEL_RATIO);
+  animationFor(snapshot).draw(contextOf(canvas, { alpha: false }), 0, PIXEL_RATIO);
+  const blob = await new Promise<Blob | null>((done) => canvas.toBlob(done, "image/png"));
   if (!blob) throw new Error("This browser makes no picture of this size.");
-  return { name: `${nameFor(kept)}.png`, blob };
+  return { name: `${fileName(snapshot)}.png`, blob };
 }
 
-/** A film; of one walker it lasts whole strides, so that it can be played again and again. */
+/** A film; a film of one walker lasts whole strides, so that it can be repeated. */
 export async function filmFile(
-  kept: Kept,
-  how: Pick<FilmWish, "progress" | "signal"> = {},
+  snapshot: Snapshot,
+  options: Pick<FilmSpec, "progress" | "signal"> = {},
 ): Promise<SavedFile> {
-  const { width_px, height_px } = sizeOf(kept);
+  const { width_px, height_px } = sizeOf(snapshot);
   const even = (px: number): number => 2 * Math.max(Math.round(px / 2), 1);
   const [width, height] = [even(width_px), even(height_px)];
-  const act = actFor({ ...kept, size: { width_px: width, height_px: height } });
-  const frames = Math.round(durationOf(kept) * RATE_HZ);
-  const draw = (context: CanvasRenderingContext2D, frame: number): void => act.draw(context, frame / RATE_HZ, 1);
-  const { blob, suffix } = await encodeFilm({ width, height, frames, rateHz: RATE_HZ, draw, ...how });
-  return { name: `${nameFor(kept)}.${suffix}`, blob };
+  const animation = animationFor({ ...snapshot, size: { width_px: width, height_px: height } });
+  const frames = Math.round(durationOf(snapshot) * RATE_HZ);
+  const draw: FilmSpec["draw"] = (context, frame) => animation.draw(context, frame / RATE_HZ, 1);
+  const { blob, suffix } = await encodeFilm({ width, height, frames, rateHz: RATE_HZ, draw, ...options });
+  return { name: `${fileName(snapshot)}.${suffix}`, blob };
 }
 
-/** Whole strides of some seconds, where all go at one tempo. */
-function durationOf({ cast, state }: Kept): number {
-  const rates = new Set(cast.map(({ walker }) => state.tempo * walker.frequency_hz));
+/** Whole strides, if all walkers have one frequency. */
+function durationOf({ figures, state }: Snapshot): number {
+  const rates = new Set(figures.map(({ walker }) => state.tempo * walker.frequency_hz));
   if (rates.size > 1) return DURATION_S;
   const [rate = 1] = rates;
   return Math.max(Math.round(DURATION_S * rate), 1) / rate;
 }
 
-/** The scene from its beginning, as the stage would draw it. */
-function actFor(kept: Kept): Act {
-  const { model, cast, state, cycle = 0, mannequin = null } = kept;
-  const size = sizeOf(kept);
-  const staging = stagingOf(cast.length, roomFor(model, cast), size, state.elevation_deg);
-  const cycles = cast.map((_, i) => cycle + lead(state, i));
-  return actOf({ model, cast, state, size, staging, cycles, time: 0, turned_deg: 0, mannequin });
-}
-
-function contextOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
-  const context = canvas.getContext("2d", { alpha: false });
-  if (!context) throw new Error("This browser gives no canvas to draw on.");
-  return context;
+/** The animation from its beginning, as in the viewer. */
+function animationFor(snapshot: Snapshot): ViewerAnimation {
+  const { model, figures, state, phase = 0, mannequin = null } = snapshot;
+  const size = sizeOf(snapshot);
+  const arrangement = arrange(figures.length, extentFor(model, figures), size, state.elevation_deg);
+  const phases = figures.map((_, i) => phase + phaseOffset(state, i));
+  return animationOf({ model, figures, state, size, arrangement, phases, time: 0, turned_deg: 0, mannequin });
 }
 
 /** JSON with one figure and one transform a line, as Python writes it. */
@@ -138,9 +134,9 @@ function jsonOf(stimulus: Stimulus): string {
   return `{\n${parts.join(",\n")}\n}`;
 }
 
-/** A name that tells what it is, of letters that every disk takes: `average-walker_sex+3`. */
-function nameFor({ cast, state }: Kept): string {
-  const who = state.scene === "one" ? cast[0]!.name : { four: "four", side: "side-by-side", crowd: "crowd" }[state.scene];
+/** A descriptive name that is valid on every disk: `average-walker_sex+3`. */
+function fileName({ figures, state }: Snapshot): string {
+  const who = state.scene === "one" ? figures[0]!.name : { four: "four", side: "side-by-side", crowd: "crowd" }[state.scene];
   const traits = Object.entries(state.traits).flatMap(([name, steps]) =>
     steps === 0 ? [] : [`${name}${steps > 0 ? "+" : ""}${Math.round(steps * 100) / 100}`],
   );
@@ -148,7 +144,7 @@ function nameFor({ cast, state }: Kept): string {
   return whole.replace(/[^\p{L}\p{N}+._-]+/gu, "-").slice(0, 80).replace(/^[-.]+/, "") || "walker";
 }
 
-/** Let the browser keep a file. */
+/** Save a file with the browser. */
 export function download({ name, blob }: SavedFile): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

@@ -1,126 +1,103 @@
-/** The chain of transforms that a visitor has switched on, as it stands in a stimulus file. */
+/** The transforms that are switched on, as steps of a stimulus file. */
 
-import type { Moving } from "../core/movingDots";
+import type { MovingDots } from "../core/movingDots";
+import { completeStep } from "../core/readStimulus";
 import { scene } from "../core/scene";
 import type { Step, Stimulus } from "../core/stimulus";
 import { dot, observerAxes, type Vector } from "../core/vector";
 import type { Settings, State, TransformName, Transforms } from "../model/state";
 
-/** How much wider and higher than the figure the box of a mask is. */
-const MASK_ROOM = [2, 1.15] as const;
+/** Width and height of the box of a mask relative to the figure. */
+const MASK_SIZE = [2, 1.15] as const;
 const N_SAMPLES = 64;
 const ARM_SWING = ["left_elbow", "left_wrist", "right_elbow", "right_wrist"];
+const TRUNK = ["left_shoulder", "right_shoulder", "left_hip", "right_hip"];
 
-/** What a step may be made from: the figure as the chain so far leaves it, and who it is. */
+/** What a step is made from: the figure at that place of the chain. */
 interface Before {
   readonly stimulus: Stimulus;
-  readonly figure: number;
-  /** The figure, worked out when it is asked for. */
-  readonly moving: () => Moving;
+  /** Markers and segments of the figure. */
+  readonly markers: readonly string[];
+  readonly joined: boolean;
+  /** The figure, computed on demand. */
+  readonly moving: () => MovingDots;
   readonly groups: Readonly<Record<string, readonly string[]>>;
 }
 
-type Made = Step | null;
-type Making<Name extends TransformName> = (settings: Settings<Name>, before: Before) => Made;
+/** Parameters of a step, without its figures and defaults; null for no step. */
+type MakeStep<Name extends TransformName> = (settings: Settings<Name>, before: Before) => object | null;
 
-/** Steps in the order in which they act; each is made for one figure. */
-const MAKING: { readonly [Name in TransformName]: Making<Name> } = {
-  arm_swing: ({ factor }, { stimulus, figure }) => {
-    const markers = ARM_SWING.filter((name) => markersOf(stimulus, figure).includes(name));
-    return markers.length > 0 ? { name: "gain", markers, factor, axes: "xyz", figures: [figure] } : null;
-  },
-  conflict: (settings, before) =>
-    hasTrunk(before) ? { name: "conflict", ...settings, figures: [before.figure] } : null,
-  ellipses: (settings, before) => {
-    if (!hasTrunk(before)) return null;
-    return {
-      name: "ellipses",
-      shoulder_mm: [settings.shoulder_forward_mm, settings.shoulder_up_mm],
-      hip_mm: [settings.hip_forward_mm, settings.hip_up_mm],
-      phase_deg: phaseOfLegs(before.moving()),
-      figures: [before.figure],
-    };
-  },
-  reverse: (_, { stimulus, figure }) => ({
-    name: "reverse",
-    end_s: stimulus.timing.duration_s,
-    figures: [figure],
+/** Steps in the order of the chain. */
+const STEPS: { readonly [Name in TransformName]: MakeStep<Name> } = {
+  arm_swing: ({ factor }, { markers }) => ({
+    name: "gain",
+    markers: ARM_SWING.filter((name) => markers.includes(name)),
+    factor,
   }),
-  delay: ({ part, phase_deg }, before) => {
-    const markers = markersIn(part, before);
-    return markers.length > 0 ? { name: "delay", markers, phase_deg, figures: [before.figure] } : null;
-  },
-  phase_scramble: (settings, { figure }) => ({ name: "phase_scramble", ...settings, figures: [figure] }),
-  mirror: (_, { figure }) => ({ name: "mirror", figures: [figure] }),
-  invert: (_, { figure }) => ({ name: "invert", figures: [figure] }),
-  occlude: ({ part }, before) => {
-    const markers = markersIn(part, before);
-    return markers.length > 0 ? { name: "occlude", markers, figures: [before.figure] } : null;
-  },
-  scramble: (settings, { stimulus, moving, figure }) => {
-    return { name: "scramble", ...settings, box_mm: extentOf(moving(), stimulus), figures: [figure] };
-  },
-  limb_dots: (settings, { stimulus, figure }) => {
-    const places = stimulus.figures[figure]!.segments.length > 0 ? settings.places : "joints";
-    return { name: "limb_dots", ...settings, places, asynchrony: 1, figures: [figure] };
-  },
-  blur: ({ sd_mm }, { figure }) => ({ name: "blur", sd_mm, figures: [figure] }),
-  mask: (settings, { stimulus, moving, figure }) => {
-    const there = moving();
-    const [width, height] = extentOf(there, stimulus);
-    return {
-      name: "mask",
-      ...settings,
-      box_mm: [Math.round(MASK_ROOM[0] * width), Math.round(MASK_ROOM[1] * height)],
-      centre_mm: rounded(there.middle),
-      direction_deg: null,
-      phases: false,
-      figures: [figure],
-    };
-  },
+  conflict: (settings, before) => (hasTrunk(before) ? settings : null),
+  ellipses: ({ shoulder_forward_mm, shoulder_up_mm, hip_forward_mm, hip_up_mm }, before) =>
+    hasTrunk(before)
+      ? {
+          shoulder_mm: [shoulder_forward_mm, shoulder_up_mm],
+          hip_mm: [hip_forward_mm, hip_up_mm],
+          phase_deg: legPhase(before.moving()),
+        }
+      : null,
+  reverse: (_, { stimulus }) => ({ end_s: stimulus.timing.duration_s }),
+  delay: ({ part, phase_deg }, before) => ({ markers: markersIn(part, before), phase_deg }),
+  phase_scramble: (settings) => settings,
+  mirror: (settings) => settings,
+  invert: (settings) => settings,
+  occlude: ({ part }, before) => ({ markers: markersIn(part, before) }),
+  scramble: (settings, { stimulus, moving }) => ({ ...settings, box_mm: pictureExtent(moving(), stimulus) }),
+  limb_dots: (settings, { joined }) => ({ ...settings, places: joined ? settings.places : "joints" }),
+  blur: (settings) => settings,
+  mask: (settings, { stimulus, moving }) => ({
+    ...settings,
+    box_mm: pictureExtent(moving(), stimulus).map((size, i) => Math.round(MASK_SIZE[i]! * size)),
+    centre_mm: moving().middle.map((at) => Math.round(at * 1000) / 1000),
+  }),
 };
 
-/** Whether anything is switched on that needs the chain. */
+/** Whether no transform is switched on. */
 export const isPlain = ({ transforms }: Pick<State, "transforms">): boolean =>
   Object.keys(transforms).length === 0;
 
 /**
- * A stimulus with what is switched on at the end of its chain.
+ * A stimulus with transforms added to its chain.
  *
- * What depends on the figure, such as the box of a scrambled walker, is worked out from the figure
- * as it is at that place of the chain, as Python's `Stimulus.then` does.
+ * Parameters that depend on the figure, such as the box of a scrambled walker, are computed from the
+ * figure at that place of the chain, as Python's `Stimulus.then` does.
  */
-export function chained(
-  stimulus: Stimulus,
-  transforms: Transforms,
-  groups: Before["groups"],
-): Stimulus {
-  const names = (Object.keys(MAKING) as TransformName[]).filter((name) => name in transforms);
-  return names.reduce((so_far, name) => {
-    const make = MAKING[name] as (settings: unknown, before: Before) => Made;
-    let figures: readonly Moving[] | undefined;
-    const steps = stimulus.figures.map((_, figure) => {
-      const moving = (): Moving => (figures ??= scene(so_far))[figure]!;
-      return make(transforms[name], { stimulus: so_far, figure, moving, groups });
+export function withTransforms(stimulus: Stimulus, transforms: Transforms, groups: Before["groups"]): Stimulus {
+  const names = (Object.keys(STEPS) as TransformName[]).filter((name) => name in transforms);
+  return names.reduce((before, name) => {
+    const make = STEPS[name] as (settings: unknown, before: Before) => { markers?: readonly string[] } | null;
+    let figures: readonly MovingDots[] | undefined;
+    const steps = before.figures.flatMap(({ walker, segments }, figure): Step[] => {
+      const step = make(transforms[name], {
+        stimulus: before,
+        markers: walker?.markers ?? [],
+        joined: segments.length > 0,
+        moving: () => (figures ??= scene(before))[figure]!,
+        groups,
+      });
+      return step && step.markers?.length !== 0 ? [completeStep({ name, ...step, figures: [figure] })] : [];
     });
-    const made = steps.filter((step) => step !== null);
-    return { ...so_far, transforms: [...so_far.transforms, ...together(made)] };
+    return { ...before, transforms: [...before.transforms, ...merged(steps)] };
   }, stimulus);
 }
 
-const TRUNK = ["left_shoulder", "right_shoulder", "left_hip", "right_hip"];
-
-const hasTrunk = ({ stimulus, figure }: Before): boolean =>
-  TRUNK.every((name) => markersOf(stimulus, figure).includes(name));
+const hasTrunk = ({ markers }: Before): boolean => TRUNK.every((name) => markers.includes(name));
 
 /** Markers of a part of the body that the figure has. */
-function markersIn(part: string, { stimulus, figure, groups }: Before): string[] {
+function markersIn(part: string, { markers, groups }: Before): string[] {
   const members = Object.hasOwn(groups, part) ? groups[part]! : [];
-  return markersOf(stimulus, figure).filter((name) => members.includes(name));
+  return markers.filter((name) => members.includes(name));
 }
 
-/** Where in its swing forward the left leg is at 0 s: `sin(c + phase)` is how far ahead. */
-function phaseOfLegs(moving: Moving): number {
+/** The phase of the left leg at 0 s, in degrees: `sin(c + phase)` is how far it is in front. */
+function legPhase(moving: MovingDots): number {
   const [left, right] = [3 * moving.index("left_ankle"), 3 * moving.index("right_ankle")];
   let [sine, cosine] = [0, 0];
   for (let sample = 0; sample < N_SAMPLES; sample++) {
@@ -132,27 +109,20 @@ function phaseOfLegs(moving: Moving): number {
   return Math.round(Math.atan2(cosine, sine) * (180 / Math.PI) * 1000) / 1000;
 }
 
-const markersOf = ({ figures }: Stimulus, figure: number): readonly string[] =>
-  figures[figure]!.walker?.markers ?? [];
-
-/** Steps that differ in nothing but their figure, as one. */
-function together(steps: readonly Step[]): Step[] {
-  const bare = steps.map((step) => JSON.stringify({ ...step, figures: null }));
-  const alike = bare.every((step) => step === bare[0]);
-  if (steps.length === 0 || !alike || steps[0]!.name === "mask") return [...steps];
+/** Steps that differ only in their figures, as one step. */
+function merged(steps: readonly Step[]): readonly Step[] {
+  const [first, ...others] = steps.map((step) => JSON.stringify({ ...step, figures: null }));
+  if (first === undefined || others.some((step) => step !== first) || steps[0]!.name === "mask") return steps;
   return [{ ...steps[0]!, figures: steps.length === 1 ? null : steps.flatMap(({ figures }) => figures!) }];
 }
 
 /** Width and height in the picture of a figure's mean posture, in whole millimetres. */
-function extentOf(moving: Moving, { view }: Stimulus): readonly [number, number] {
+function pictureExtent({ body, mean }: MovingDots, { view }: Stimulus): readonly [number, number] {
   const [right, up] = observerAxes(view.view_deg, view.elevation_deg);
-  const places = moving.body.dots.map((_, i) => [...moving.mean.subarray(3 * i, 3 * i + 3)] as unknown as Vector);
+  const places = body.dots.map((_, i) => [...mean.subarray(3 * i, 3 * i + 3)] as unknown as Vector);
   const along = (axis: Vector): number => {
-    const seen = places.map((place) => dot(place, axis)).filter((place) => !Number.isNaN(place));
-    return Math.max(Math.ceil(Math.max(...seen) - Math.min(...seen)), 100);
+    const values = places.map((place) => dot(place, axis)).filter((value) => !Number.isNaN(value));
+    return Math.max(Math.ceil(Math.max(...values) - Math.min(...values)), 100);
   };
   return [along(right), along(up)];
 }
-
-const rounded = (place: Vector): Vector =>
-  place.map((at) => Math.round(at * 1000) / 1000) as unknown as Vector;

@@ -1,70 +1,70 @@
-/** What is on the stage, as the content of a stimulus file. */
+/** The picture in the viewer as the content of a stimulus file. */
 
 import type { Figure, Step, Stimulus } from "../core/stimulus";
 import { observerAxes, type Vector } from "../core/vector";
-import type { Cast } from "../model/figures";
+import { walkerOf } from "../model/features";
+import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import type { State } from "../model/state";
-import { walkerOf } from "../model/features";
-import { chained } from "./transformChain";
-import { paletteOf } from "./palette";
-import { middleOf, roomOf, sharedRoom, stagingOf, type Room, type Size, type Staging } from "./arrangement";
+import { arrange, centreOf, sharedExtent, type Arrangement, type Extent, type Size } from "./arrangement";
+import { paletteOf } from "./drawing";
+import { withTransforms } from "./transformChain";
 
-/** Figures that a file may hold. */
-export const MOST_FIGURES = 64;
-/** How long a stimulus that is kept lasts. */
+/** Limit of the figures in a file. */
+export const MAX_FIGURES = 64;
+/** Duration of a saved stimulus. */
 export const DURATION_S = 4;
 const RATE_HZ = 60;
-const USUAL_SIZE: Size = { width_px: 640, height_px: 640 };
+const DEFAULT_SIZE: Size = { width_px: 640, height_px: 640 };
 
-/** The stimulus that a visitor sees, to be kept: `Stimulus.from_json` of Python takes it. */
+/** The present picture as a stimulus that Python's `Stimulus.from_json` reads. */
 export function stimulusOf(
   model: Model,
-  cast: readonly Cast[],
+  figures: readonly SceneFigure[],
   state: State,
-  size: Size = USUAL_SIZE,
+  size: Size = DEFAULT_SIZE,
 ): Stimulus {
-  const shown = cast.slice(0, MOST_FIGURES);
-  const staging = stagingOf(shown.length, roomFor(model, shown), size, state.elevation_deg);
-  return stagedStimulus(model, shown, state, size, staging);
+  const some = figures.slice(0, MAX_FIGURES);
+  const arrangement = arrange(some.length, extentFor(model, some), size, state.elevation_deg);
+  return arrangedStimulus(model, some, state, size, arrangement);
 }
 
-/** The room that each of a cast is given. */
-export const roomFor = (model: Model, cast: readonly Cast[]): Room =>
-  sharedRoom(roomOf(walkerOf(model, model.average)), cast.map(({ walker }) => walker));
+/** The space for each of some figures. */
+export const extentFor = (model: Model, figures: readonly SceneFigure[]): Extent =>
+  sharedExtent(walkerOf(model, model.average), figures.map(({ walker }) => walker));
 
 /**
- * The stimulus of a cast that stands in its places.
+ * The stimulus of arranged figures.
  *
- * Its chain begins with the steps given; a figure that turns by itself starts from an angle.
+ * Its chain begins with the steps `first`; a figure that turns by itself starts from the angle `turn_deg`.
  */
-export function stagedStimulus(
+export function arrangedStimulus(
   model: Model,
-  cast: readonly Cast[],
+  figures: readonly SceneFigure[],
   state: State,
   size: Size,
-  staging: Staging,
+  arrangement: Arrangement,
   first: readonly Step[] = [],
   turn_deg = 0,
 ): Stimulus {
   const palette = paletteOf(state.dark);
-  const middle = middleOf(cast[0]!.walker);
+  const centre = centreOf(figures[0]!.walker);
   const plain: Stimulus = {
     format: "eigenwalker stimulus",
     version: 1,
-    figures: cast.map((each, i) => figureOf(model, each, state, staging, i, middle)),
+    figures: figures.map((figure, i) => placed(model, figure, state, arrangement.offsets[i]!, centre)),
     transforms: [...first, ...tempo(state)],
     view: {
       view_deg: state.azimuth_deg,
       elevation_deg: state.elevation_deg,
-      eye_distance_mm: state.perspective ? staging.eyeMm : null,
-      centre_mm: [middle[0], middle[1], staging.middleMm],
+      eye_distance_mm: state.perspective ? arrangement.eyeMm : null,
+      centre_mm: [...centre, arrangement.middleMm],
     },
     timing: { duration_s: DURATION_S, rate_hz: RATE_HZ },
     display: {
       ...size,
-      px_per_mm: staging.pxPerMm,
-      dot_px: staging.dotPx,
+      px_per_mm: arrangement.pxPerMm,
+      dot_px: arrangement.dotPx,
       style: state.style,
       colour: state.style === "mannequin" ? palette.body : palette.colour,
       background: palette.background,
@@ -73,39 +73,36 @@ export function stagedStimulus(
     },
     provenance: { ...model.provenance, program: model.program },
   };
-  return turning(chained(plain, state.transforms, model.groups), state, turn_deg);
+  return turning(withTransforms(plain, state.transforms, model.groups), state, turn_deg);
 }
 
-/** A walker in its place; the first stands where it was made. */
-function figureOf(
-  model: Model,
-  { walker }: Cast,
+/** A walker at its place; the first keeps the place where it was made. */
+function placed(
+  { form, segments, pairs }: Model,
+  { walker }: SceneFigure,
   { azimuth_deg, elevation_deg }: State,
-  { offsets }: Staging,
-  number: number,
+  [across, above]: readonly [number, number],
   origin: readonly [number, number],
 ): Figure {
   const [right, up] = observerAxes(azimuth_deg, elevation_deg);
-  const [across, above] = offsets[number]!;
-  const [x, y] = middleOf(walker);
+  const [x, y] = centreOf(walker);
   const own: Vector = [origin[0] - x, origin[1] - y, 0];
   const position = own.map((at, axis) => at + across * right[axis]! + above * up[axis]!);
-  const whole = { ...walker, form: model.form };
+  const whole = { ...walker, form };
   return {
     walker: whole,
     trajectories: null,
-    segments: model.segments,
-    pairs: model.pairs,
+    segments,
+    pairs,
     position_mm: position as unknown as Vector,
     heading_deg: 0,
   };
 }
 
-/** Playback faster or slower. */
 const tempo = ({ tempo: factor }: State): Step[] =>
   factor === 1 ? [] : [{ name: "speed", factor, figures: null }];
 
-/** A figure that turns by itself does so as the last thing, before noise is added. */
+/** Turning by itself is the last transform before noise. */
 function turning(stimulus: Stimulus, { turning_deg_s: speed_deg_s }: State, angle_deg: number): Stimulus {
   if (speed_deg_s === 0 && angle_deg === 0) return stimulus;
   const turn: Step = { name: "rotate", axis: "z", angle_deg, speed_deg_s, figures: null };

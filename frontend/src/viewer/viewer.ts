@@ -1,106 +1,134 @@
-/** The stage: draws who is on it at the rate of the screen, and lets itself be turned by dragging. */
+/** The viewer: draws the figures at the rate of the screen, and is turned by dragging. */
 
 import { everyFrame } from "../canvas/frameClock";
-import { heldMannequin, type MannequinPainter } from "../canvas/mannequinLoader";
+import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
+import { contextOf, setResolution } from "../canvas/painter";
 import { flatPainter } from "../mannequin/hullPainter";
-import type { Cast } from "../model/figures";
+import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
-import type { State } from "../model/state";
-import { actOf, lead, type Act } from "./animation";
+import { clamped, RANGES, wrappedDegrees, type State } from "../model/state";
+import { animationOf, phaseOffset, type ViewerAnimation } from "./animation";
+import { arrange, boxesOf, type Arrangement, type Box, type Extent, type Size } from "./arrangement";
 import { watchGestures } from "./dragging";
-import { sameAct, seenAlike, seenFrom, type Built, type Seen, type Shown } from "./shown";
-import { boxesOf, stagingOf, type Box, type Room, type Size, type Staging } from "./arrangement";
-import { roomFor } from "./viewedStimulus";
-import { watchSight, watchSize } from "./visibility";
+import { extentFor } from "./viewedStimulus";
+import { watchSize, watchVisibility } from "./visibility";
 
-export type { Box } from "./arrangement";
-
-/** Told by the stage; all may be left out. */
-export interface Hooks {
+/** Functions that the viewer calls. */
+export interface ViewerEvents {
   /** It was turned by dragging. */
   turned?(azimuth_deg: number, elevation_deg: number): void;
   /**
-   * Where in its stride the first walker is, from 0 to below 1, some times a second: to lay out a
-   * page for each frame would cost more than to draw the walker.
+   * The phase of the first walker, from 0 to below 1, some times a second: a layout of the page for each
+   * frame would cost more than drawing the walker.
    */
-  ticked?(cycle: number): void;
-  /** One of several was tapped: its number among the model's walkers. */
+  ticked?(phase: number): void;
+  /** One of several walkers was tapped: its number among the model's walkers. */
   picked?(known: number): void;
-  /** Where each walker stands now, in pixels of CSS. */
-  laid?(boxes: readonly Box[]): void;
-  /** The mannequin is drawn flat, as what draws it in three dimensions is not there; the message says why. */
-  lacking?(message: string): void;
+  /** The cells of the walkers have changed, in CSS pixels. */
+  arranged?(boxes: readonly Box[]): void;
+  /** The mannequin is drawn flat, as its module is missing; the message says why. */
+  mannequinMissing?(message: string): void;
   /** Where the mannequin comes from, if not from the page. */
-  mannequin?(): Promise<MannequinPainter>;
+  loadMannequin?(): Promise<MannequinPainter>;
 }
+
+type View = Pick<State, "azimuth_deg" | "elevation_deg">;
+
+/** What is shown. */
+interface Shown {
+  readonly model: Model;
+  readonly figures: readonly SceneFigure[];
+  readonly state: State;
+}
+
+/** What the animation was made of, and when. */
+interface Built extends Shown {
+  readonly time: number;
+  readonly turned_deg: number;
+}
+
+/** Parts of the state that need a new animation, beside the figures. */
+const ANIMATED_PARTS = ["perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms"] as const;
 
 const DEGREES_PER_PX = 0.5;
 const TICK_S = 0.06;
-/** A screen that stood still meanwhile does not make up for it. */
-const LONGEST_FRAME_S = 0.1;
-/** How soon a stage that was thrown comes to rest, and when it has. */
+/** After a pause of the screen, the walk goes on where it was. */
+const MAX_FRAME_S = 0.1;
+/** Time constant of the rotation after a throw, and the speed at which it ends. */
 const SLOWING_S = 0.28;
-const RESTS_DEG_S = 4;
+const MIN_SPEED_DEG_S = 4;
+const NO_THROW = { right: 0, down: 0 };
 
-export class Stage {
+const sameAnimation = (one: Shown, other: Shown): boolean =>
+  one.model === other.model &&
+  one.figures === other.figures &&
+  ANIMATED_PARTS.every((part) => one.state[part] === other.state[part]);
+
+const sameView = (one: View, other: View): boolean =>
+  one.azimuth_deg === other.azimuth_deg && one.elevation_deg === other.elevation_deg;
+
+const viewFrom = (azimuth: number, elevation: number): View => ({
+  azimuth_deg: wrappedDegrees(azimuth),
+  elevation_deg: clamped(RANGES.elevation_deg, elevation),
+});
+
+export class Viewer {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D;
-  readonly #hooks: Hooks;
+  readonly #events: ViewerEvents;
   readonly #endings: (() => void)[];
   #shown: Shown | null = null;
-  #act: Act | null = null;
+  #animation: ViewerAnimation | null = null;
   #built: Built | null = null;
   #boxes: readonly Box[] = [];
-  #room: { cast: readonly Cast[]; room: Room } | null = null;
+  #extent: { figures: readonly SceneFigure[]; extent: Extent } | null = null;
   #size: Size = { width_px: 0, height_px: 0 };
-  #fine = 1;
+  #pixelRatio = 1;
   #mannequin: MannequinPainter | null = null;
-  #asked = false;
+  #loading = false;
   #stop: (() => void) | null = null;
   #time = 0;
-  #ticked = -Infinity;
-  #inSight = !document.hidden;
+  #lastTick = -Infinity;
+  #visible = !document.hidden;
   #dirty = true;
-  /** Turned by hand: the state follows, and is not heard until it has. */
-  #hand: Seen | null = null;
-  #throw = { right: 0, down: 0 };
+  /** The view while it is turned by hand, until the state has followed. */
+  #hand: View | null = null;
+  #throw = NO_THROW;
 
-  constructor(canvas: HTMLCanvasElement, hooks: Hooks = {}) {
-    const context = canvas.getContext("2d", { alpha: false });
-    if (!context) throw new Error("This browser gives no canvas to draw on.");
+  constructor(canvas: HTMLCanvasElement, events: ViewerEvents = {}) {
     this.#canvas = canvas;
-    this.#context = context;
-    this.#hooks = hooks;
+    this.#context = contextOf(canvas, { alpha: false });
+    this.#events = events;
     this.#endings = [
-      watchSize(canvas, (size, fine) => this.#resize(size, fine)),
-      watchSight(canvas, (inSight) => this.#beSeen(inSight)),
+      watchSize(canvas, (size, pixelRatio) => this.#resize(size, pixelRatio)),
+      watchVisibility(canvas, (visible) => this.#setVisible(visible)),
       this.#watchHand(),
     ];
   }
 
-  /** Where in its stride the first walker is, from 0 to below 1. */
-  get cycle(): number {
-    const cycles = this.#act?.cycle(0, this.#time) ?? 0;
-    return cycles - Math.floor(cycles);
+  /** The phase of the first walker, from 0 to below 1. */
+  get phase(): number {
+    const strides = this.#animation?.phase(0, this.#time) ?? 0;
+    return strides - Math.floor(strides);
   }
 
-  /** What draws mannequins, once it was asked for and is there. */
+  /** The mannequin painter, once it is loaded. */
   get mannequin(): MannequinPainter | null {
     return this.#mannequin;
   }
 
-  /** Show these from the next frame on; strides go on where they are. */
-  show(model: Model, cast: readonly Cast[], state: State): void {
+  /** Show figures from the next frame on; strides continue. */
+  show(model: Model, figures: readonly SceneFigure[], state: State): void {
     const before = this.#shown;
-    this.#shown = { model, cast, state };
-    if (this.#hand && !seenAlike(this.#hand, state)) this.#throw = { right: 0, down: 0 };
+    this.#shown = { model, figures, state };
+    if (this.#hand && !sameView(this.#hand, state)) this.#throw = NO_THROW;
     this.#hand = null;
-    if (state.style === "mannequin") this.#askForMannequin();
-    if (state.turning_deg_s === 0) this.#fold();
+    if (state.style === "mannequin") this.#loadMannequin();
+    if (state.turning_deg_s === 0) this.#keepTurned();
     const scrubbed = before && !state.playing && before.state.cycle !== state.cycle;
-    if (scrubbed) this.#rebuild(state.cycle - this.cycle);
-    else if (!this.#built || !sameAct(this.#built, this.#shown)) this.#rebuild();
-    else if (!seenAlike(this.#built.state, state)) this.#look();
+    if (scrubbed) this.#rebuild(state.cycle - this.phase);
+    else if (!this.#built || !sameAnimation(this.#built, this.#shown)) this.#rebuild();
+    else if (!sameView(this.#built.state, state)) this.#changeView();
     else this.#wake();
   }
 
@@ -111,80 +139,82 @@ export class Stage {
     this.#shown = null;
   }
 
-  /** Make the act anew, each walker in the stride where it was, or so many cycles on. */
-  #rebuild(on = 0): void {
+  /** Make a new animation; each walker keeps its phase, or moves on by a number of strides. */
+  #rebuild(strides = 0): void {
     const shown = this.#shown;
     if (!shown || this.#size.width_px === 0 || this.#size.height_px === 0) return;
-    const { model, cast } = shown;
+    const { model, figures } = shown;
     const state = { ...shown.state, ...this.#hand };
-    if (this.#room?.cast !== cast) this.#room = { cast, room: roomFor(model, cast) };
-    const staging = stagingOf(cast.length, this.#room.room, this.#size, state.elevation_deg);
+    const arrangement = this.#arrange(shown, state);
     const [size, time, mannequin] = [this.#size, this.#time, this.#mannequin];
-    const cycles = cast.map((_, i) => on + this.#cycleOf(i));
+    const phases = figures.map((_, i) => strides + this.#phaseOf(i, shown.state));
     const turned_deg = this.#turnedBy(time);
-    this.#act = actOf({ model, cast, state, size, staging, cycles, time, turned_deg, mannequin });
-    this.#built = { model, cast, state, time, turned_deg };
-    this.#lay(staging);
+    this.#animation = animationOf({ model, figures, state, size, arrangement, phases, time, turned_deg, mannequin });
+    this.#built = { model, figures, state, time, turned_deg };
+    this.#setArrangement(arrangement);
+  }
+
+  /** Show the same animation from another view. */
+  #changeView(): void {
+    const [shown, built] = [this.#shown, this.#built];
+    if (!shown || !built) return;
+    const { azimuth_deg, elevation_deg } = { ...shown.state, ...this.#hand };
+    const state = { ...built.state, azimuth_deg, elevation_deg };
+    const arrangement = this.#arrange(shown, state);
+    if (!this.#animation?.turn(azimuth_deg, elevation_deg, arrangement)) return this.#rebuild();
+    this.#built = { ...built, state };
+    this.#setArrangement(arrangement);
+  }
+
+  #arrange({ model, figures }: Shown, { elevation_deg }: State): Arrangement {
+    if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(model, figures) };
+    return arrange(figures.length, this.#extent.extent, this.#size, elevation_deg);
+  }
+
+  #setArrangement(arrangement: Arrangement): void {
+    this.#boxes = boxesOf(arrangement, this.#size);
+    this.#events.arranged?.(this.#boxes);
     this.#wake();
   }
 
-  /** See the same act from elsewhere. */
-  #look(): void {
-    const { state, cast } = this.#shown ?? {};
-    if (!state || !cast || !this.#built || !this.#room) return;
-    const view = { ...state, ...this.#hand };
-    const staging = stagingOf(cast.length, this.#room.room, this.#size, view.elevation_deg);
-    if (!this.#act?.turn(view.azimuth_deg, view.elevation_deg, staging)) return this.#rebuild();
-    const { azimuth_deg, elevation_deg } = view;
-    this.#built = { ...this.#built, state: { ...this.#built.state, azimuth_deg, elevation_deg } };
-    this.#lay(staging);
-    this.#wake();
-  }
-
-  /** How far it has turned by itself. */
+  /** The angle by which it has turned by itself. */
   #turnedBy(time: number): number {
     const built = this.#built;
     return built ? built.turned_deg + built.state.turning_deg_s * (time - built.time) : 0;
   }
 
-  /** From now on it is seen from where it came to by turning itself. */
-  #fold(): void {
+  /** Make the angle by which it has turned by itself a part of the view. */
+  #keepTurned(): void {
     const { state } = this.#shown ?? {};
     const turned = this.#turnedBy(this.#time);
     if (!state || !this.#built || turned === 0) return;
     this.#built = { ...this.#built, turned_deg: 0, time: this.#time };
-    this.#hand = seenFrom(state.azimuth_deg + turned, state.elevation_deg);
+    this.#hand = viewFrom(state.azimuth_deg + turned, state.elevation_deg);
     this.#rebuild();
-    this.#tellHand();
+    this.#reportHand();
   }
 
-  #tellHand(): void {
-    if (this.#hand) this.#hooks.turned?.(this.#hand.azimuth_deg, this.#hand.elevation_deg);
+  #reportHand(): void {
+    if (this.#hand) this.#events.turned?.(this.#hand.azimuth_deg, this.#hand.elevation_deg);
   }
 
-  /** Where in its stride a walker goes on. */
-  #cycleOf(number: number): number {
-    const { state } = this.#shown!;
-    const ahead = lead(state, number);
-    if (!this.#act) return state.cycle + ahead;
-    const known = this.#built?.state.scene === state.scene ? this.#act.cycle(number, this.#time) : NaN;
-    return Number.isFinite(known) ? known : this.#act.cycle(0, this.#time) + ahead;
+  /** The phase with which a walker continues. */
+  #phaseOf(number: number, state: State): number {
+    const offset = phaseOffset(state, number);
+    if (!this.#animation) return state.cycle + offset;
+    const known = this.#built?.state.scene === state.scene ? this.#animation.phase(number, this.#time) : NaN;
+    return Number.isFinite(known) ? known : this.#animation.phase(0, this.#time) + offset;
   }
 
-  #lay(staging: Staging): void {
-    this.#boxes = boxesOf(staging, this.#size);
-    this.#hooks.laid?.(this.#boxes);
-  }
-
-  /** Draw a frame, and go on drawing while anything moves. */
+  /** Draw a frame, and go on while anything moves. */
   #wake(): void {
     this.#dirty = true;
-    if (this.#stop || !this.#inSight) return;
+    if (this.#stop || !this.#visible) return;
     let before = 0;
     this.#stop = everyFrame((elapsedMs) => {
-      const lasted = Math.min((elapsedMs - before) / 1000, LONGEST_FRAME_S);
+      const seconds = Math.min((elapsedMs - before) / 1000, MAX_FRAME_S);
       before = elapsedMs;
-      const goesOn = this.#frame(lasted);
+      const goesOn = this.#frame(seconds);
       if (!goesOn) this.#stop = null;
       return goesOn;
     });
@@ -195,50 +225,50 @@ export class Stage {
     this.#stop = null;
   }
 
-  /** One frame; whether there will be another. */
-  #frame(lasted: number): boolean {
+  /** One frame; whether another one follows. */
+  #frame(seconds: number): boolean {
     const state = this.#shown?.state;
-    if (!state || !this.#act) return false;
-    if (state.playing) this.#time += lasted;
-    const slides = this.#slide(lasted);
+    if (!state || !this.#animation) return false;
+    if (state.playing) this.#time += seconds;
+    const slides = this.#slide(seconds);
     if (state.playing || this.#dirty) {
       this.#dirty = false;
-      this.#act.draw(this.#context, this.#time, this.#fine);
+      this.#animation.draw(this.#context, this.#time, this.#pixelRatio);
       this.#tick(state.playing);
     }
     return state.playing || slides || this.#dirty;
   }
 
   #tick(playing: boolean): void {
-    if (playing && Math.abs(this.#time - this.#ticked) < TICK_S) return;
-    this.#ticked = this.#time;
-    this.#hooks.ticked?.(this.cycle);
+    if (playing && Math.abs(this.#time - this.#lastTick) < TICK_S) return;
+    this.#lastTick = this.#time;
+    this.#events.ticked?.(this.phase);
   }
 
-  /** Turn on after a throw, slower and slower; whether it still turns. */
-  #slide(lasted: number): boolean {
+  /** Turn on after a throw, more and more slowly; whether it still turns. */
+  #slide(seconds: number): boolean {
     const { right, down } = this.#throw;
-    if (Math.hypot(right, down) * DEGREES_PER_PX < RESTS_DEG_S) return false;
-    const slower = Math.exp(-lasted / SLOWING_S);
+    if (Math.hypot(right, down) * DEGREES_PER_PX < MIN_SPEED_DEG_S) return false;
+    const slower = Math.exp(-seconds / SLOWING_S);
     this.#throw = { right: right * slower, down: down * slower };
-    this.#turn(right * lasted, down * lasted);
+    this.#turn(right * seconds, down * seconds);
     return true;
   }
 
   #turn(right: number, down: number): void {
     const from = this.#hand ?? this.#shown?.state;
     if (!from) return;
-    this.#hand = seenFrom(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
-    this.#look();
-    this.#tellHand();
+    this.#hand = viewFrom(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
+    this.#changeView();
+    this.#reportHand();
   }
 
   #watchHand(): () => void {
     const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
     return watchGestures(this.#canvas, {
       begun: () => {
-        this.#throw = { right: 0, down: 0 };
-        this.#fold();
+        this.#throw = NO_THROW;
+        this.#keepTurned();
       },
       dragged: (right, down) => this.#turn(right, down),
       thrown: (right, down) => {
@@ -250,44 +280,42 @@ export class Stage {
     });
   }
 
-  /** Whose box a place is in. */
+  /** Report the walker in whose cell a place is. */
   #pick(x: number, y: number): void {
-    const cast = this.#shown?.cast ?? [];
+    const figures = this.#shown?.figures ?? [];
     const number = this.#boxes.findIndex(
       ({ left, top, width, height }) => x >= left && x < left + width && y >= top && y < top + height,
     );
-    const known = cast[number]?.known ?? null;
-    if (cast.length > 1 && known !== null) this.#hooks.picked?.(known);
+    const known = figures[number]?.known ?? null;
+    if (figures.length > 1 && known !== null) this.#events.picked?.(known);
   }
 
-  #resize(size: Size, fine: number): void {
+  #resize(size: Size, pixelRatio: number): void {
     this.#size = size;
-    this.#fine = fine;
-    this.#canvas.width = Math.round(size.width_px * fine);
-    this.#canvas.height = Math.round(size.height_px * fine);
+    this.#pixelRatio = pixelRatio;
+    setResolution(this.#canvas, size.width_px, size.height_px, pixelRatio);
     this.#rebuild();
-    // A canvas that has a new size is empty: it is drawn before the screen shows it.
-    this.#act?.draw(this.#context, this.#time, this.#fine);
+    // A canvas with a new size is empty: draw before the screen shows it.
+    this.#animation?.draw(this.#context, this.#time, this.#pixelRatio);
   }
 
-  /** No work while nobody sees it. */
-  #beSeen(inSight: boolean): void {
-    this.#inSight = inSight;
-    if (inSight) this.#wake();
+  /** Draw only while visible. */
+  #setVisible(visible: boolean): void {
+    this.#visible = visible;
+    if (visible) this.#wake();
     else this.#sleep();
   }
 
-  /** In three dimensions where the page holds what draws it, else flat. */
-  #askForMannequin(): void {
-    if (this.#asked) return;
-    this.#asked = true;
-    const load = this.#hooks.mannequin ?? heldMannequin;
-    const lacking = (error: unknown): MannequinPainter => {
-      this.#hooks.lacking?.(error instanceof Error ? error.message : String(error));
-      return flatPainter();
-    };
+  /** In three dimensions if the page has the module, else flat. */
+  #loadMannequin(): void {
+    if (this.#loading) return;
+    this.#loading = true;
+    const load = this.#events.loadMannequin ?? mannequinInPage;
     void load()
-      .catch(lacking)
+      .catch((error: unknown) => {
+        this.#events.mannequinMissing?.(error instanceof Error ? error.message : String(error));
+        return flatPainter();
+      })
       .then((painter) => {
         this.#mannequin = painter;
         this.#rebuild();

@@ -1,21 +1,21 @@
-/** How large a canvas is laid out, and whether anybody sees it. */
+/** The layout size of a canvas, and whether it is visible. */
 
 import type { Size } from "./arrangement";
 
-/** Finer than this no dot looks better, and a phone gets warm. */
-const MOST_FINE = 2;
+/** A higher resolution does not look better, and heats a phone. */
+const MAX_PIXEL_RATIO = 2;
 
-/** Tell the size now and whenever it changes, until the returned function is called. */
-export function watchSize(canvas: HTMLCanvasElement, told: (size: Size, fine: number) => void): () => void {
+/** Report the size now and on every change, until the returned function is called. */
+export function watchSize(canvas: HTMLCanvasElement, onSize: (size: Size, pixelRatio: number) => void): () => void {
   const ending = new AbortController();
-  let known = "";
+  let last = "";
   const measure = (): void => {
     const { clientWidth: width_px, clientHeight: height_px } = canvas;
-    const fine = Math.min(window.devicePixelRatio || 1, MOST_FINE);
-    const found = [width_px, height_px, fine].join();
-    if (found === known) return;
-    known = found;
-    told({ width_px, height_px }, fine);
+    const pixelRatio = Math.min(window.devicePixelRatio || 1, MAX_PIXEL_RATIO);
+    const now = [width_px, height_px, pixelRatio].join();
+    if (now === last) return;
+    last = now;
+    onSize({ width_px, height_px }, pixelRatio);
   };
   const observer = new ResizeObserver(measure);
   observer.observe(canvas);
@@ -27,17 +27,17 @@ export function watchSize(canvas: HTMLCanvasElement, told: (size: Size, fine: nu
   };
 }
 
-/** Tell whether an element is in sight, whenever that changes, until the returned function is called. */
-export function watchSight(element: HTMLElement, told: (inSight: boolean) => void): () => void {
+/** Report on every change whether an element is visible, until the returned function is called. */
+export function watchVisibility(element: HTMLElement, onChange: (visible: boolean) => void): () => void {
   const ending = new AbortController();
   let onScreen = true;
-  const tell = (): void => told(onScreen && !document.hidden);
+  const report = (): void => onChange(onScreen && !document.hidden);
   const observer = new IntersectionObserver((entries) => {
     onScreen = entries.at(-1)!.isIntersecting;
-    tell();
+    report();
   });
   observer.observe(element);
-  document.addEventListener("visibilitychange", tell, { signal: ending.signal });
+  document.addEventListener("visibilitychange", report, { signal: ending.signal });
   return () => {
     observer.disconnect();
     ending.abort();

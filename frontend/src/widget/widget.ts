@@ -1,146 +1,175 @@
-/** The walker in a notebook, for anywidget: what Python sets is shown, what a hand sets goes back. */
+/** A walker in a notebook, for anywidget: shows the values that Python sets, and sends changes by hand back. */
 
+import { everyFrame } from "../canvas/frameClock";
 import { mannequinFrom, type MannequinPainter } from "../canvas/mannequinLoader";
-import { castOf } from "../model/figures";
-import type { Model, Own } from "../model/model";
+import { painterOn } from "../canvas/painter";
+import { readStimulus } from "../core/readStimulus";
+import { figuresOf } from "../model/figures";
+import type { Model, OwnWalker } from "../model/model";
 import { readModel } from "../model/readModel";
 import { initialState, type State } from "../model/state";
-import { Stage } from "../viewer/viewer";
-import { film } from "./film";
-import { controlsOf, type Controls } from "./controls";
+import { button, make, messageOf } from "../page/elements";
+import { Viewer } from "../viewer/viewer";
+import { controlsOf } from "./traitControls";
 import style from "./widget.css?inline";
 
-/** What anywidget gives: the values that Python and the page share. */
-export interface Shared {
+/** The values that Python and the page share, from anywidget. */
+export interface SharedModel {
   get(name: string): unknown;
   set(name: string, value: unknown): void;
   save_changes(): void;
-  on(event: string, heard: (message?: unknown) => void): void;
-  off(event: string, heard: (message?: unknown) => void): void;
+  on(event: string, listener: (message?: unknown) => void): void;
+  off(event: string, listener: (message?: unknown) => void): void;
   send(message: unknown): void;
 }
 
-/** The kernel hears of a hand that moves so often. */
-const TOLD_EVERY_MS = 80;
+/** The least time between two messages to the kernel during a drag. */
+const SEND_EVERY_MS = 80;
 const PLAIN = [
   "kind", "part", "bias", "tempo", "azimuth_deg", "elevation_deg", "perspective", "style", "trails",
   "dark", "playing", "cycle",
 ] as const satisfies readonly (keyof State)[];
 const WATCHED = [...PLAIN, "alpha", "start", "strengths", "eigenwalkers", "_own"];
 
-function render({ model: shared, el }: { model: Shared; el: HTMLElement }): () => void {
+function render({ model: shared, el }: { model: SharedModel; el: HTMLElement }): () => void {
   const root = el.shadowRoot ?? el.attachShadow({ mode: "open" });
-  const sheet = document.createElement("style");
-  sheet.textContent = style;
-  const box = document.createElement("div");
-  box.className = "walker";
-  root.replaceChildren(sheet, box);
+  const box = make("div", { class: "walker" });
+  root.replaceChildren(make("style", {}, style), box);
   try {
-    return shared.get("_stimulus") ? film(shared, box) : walker(shared, box);
+    return shared.get("_stimulus") ? showStimulus(shared, box) : showWalker(shared, box);
   } catch (error) {
-    const trouble = document.createElement("p");
-    trouble.setAttribute("role", "alert");
-    trouble.textContent = error instanceof Error ? error.message : String(error);
-    box.replaceChildren(trouble);
+    box.replaceChildren(make("p", { role: "alert" }, messageOf(error)));
     return () => {};
   }
 }
 
-/** A walker made of a model, with its sliders; what ends it is returned. */
-function walker(shared: Shared, box: HTMLElement): () => void {
-  const model = readModel(shared.get("_model"));
-  const canvas = document.createElement("canvas");
-  canvas.style.height = `${Number(shared.get("height_px"))}px`;
-  canvas.className = "turns";
-  canvas.setAttribute("role", "img");
-  const tell = teller(shared);
-  const change = (part: Record<string, unknown>): void => {
-    for (const [name, value] of Object.entries(part)) shared.set(name, value);
-    tell();
-  };
-  const controls: Controls | null = shared.get("controls") ? controlsOf(model, change) : null;
-  box.replaceChildren(canvas, ...(controls ? [controls.element] : []));
-  const stage = new Stage(canvas, {
-    turned: (azimuth_deg, elevation_deg) => change({ azimuth_deg, elevation_deg }),
-    mannequin: () => mannequinOf(shared),
+/** Show a stimulus as it is, again and again; the returned function ends that. */
+function showStimulus(shared: SharedModel, box: HTMLElement): () => void {
+  const stimulus = readStimulus(shared.get("_stimulus"));
+  const canvas = make("canvas", { role: "img", "aria-label": "A moving figure" });
+  const play = button("", () => {
+    shared.set("playing", !shared.get("playing"));
+    shared.save_changes();
   });
-  if (matchMedia("(prefers-reduced-motion: reduce)").matches) change({ playing: false });
-  let waiting = 0;
+  box.replaceChildren(canvas, ...(shared.get("controls") ? [make("div", { class: "bar" }, play)] : []));
+  const scale = Math.min(1, Number(shared.get("height_px")) / stimulus.display.height_px);
+  const painter = painterOn(canvas, stimulus, scale);
+  let time = 0;
+  let stop = (): void => {};
   const show = (): void => {
-    waiting = 0;
-    const state = stateOf(shared, model);
-    box.classList.toggle("light", !state.dark);
-    canvas.setAttribute("aria-label", `${model.title}, seen from ${Math.round(state.azimuth_deg)} degrees`);
-    stage.show(model, castOf(model, state, ownOf(shared)), state);
-    controls?.show(state);
+    stop();
+    const playing = Boolean(shared.get("playing"));
+    play.textContent = playing ? "Pause" : "Play";
+    const from = time;
+    painter.paint(time);
+    if (!playing) return;
+    stop = everyFrame((elapsedMs) => {
+      time = (from + elapsedMs / 1000) % stimulus.timing.duration_s;
+      painter.paint(time);
+      return true;
+    });
   };
-  // Several values that change together are shown together.
-  const soon = (): void => {
-    waiting ||= requestAnimationFrame(show);
-  };
-  const pausedAt = (): void => {
-    if (!shared.get("playing")) change({ cycle: stage.cycle });
-  };
-  for (const name of WATCHED) shared.on(`change:${name}`, soon);
-  shared.on("change:playing", pausedAt);
+  shared.on("change:playing", show);
   show();
   return () => {
-    for (const name of WATCHED) shared.off(`change:${name}`, soon);
-    shared.off("change:playing", pausedAt);
-    cancelAnimationFrame(waiting);
-    stage.remove();
+    stop();
+    shared.off("change:playing", show);
   };
 }
 
-/** What sends changes to Python, at once and then not too often. */
-function teller(shared: Shared): () => void {
+/** Show a walker of a model with its sliders; the returned function ends that. */
+function showWalker(shared: SharedModel, box: HTMLElement): () => void {
+  const model = readModel(shared.get("_model"));
+  const canvas = make("canvas", { class: "turns", role: "img" });
+  canvas.style.height = `${Number(shared.get("height_px"))}px`;
+  const send = senderOf(shared);
+  const change = (part: Record<string, unknown>): void => {
+    for (const [name, value] of Object.entries(part)) shared.set(name, value);
+    send();
+  };
+  const controls = shared.get("controls") ? controlsOf(model, change) : null;
+  box.replaceChildren(canvas, ...(controls ? [controls.element] : []));
+  const viewer = new Viewer(canvas, {
+    turned: (azimuth_deg, elevation_deg) => change({ azimuth_deg, elevation_deg }),
+    loadMannequin: () => requestMannequin(shared),
+  });
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) change({ playing: false });
+  let request = 0;
+  const show = (): void => {
+    request = 0;
+    const state = stateOf(shared, model);
+    box.classList.toggle("light", !state.dark);
+    canvas.setAttribute("aria-label", `${model.title}, seen from ${Math.round(state.azimuth_deg)} degrees`);
+    viewer.show(model, figuresOf(model, state, ownWalker(shared)), state);
+    controls?.show(state);
+  };
+  // Values that change together are shown together.
+  const showSoon = (): void => {
+    request ||= requestAnimationFrame(show);
+  };
+  const keepPhase = (): void => {
+    if (!shared.get("playing")) change({ cycle: viewer.phase });
+  };
+  for (const name of WATCHED) shared.on(`change:${name}`, showSoon);
+  shared.on("change:playing", keepPhase);
+  show();
+  return () => {
+    for (const name of WATCHED) shared.off(`change:${name}`, showSoon);
+    shared.off("change:playing", keepPhase);
+    cancelAnimationFrame(request);
+    viewer.remove();
+  };
+}
+
+/** A function that sends changes to Python, at once and then at a limited rate. */
+function senderOf(shared: SharedModel): () => void {
   let timer = 0;
-  let more = false;
+  let pending = false;
   const send = (): void => {
     timer = 0;
-    if (!more) return;
-    more = false;
+    if (!pending) return;
+    pending = false;
     shared.save_changes();
-    timer = window.setTimeout(send, TOLD_EVERY_MS);
+    timer = window.setTimeout(send, SEND_EVERY_MS);
   };
   return () => {
-    more = true;
+    pending = true;
     if (timer === 0) send();
   };
 }
 
-export function stateOf(shared: Pick<Shared, "get">, model: Model): State {
+function stateOf(shared: SharedModel, model: Model): State {
   const initial = initialState(model);
   const plain = Object.fromEntries(PLAIN.map((name) => [name, shared.get(name)]));
-  const numbers = (name: string, usual: readonly number[]): number[] => {
+  const numbers = (name: "strengths" | "eigenwalkers"): number[] => {
     const given = shared.get(name) as readonly number[];
-    return usual.map((value, i) => given[i] ?? value);
+    return initial[name].map((value, i) => given[i] ?? value);
   };
   return {
     ...initial,
     ...(plain as Partial<State>),
     traits: shared.get("alpha") as State["traits"],
     from: shared.get("start") as State["from"],
-    strengths: numbers("strengths", initial.strengths),
-    eigenwalkers: numbers("eigenwalkers", initial.eigenwalkers),
+    strengths: numbers("strengths"),
+    eigenwalkers: numbers("eigenwalkers"),
   };
 }
 
-function ownOf(shared: Shared): Own | null {
+function ownWalker(shared: SharedModel): OwnWalker | null {
   const vector = shared.get("_own") as readonly number[] | null;
   return vector ? { name: "your walker", vector } : null;
 }
 
-/** The module of the mannequin, which Python sends when it is asked for. */
-function mannequinOf(shared: Shared): Promise<MannequinPainter> {
+/** The mannequin painter from the module that Python sends on request. */
+function requestMannequin(shared: SharedModel): Promise<MannequinPainter> {
   return new Promise((resolve, reject) => {
-    const heard = (message: unknown): void => {
+    const onMessage = (message: unknown): void => {
       const text = (message as { mannequin?: unknown } | null)?.mannequin;
       if (typeof text !== "string") return;
-      shared.off("msg:custom", heard);
+      shared.off("msg:custom", onMessage);
       mannequinFrom(text).then(resolve, reject);
     };
-    shared.on("msg:custom", heard);
+    shared.on("msg:custom", onMessage);
     shared.send({ wants: "mannequin" });
   });
 }

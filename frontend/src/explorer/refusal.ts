@@ -1,2 +1,0 @@
-/** Why a file was not taken; the message is a sentence to show. */
-export class CannotOpen extends Error {}
