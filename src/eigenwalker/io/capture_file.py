@@ -27,21 +27,8 @@ class RateAssumed(UserWarning):
 class CaptureFile:
     """A file, and the arguments of `read_mocap` that its reader takes into account.
 
-    Parameters
-    ----------
-    path : Path
-        Where the file is.
-    content : bytes
-        The whole file.
-    unit : Unit, optional
-        Unit of length, in place of the one in the file.
-    rate_hz : float, optional
-        Frames a second, in place of those in the file.
-    default_unit, default_rate_hz : optional
-        The same, for a file that names none.
-    keep_partial : bool
-        Whether to take the whole frames of a file that declares more frames than it has.
-
+    `unit` and `rate_hz` replace those of the file; the defaults are for a file that names none.
+    With `keep_partial`, a file that declares more frames than it has gives its whole frames.
     """
 
     path: Path
@@ -64,12 +51,8 @@ class CaptureFile:
     def check_frames(self, n_declared: int, n_frames: int) -> dict[str, int]:
         """Refuse a file that does not have the frames that it declares.
 
-        Returns
-        -------
-        dict
-            ``n_frames_cut``, how many frames are missing at the end, for a partial file that is
-            to be kept; else empty.
-
+        Of a partial file that is to be kept, return the attribute ``n_frames_cut``: how many frames
+        are missing at its end.
         """
         if n_frames == n_declared:
             return {}
@@ -83,23 +66,9 @@ class CaptureFile:
     def frame_rate(
         self, declared_hz: float | None, *, usual_hz: float, reason: str
     ) -> tuple[float, dict[str, object]]:
-        """Return the frames a second of a format whose files may name none.
+        """Return the frames a second of a file that may name none, and attributes about them.
 
-        Parameters
-        ----------
-        declared_hz : float or None
-            Frames a second that the file names.
-        usual_hz : float
-            Assumed, with a warning, if neither file nor caller names any.
-        reason : str
-            Why that rate is usual.
-
-        Returns
-        -------
-        rate_hz : float
-        attrs : dict
-            ``rate_assumed`` and ``rate_reason`` of an assumed rate, else empty.
-
+        If neither file nor caller name any, `usual_hz` is assumed, with a warning.
         """
         rate_hz = self.rate_hz or declared_hz or self.default_rate_hz
         if rate_hz is not None:
@@ -114,23 +83,7 @@ class CaptureFile:
 
 
 def read_bytes(path: Path, *, max_bytes: int = MAX_BYTES, expected: str = "a capture") -> bytes:
-    """Return the bytes of a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    max_bytes : int
-        A larger file is refused unread.
-    expected : str
-        What the file should hold, for the message about an empty one.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is no plain file, too large, empty, or may not be read.
-
-    """
+    """Return the bytes of a plain file that is there, not empty and not too large."""
     name = path.name or str(path)
     try:
         if path.is_dir():

@@ -48,14 +48,7 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
 
 
 def printable(text: str) -> str:
-    r"""Return a text in one line, without characters that control a terminal.
-
-    Examples
-    --------
-    >>> printable("left\x1b[2Jknee\n")
-    'left�[2Jknee '
-
-    """
+    r"""Return a text in one line, without characters that control a terminal."""
     return "".join(
         letter if letter.isprintable() else " " if letter.isspace() else "\N{REPLACEMENT CHARACTER}"
         for letter in text

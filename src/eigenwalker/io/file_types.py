@@ -27,26 +27,7 @@ _SIGNATURES = (
 
 
 def file_type_of(content: bytes) -> str:
-    """Return what a file seems to be, as the end of a sentence.
-
-    Parameters
-    ----------
-    content : bytes
-        Its beginning, or all of it.
-
-    Returns
-    -------
-    str
-        The kind of file by its first bytes, what a text begins with, or that it is neither.
-
-    Examples
-    --------
-    >>> file_type_of(b"%PDF-1.7"), file_type_of(b"Dear colleague")
-    ('a PDF document', 'a text that begins with "Dear colleague"')
-    >>> file_type_of(bytes(range(256)))
-    'a file of no kind that is known here'
-
-    """
+    """Return what a file seems to be, as the end of a sentence."""
     beginning = content[:1000]
     for signature, kind in _SIGNATURES:
         if re.match(signature, beginning, re.DOTALL | re.IGNORECASE):
@@ -70,12 +51,5 @@ def _text(beginning: bytes) -> str:
 
 
 def with_article(name: str) -> str:
-    """Return a name with "a" or "an" before it.
-
-    Examples
-    --------
-    >>> with_article("ASF/AMC file"), with_article("BVH file")
-    ('an ASF/AMC file', 'a BVH file')
-
-    """
+    """Return a name with "a" or "an" before it."""
     return f"{'an' if name[:1].upper() in 'AEIOU' else 'a'} {name}"

@@ -40,22 +40,9 @@ BEGINNING = 100_000
 class Reader:
     """A format that is read: how its files are known, and the function that reads them.
 
-    Parameters
-    ----------
-    name : str
-        Name of the format.
-    suffixes : tuple of str
-        Usual suffixes of its files.
-    looks_like : function of bytes
-        Whether the content of a file is of this format.
-    read : function of a CaptureFile
-        Gives trajectories or raises `UnreadableFile`.
-    is_meant : function of bytes and Path, optional
-        Where other files have the suffix too: whether a file is meant as a capture, by its
-        beginning and its path.
-    companion : function of Path, optional
-        Finds the file beside a capture without which it cannot be read as it is.
-
+    Where other files have the suffix too, `is_meant` says by the beginning of a file and its path
+    whether it is meant as a capture. `companion` finds the file beside a capture without which it
+    cannot be read as it is.
     """
 
     name: str
@@ -243,18 +230,6 @@ def is_capture(path: Path) -> bool:
 
 
 def companion_files(path: Path) -> list[Path]:
-    """Return the files beside a capture without which it cannot be read as it is.
-
-    Parameters
-    ----------
-    path : Path
-        A capture.
-
-    Returns
-    -------
-    list of Path
-        The skeleton of an AMC file, the description of a table; for most captures none.
-
-    """
+    """Return the files beside a capture without which it cannot be read as it is."""
     companions = [reader.companion(path) for reader in READERS if reader.companion]
     return [companion for companion in companions if companion]

@@ -27,16 +27,8 @@ _REASONS: dict[int, Reason] = {
 class JobError(Exception):
     """A function that ran in a child process gave no result.
 
-    Parameters
-    ----------
-    reason : {"refused", "failed", "too large", "too slow"}
-        Whether it raised a ValueError, broke down in another way, needed more memory than it may
-        have, or took longer.
-    message : str
-        Message of the error that it raised; empty for the other reasons.
-    status : int
-        Exit status of the child process.
-
+    It raised a ValueError ("refused") or another error ("failed"), whose `message` is kept, or it
+    died with the exit `status`, or needed more memory or time than it may have.
     """
 
     def __init__(self, reason: Reason, message: str = "", status: int = 0) -> None:
@@ -48,20 +40,10 @@ class JobError(Exception):
 
 @dataclass(frozen=True)
 class Job:
-    """A function to be run in a process of its own.
+    """A function of texts that returns bytes, to be run in a process of its own.
 
-    Parameters
-    ----------
-    function : function of str, returning bytes
-        The child imports its module by path and not this package, so a module that imports little
-        starts fast.
-    arguments : tuple of str
-        Arguments of the function.
-    seconds : int
-        The child is ended after so long.
-    max_bytes : int
-        Memory that it may take, where the system can limit that (Linux), and size of the result.
-
+    The child imports the function's module by path, and not this package. It is ended after
+    `seconds`, and may take memory of `max_bytes`, where the system can limit that (Linux).
     """
 
     function: Callable[..., bytes]
@@ -70,14 +52,7 @@ class Job:
     max_bytes: int = 2**30
 
     def run(self) -> bytes:
-        """Return what the function returns.
-
-        Raises
-        ------
-        JobError
-            If it refuses its arguments, dies, hangs, or needs too much.
-
-        """
+        """Return what the function returns, or raise `JobError`."""
         try:
             child = subprocess.run(
                 self._command(),

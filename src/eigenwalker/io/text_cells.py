@@ -31,14 +31,7 @@ _AXIS_BEFORE = re.compile(r"(?P<axis>[xyzXYZ])[ _.](?P<name>.+)")
 
 
 def is_text(content: bytes) -> bool:
-    """Return whether a file holds text, by its first bytes.
-
-    Examples
-    --------
-    >>> is_text(b"time,nose_x"), is_text(bytes(16))
-    (True, False)
-
-    """
+    """Return whether a file holds text, by its first bytes."""
     if content.startswith(_UTF16_MARKS):
         return True
     return not any(byte < 32 and byte not in _TEXT_CONTROLS for byte in content[:1024])
@@ -47,18 +40,7 @@ def is_text(content: bytes) -> bool:
 def lines_of(content: bytes, source: str) -> list[str]:
     """Return the lines of a text, without empty ones at its end.
 
-    Parameters
-    ----------
-    content : bytes
-        The whole file: UTF-8 with or without a mark, UTF-16 with one, or else Windows-1252.
-    source : str
-        Name of the file, for messages.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is no text.
-
+    UTF-8 with or without a mark, UTF-16 with one, and else Windows-1252 are read.
     """
     try:
         text = content.decode("utf-16" if content.startswith(_UTF16_MARKS) else "utf-8-sig")
@@ -70,26 +52,12 @@ def lines_of(content: bytes, source: str) -> list[str]:
 
 
 def separator_of(line: str) -> str | None:
-    """Return what separates the cells of a line; None for blanks.
-
-    Examples
-    --------
-    >>> separator_of("Frame;X 1;Y 1"), separator_of("1.0  2.0") is None
-    (';', True)
-
-    """
+    """Return what separates the cells of a line; None for blanks."""
     return next((mark for mark in "\t;," if mark in line), None)
 
 
 def cells(line: str, separator: str | None) -> list[str]:
-    """Return the cells of a line without blanks and quotation marks around them.
-
-    Examples
-    --------
-    >>> cells('1, "Hip, left" ,2', ",")
-    ['1', 'Hip, left', '2']
-
-    """
+    """Return the cells of a line without blanks and quotation marks around them."""
     if separator and '"' in line:
         try:
             row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
@@ -100,19 +68,7 @@ def cells(line: str, separator: str | None) -> list[str]:
 
 
 def number(word: str, where: str, source: str) -> float:
-    """Return the number that a word is; refuse words that are none, and absurd numbers.
-
-    Examples
-    --------
-    >>> number("-1.5e2", "frame 3", "a.amc")
-    -150.0
-    >>> number("1,5", "frame 3", "a.amc")
-    Traceback (most recent call last):
-    ...
-    eigenwalker.io.errors.UnreadableFile: a.amc: expected a finite number in frame 3, but
-    got '1,5'; write numbers with a decimal point.
-
-    """
+    """Return the number that a word is; refuse words that are none, and absurd numbers."""
     value = float(word) if _NUMBER.fullmatch(word) else np.nan
     if not abs(value) < MAX_SIZE:
         advice = "write numbers with a decimal point" if "," in word else EXPORT_AGAIN
@@ -147,35 +103,10 @@ def table_of(
 ) -> np.ndarray:
     """Return lines of numbers as an array, with NaN for empty cells.
 
-    Where cells are not separated by commas, numbers may have decimal commas.
-
-    Parameters
-    ----------
-    lines : sequence of str
-        One row a line.
-    n_columns : int
-        Cells a line.
-    separator : str or None
-        What stands between cells; None for blanks.
-    source : str
-        Name of the file, for messages.
-    first : int
-        Number of the first line in the file, for messages.
-    short_by : int
-        Any line but the last may lack a multiple of this many cells at its end, which are then
-        empty: some editors strip blanks from the ends of lines.
-    columns : sequence of int, optional
-        The columns to return; others may hold anything. All if left out.
-
-    Returns
-    -------
-    array of shape (line, column)
-
-    Raises
-    ------
-    UnreadableFile
-        If there is no line, or one has fewer or more cells, or something else than numbers.
-
+    Where cells are not separated by commas, numbers may have decimal commas. Only the named
+    `columns` are returned, and others may hold anything. Any line but the last may lack a multiple
+    of `short_by` cells at its end, which are then empty: some editors strip blanks from the ends of
+    lines. `first` is the number of the first line in the file, for messages.
     """
     if not lines:
         raise UnreadableFile(source, "a line of numbers or more", "none")
@@ -229,18 +160,7 @@ def cut_number(content: bytes, lines: Sequence[str]) -> str:
 
 
 def refuse_cut_number(content: bytes, lines: Sequence[str], source: str) -> None:
-    """Refuse a file that ends within its last number (`cut_number`).
-
-    Parameters
-    ----------
-    content : bytes
-        The whole file.
-    lines : sequence of str
-        Its lines of numbers.
-    source : str
-        Its name, for messages.
-
-    """
+    """Refuse a file that ends within its last number."""
     if number := cut_number(content, lines):
         expected = "as many decimals in the last number as in those above it"
         raise UnreadableFile(source, expected, f"{number} at its end: the file is cut short")
@@ -257,21 +177,8 @@ class Points(NamedTuple):
 def points_of(header: Sequence[str]) -> Points:
     """Return the points whose three coordinates a header names, in the order of their first.
 
-    Parameters
-    ----------
-    header : sequence of str
-        Cells such as ``nose_x``, ``Head (X)``, ``noseX``, ``x_nose``, ``LASI_tx``. A cell that is
-        only an axis belongs to the point named before it.
-
-    Returns
-    -------
-    Points
-
-    Examples
-    --------
-    >>> points_of(["time", "Foot Left X", "Y", "Z", "nose_x", "nose_y", "nose_z", "max"])
-    Points(names=['Foot Left', 'nose'], columns=[(1, 2, 3), (4, 5, 6)], others=[0, 7])
-
+    Cells are such as ``nose_x``, ``Head (X)``, ``noseX``, ``x_nose``, ``LASI_tx``. A cell that is
+    only an axis belongs to the point named before it.
     """
     axes_of: dict[tuple[str, int], dict[str, int]] = {}
     times: Counter[tuple[str, str]] = Counter()

@@ -24,46 +24,25 @@ _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IG
 
 @dataclass(frozen=True)
 class TextTable:
-    """Lines of numbers, and which columns hold the points.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the points.
-    columns : sequence of (int, int, int)
-        Columns of x, y and z of each point.
-    rows : sequence of str
-        The lines, one a frame.
-    n_columns : int
-        Cells a line.
-    separator : str or None
-        What stands between cells; None for blanks.
-    first_line : int
-        Number of the first line in the file, for messages.
-    time_column : int, optional
-        Column of the times, in seconds.
-    n_frames : int, optional
-        Frames that the file declares.
-    only_these : bool
-        Whether other columns may hold anything.
-    short_by : int
-        As `table_of` takes it.
-    ends_file : bool
-        Whether the file ends with the table, and so may be cut within it.
-
-    """
+    """Lines of numbers, and which columns hold the points."""
 
     names: Sequence[str]
     columns: Sequence[tuple[int, int, int]]
+    """Columns of x, y and z of each point."""
     rows: Sequence[str]
     n_columns: int
     separator: str | None
     first_line: int = 1
+    """Number of the first row in the file, for messages."""
     time_column: int | None = None
     n_frames: int | None = None
+    """Frames that the file declares."""
     only_these: bool = False
+    """Whether other columns may hold anything."""
     short_by: int = 0
+    """As `table_of` takes it."""
     ends_file: bool = True
+    """Whether the file ends with the table, and so may be cut within it."""
 
 
 def interleaved(n_points: int, first: int) -> list[tuple[int, int, int]]:
@@ -81,14 +60,7 @@ class TableValues:
 
 
 def table_values(file: CaptureFile, table: TextTable) -> TableValues:
-    """Return the positions and times in a table; NaN where a cell is empty.
-
-    Raises
-    ------
-    UnreadableFile
-        If the table is cut short or damaged.
-
-    """
+    """Return the positions and times in a table; NaN where a cell is empty."""
     rows = _whole_rows(file, table)
     attrs = {} if table.n_frames is None else file.check_frames(table.n_frames, len(rows))
     wanted = [column for triple in table.columns for column in triple]
@@ -146,30 +118,6 @@ def table_trajectories(
     """Return the points of a table as trajectories.
 
     Unlabelled points, and a subject's name before all names, are left out.
-
-    Parameters
-    ----------
-    file : CaptureFile
-        The file, and what the caller knows of it.
-    values : TableValues
-        Positions in the unit and frame of the file, and times.
-    names : sequence of str
-        One name a marker.
-    rate_hz, start_s : float, optional
-        Frames a second that the file declares, to which times are held, and the time of the first
-        frame of a table without times.
-    format_name, unit, usual_unit, up, usual_up
-        As `trajectories_of` takes them.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-
-    Raises
-    ------
-    UnreadableFile
-        If times do not fit the rate, or no labelled point was seen.
-
     """
     clocked = Clocked(values.positions, rate_hz or 0.0, start_s)
     if values.time is not None:

@@ -31,19 +31,7 @@ class Clocked(NamedTuple):
 
 
 def parse_rate(word: str, where: str, source: str) -> float:
-    """Return the frames a second that a file declares.
-
-    Examples
-    --------
-    >>> parse_rate("100,00", "DataRate", "a.trc")
-    100.0
-    >>> parse_rate("0", "DataRate", "a.trc")
-    Traceback (most recent call last):
-    ...
-    eigenwalker.io.errors.UnreadableFile: a.trc: expected frames a second between 0.1 and
-    100000 as DataRate, but got '0'; put it right, or name it: read_mocap(..., rate_hz=...).
-
-    """
+    """Return the frames a second that a file declares."""
     word = word.replace(",", ".")
     rate = float(word) if _RATE.fullmatch(word) else 0.0
     if not RATES_HZ[0] <= rate <= RATES_HZ[1]:
@@ -73,17 +61,8 @@ def on_clock(
 ) -> Clocked:
     """Return positions at even times: at the rate that the caller names, else by written times.
 
-    Parameters
-    ----------
-    file : CaptureFile
-        Its ``rate_hz`` replaces all times; its ``default_rate_hz`` does where they are unusable.
-    positions : array of shape (time, marker, 3)
-        In any unit.
-    time : array of shape (time,)
-        Seconds, as written in the file.
-    rate_hz : float, optional
-        Frames a second that the file declares.
-
+    `time` is in seconds, `rate_hz` what the file declares. The caller's default rate counts where
+    the times are unusable.
     """
     if file.rate_hz is not None:
         return Clocked(positions, file.rate_hz)
@@ -101,35 +80,7 @@ def on_even_clock(
     """Return positions taken at the given times as frames of an even clock.
 
     Frames that were left out become missing ones. Times that jitter, as those of cameras do, are
-    interpolated.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        In any unit.
-    time : array of shape (time,)
-        Seconds.
-    source : str
-        Name of the file, for messages.
-    rate_hz : float, optional
-        Frames a second that the file declares; computed from the times if left out.
-
-    Returns
-    -------
-    Clocked
-
-    Raises
-    ------
-    UnreadableFile
-        If times go back, or do not fit the rate.
-
-    Examples
-    --------
-    >>> walk = np.arange(4.0)[:, None, None] * np.ones(3)
-    >>> even = on_even_clock(walk, np.array([0, 0.1, 0.2, 0.4]), "a.csv")
-    >>> round(even.rate_hz, 6), even.positions[:, 0, 0].tolist()
-    (10.0, [0.0, 1.0, 2.0, nan, 3.0])
-
+    interpolated. Refused are times that go back, or that do not fit the declared rate.
     """
     steps = np.diff(time)
     if rate_hz and _fits_rate(time, rate_hz):

@@ -36,14 +36,7 @@ _SPELLINGS = {
 
 
 def unit_named(text: str) -> Unit | None:
-    """Return the unit of length that a word names, in any spelling; None for other words.
-
-    Examples
-    --------
-    >>> unit_named("Millimeters").name, unit_named("deg")
-    ('mm', None)
-
-    """
+    """Return the unit of length that a word names, in any spelling; None for other words."""
     word = text.strip().strip("[]()").lower()
     name = _SPELLINGS.get(word, _SPELLINGS.get(word.removesuffix("s"), word))
     return Unit(name, MILLIMETRES[name]) if name in MILLIMETRES else None
@@ -61,14 +54,7 @@ def without_zeros(positions: np.ndarray, *, unless_always: bool = False) -> np.n
 
 
 def without_subject(names: Sequence[str]) -> tuple[list[str], str]:
-    """Return the names without the one subject that stands before them, and the subject.
-
-    Examples
-    --------
-    >>> without_subject(["Anna:LKNE", "Anna:RKNE"])
-    (['LKNE', 'RKNE'], 'Anna')
-
-    """
+    """Return the names without the one subject before them (``Anna:LKNE``), and the subject."""
     subjects = {name.rpartition(":")[0] for name in names} - {""}
     plain = [own_name(name) for name in names]
     if len(subjects) != 1 or len(set(plain)) < len(plain) or not all(plain):
@@ -79,25 +65,10 @@ def without_subject(names: Sequence[str]) -> tuple[list[str], str]:
 def labelled_points(
     positions: np.ndarray, names: Sequence[str], is_labelled: Callable[[str], bool]
 ) -> tuple[np.ndarray, list[str], dict[str, object]]:
-    """Return the points that a person labelled, without the name of the subject.
+    """Return positions and names of the points that a person labelled, and attributes.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        In any unit and frame.
-    names : sequence of str
-        One name a marker, with or without a subject before it (``Anna:LKNE``).
-    is_labelled : function of a name
-        Whether a point is a marker with a name of its own; others are left out.
-
-    Returns
-    -------
-    positions : array of shape (time, labelled marker, 3)
-    names : list of str
-        Different names.
-    attrs : dict
-        ``subject``, ``left_out`` and ``repeated``, the names of points.
-
+    The subject's name before all names is taken off. ``subject``, ``left_out`` and ``repeated`` are
+    the attributes.
     """
     names = [name.strip() for name in names]
     labelled = [i for i, name in enumerate(names) if is_labelled(name)]
@@ -130,38 +101,11 @@ def trajectories_of(
 ) -> xr.DataArray:
     """Return the points of a file as trajectories, upright and in millimetres.
 
-    Parameters
-    ----------
-    file : CaptureFile
-        The file, and the unit that the caller names for it.
-    positions : array of shape (time, marker, 3)
-        In the unit and frame of the file; NaN where a point is missing.
-    names : sequence of str
-        One name a marker.
-    format_name : str
-        Name of the format, for the attributes.
-    rate_hz, start_s : float
-        Frames a second, and the time of the first frame.
-    unit : Unit, optional
-        Unit that the file names.
-    usual_unit : Unit, optional
-        Unit in which the format is mostly written. It is used if head and feet, where they are
-        known, then are as far apart as in people, within a factor of 2. Otherwise, the unit is
-        guessed from the height of the body.
-    up : str, optional
-        Axis that the file says is up, such as ``"-y"``; the posture of the body decides if it is
-        left out.
-    usual_up : str
-        Axis that is mostly up in this format, where neither file nor body tell.
-    quaternions : array of shape (time, marker, 4), optional
-        Orientations (x, y, z, w) in the frame of the file, for the coordinate ``rotation``.
-    unit_source : str, optional
-        Name of the file that should name the unit, where that is another one.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-
+    `positions` (time, marker, 3) and `quaternions` (time, marker, 4; x, y, z, w) are in the unit
+    and frame of the file. The unit is the one that the caller or the file names, else the caller's
+    default, else the usual one of the format, if head and feet are then as far apart as in people,
+    within a factor of 2. Otherwise it is guessed from the height of the body. Up is the axis that
+    the file names, else it is seen in the posture, else the usual one of the format.
     """
     known_up = up or up_axis(positions, names)
     turn = turn_upright(known_up or usual_up)

@@ -1,4 +1,4 @@
-"""Which way is up, and how long a unit is: told from where head and feet are."""
+"""Which way is up, and how long a unit is: found from where head and feet are."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LOW = re.compile(r"foot|toe|heel|hee$|ankle|ank$|mt\d$|metatars|malle|^[lr]f(al
 
 
 class UnitGuessed(UserWarning):
-    """A file names no unit of length, so it was told from the height of the body.
+    """A file names no unit of length, so it was guessed from the height of the body.
 
     Silence it with ``warnings.simplefilter("ignore", UnitGuessed)``, or name the unit:
     ``read_mocap(path, unit="cm")``.
@@ -42,21 +42,7 @@ class Unit(NamedTuple):
 
 
 def head_and_feet(positions: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the trajectories of the points at the head and of those at the feet.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        In any unit and frame.
-    names : sequence of str
-        One name a marker, in any common spelling.
-
-    Returns
-    -------
-    tuple of two arrays of shape (time, some markers, 3)
-        Either may be empty of markers.
-
-    """
+    """Return the points at the head and those at the feet, two arrays (time, some markers, 3)."""
     plain = [re.sub(r"[^a-z0-9]", "", name.rsplit(":", 1)[-1].lower()) for name in names]
     high = [i for i, name in enumerate(plain) if _HIGH.search(name)]
     high = high or [i for i, name in enumerate(plain) if _NEXT_HIGH.search(name)]
@@ -65,25 +51,9 @@ def head_and_feet(positions: np.ndarray, names: Sequence[str]) -> tuple[np.ndarr
 
 
 def up_axis(positions: np.ndarray, names: Sequence[str]) -> str | None:
-    """Return the axis along which the head is above the feet.
+    """Return the axis along which the head is above the feet, such as ``"z"`` or ``"-y"``.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        In any unit.
-    names : sequence of str
-        One name a marker.
-
-    Returns
-    -------
-    str or None
-        ``"z"``, ``"-y"`` and the like; None where names or posture leave it open.
-
-    Examples
-    --------
-    >>> up_axis(np.array([[[0, 1700, 0], [100, 0, 50]]]), ["Head", "LeftToe"])
-    'y'
-
+    None where names or posture leave it open.
     """
     high, low = (part[~np.isnan(part).any(axis=2)] for part in head_and_feet(positions, names))
     if not len(high) or not len(low):
@@ -99,22 +69,6 @@ def turn_upright(up: str) -> np.ndarray:
     """Return the rotation matrix that turns the axis `up` into z.
 
     The axes are exchanged in turn, so that a body which faces z in a y-up frame faces x.
-
-    Parameters
-    ----------
-    up : {"x", "y", "z", "-x", "-y", "-z"}
-        Axis that points up.
-
-    Returns
-    -------
-    array of shape (3, 3)
-        To be multiplied from the left.
-
-    Examples
-    --------
-    >>> turn_upright("y") @ [1, 2, 3]
-    array([3., 1., 2.])
-
     """
     axis = "xyz".index(up[-1])
     turn = np.eye(3)[[(axis + 1) % 3, (axis + 2) % 3, axis]]
@@ -125,24 +79,6 @@ def body_height(positions: np.ndarray, names: Sequence[str]) -> float:
     """Return how tall a body is: from the lowest point of the feet to the highest of the head.
 
     Of all points, where names tell neither; in the middle of the frames.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        z up, in any unit.
-    names : sequence of str
-        One name a marker.
-
-    Returns
-    -------
-    float
-        In the unit of `positions`; NaN where it is not above 0.
-
-    Examples
-    --------
-    >>> body_height(np.array([[[0, 0, 170], [0, 0, 5]]]), ["Head", "LeftToe"])
-    165.0
-
     """
     high, low = head_and_feet(positions, names)
     if not high.size or not low.size:
@@ -154,23 +90,7 @@ def body_height(positions: np.ndarray, names: Sequence[str]) -> float:
 
 
 def guess_unit(positions: np.ndarray, names: Sequence[str], *, source: str) -> Unit:
-    """Return the unit in which a body is as tall as people are, and warn that it is a guess.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        z up, in the unit that is sought.
-    names : sequence of str
-        One name a marker.
-    source : str
-        Name of the file, for the warning.
-
-    Returns
-    -------
-    Unit
-        The one of `UNITS` which brings the height nearest to that of a person, and the reason.
-
-    """
+    """Return the unit in which a body is as tall as people are, and warn that it is a guess."""
     height = body_height(positions, names)
     name = "mm"
     if not np.isnan(height):

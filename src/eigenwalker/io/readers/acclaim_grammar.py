@@ -29,31 +29,19 @@ _ORDER = re.compile(r"[xyz]{3}")
 
 @dataclass
 class Bone:
-    """A bone as the skeleton describes it; the root is one of no length.
-
-    Parameters
-    ----------
-    name : str
-        What it is called.
-    parent : int
-        Number of the bone at whose end it begins; -1 for the root.
-    reach : array of shape (axis,)
-        From its beginning to its end when the skeleton is at rest, in the frame of the room.
-    axis : array of shape (axis,)
-        Angles by which its own frame is turned from the room's, in the unit of the file.
-    axis_order : str
-        About which axes of the room, one after the other, such as ``"xyz"``.
-    channels : tuple of str
-        Numbers a frame in the motion, such as ``("rx", "ry", "rz")``.
-
-    """
+    """A bone as the skeleton describes it; the root is one of no length."""
 
     name: str
     parent: int
+    """Index of the bone at whose end it begins; -1 for the root."""
     reach: np.ndarray
+    """From its beginning to its end when the skeleton is at rest, in the frame of the room."""
     axis: np.ndarray
+    """Angles by which its own frame is turned from the room's, in the unit of the file."""
     axis_order: str
+    """About which axes of the room, one after the other, such as ``"xyz"``."""
     channels: tuple[str, ...]
+    """Numbers a frame in the motion, such as ``("rx", "ry", "rz")``."""
 
 
 class Acclaim(NamedTuple):
@@ -77,14 +65,7 @@ _Lines = list[list[str]]
 
 
 def parse_asf(text: str, source: str) -> Acclaim:
-    """Return the skeleton that an ASF file describes.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is against the grammar or cut short.
-
-    """
+    """Return the skeleton that an ASF file describes."""
     sections = _sections(text)
     for expected in ("root", "bonedata", "hierarchy"):
         if expected not in sections:
@@ -225,14 +206,7 @@ def _in_order(described: dict[str, Bone], links: _Lines, source: str) -> list[Bo
 
 
 def parse_amc(text: str, source: str) -> Motion:
-    """Return the channels of all bones in an AMC file.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is against the grammar, or a frame holds other bones than the first.
-
-    """
+    """Return the channels of all bones in an AMC file."""
     keywords: dict[str, list[str]] = {}
     lines: _Lines = []
     for line in text.splitlines():

@@ -93,17 +93,8 @@ def _text(content: bytes) -> str:
 def find_skeleton(motion: Path) -> Path:
     """Return the skeleton that lies beside a motion.
 
-    Parameters
-    ----------
-    motion : Path
-        An AMC file.
-
-    Returns
-    -------
-    Path
-        The ASF file of the same name; else the one whose name is the beginning of the motion's;
-        else the only one in the folder.
-
+    It is the ASF file of the same name; else the one whose name is the beginning of the motion's
+    (35.asf for 35_01.amc); else the only one in the folder.
     """
     asfs = sorted(file for file in motion.parent.iterdir() if file.suffix.lower() == ".asf")
     stem = motion.stem.casefold()

@@ -49,21 +49,7 @@ class Motion(NamedTuple):
 
 
 def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, int]]:
-    """Return the joints of a BVH file, parents before children, and their channels.
-
-    Returns
-    -------
-    joints : list of Joint
-    motion : Motion
-    attrs : dict
-        ``n_frames_cut`` of a partial file that is to be kept; else empty.
-
-    Raises
-    ------
-    UnreadableFile
-        If the text is against the grammar, or holds other frames than it declares.
-
-    """
+    """Return the joints of a BVH file, parents before children, and their channels."""
     head, table = _split(file, file.content.decode("utf-8-sig", errors="replace"))
     joints = _hierarchy(file, head)
     motion, attrs = _motion(file, table, sum(len(joint.channels) for joint in joints))

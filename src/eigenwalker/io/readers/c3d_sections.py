@@ -93,14 +93,7 @@ class Sections(NamedTuple):
 
 
 def c3d_sections(file: CaptureFile) -> Sections:
-    """Return the sections of a C3D file.
-
-    Raises
-    ------
-    UnreadableFile
-        If they do not fit each other or the length of the file.
-
-    """
+    """Return the sections of a C3D file."""
     header = _header(file)
     parameters = _parameters(file, header)
     return Sections(header, parameters, *_samples(file, header, parameters))

@@ -21,24 +21,10 @@ _SHOWN = 10
 
 
 def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
-    """Return the arrays of numbers in a MATLAB file, whatever they mean.
+    """Return the arrays of numbers in a MATLAB file by name; fields as ``struct.field``.
 
-    Parameters
-    ----------
-    path : str or path
-        A MATLAB file of version 4, 5 or 7.3. It is read in a process of its own, within 10 s and
-        1 GiB, as SciPy and HDF5 may break down on damaged files.
-
-    Returns
-    -------
-    dict of str to array
-        Fields of structs as ``struct.field``; texts and cells are left out.
-
-    Raises
-    ------
-    UnreadableFile
-        If it is no MATLAB file, damaged, or needs too much.
-
+    The file (version 4, 5 or 7.3) is read in a process of its own, within 10 s and 1 GiB, as SciPy
+    and HDF5 may break down on damaged files.
     """
     path = Path(path)
     read_bytes(path)  # for the message about a file that is not there

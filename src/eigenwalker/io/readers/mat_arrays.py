@@ -26,16 +26,7 @@ def mat_arrays_npz(path: str) -> bytes:
 def mat_arrays(path: str) -> dict[str, np.ndarray]:
     """Return the arrays of real numbers in a MATLAB file, those in structs as ``struct.field``.
 
-    Parameters
-    ----------
-    path : str
-        A file of version 4, 5 (-v6, -v7) or 7.3.
-
-    Returns
-    -------
-    dict of str to array of float
-        In MATLAB's order of dimensions, one-element dimensions kept.
-
+    Dimensions are in MATLAB's order, those of one element included.
     """
     with open(path, "rb") as file:
         start = file.read(128)

@@ -81,17 +81,7 @@ def body_trajectories(
 ) -> xr.DataArray:
     """Return the points of a body as trajectories, with what is usual for the program.
 
-    Parameters
-    ----------
-    file : CaptureFile
-        The file, and what the caller knows of it.
-    values : TableValues
-        Positions and times.
-    names : sequence of str
-        Names of the points.
-    notes : mapping of str to str
-        ``unit``, ``up`` and ``rate_hz``, as the file names them.
-
+    `notes` are ``unit``, ``up`` and ``rate_hz``, as the file names them.
     """
     kind = _kind(names)
     unit = unit_named(notes.get("unit", ""))

@@ -18,14 +18,7 @@ DESCRIPTION = ".toml"
 
 
 def looks_like_table(content: bytes) -> bool:
-    """Return whether a file is text in columns: of numbers, or under a line of names.
-
-    Examples
-    --------
-    >>> looks_like_table(b"1.5 2.5 3.5"), looks_like_table(b"Dear colleague")
-    (True, False)
-
-    """
+    """Return whether a file is text in columns: of numbers, or under a line of names."""
     if not is_text(content):
         return False
     try:
@@ -59,14 +52,7 @@ def find_description(path: Path) -> Path | None:
 
 
 def read_table(file: CaptureFile) -> xr.DataArray:
-    """Return the trajectories of the points in a table.
-
-    Raises
-    ------
-    UnreadableFile
-        If neither a header nor a description names the columns, or the table is damaged.
-
-    """
+    """Return the trajectories of the points in a table."""
     if description := find_description(file.path):
         return read_described_table(file, description)
     lines = lines_of(file.content, file.name)

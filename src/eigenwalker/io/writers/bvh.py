@@ -61,49 +61,22 @@ class _Joint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Bones:
-    """A body at rest: joints, parents before children, and how they turn.
-
-    Parameters
-    ----------
-    names : tuple of str
-        Joints of the file, those of no length among them.
-    parents : tuple of int
-        Index of each joint's parent, -1 for the root.
-    rest : array of shape (joint, 3)
-        Place of each joint in its parent's frame.
-    root : array of shape (time, 3)
-        Where the root is.
-    rotations : array of shape (time, joint, 4)
-        Relative to the parent, unit quaternions (x, y, z, w).
-
-    """
+    """A body at rest: joints, parents before children, and how they turn."""
 
     names: tuple[str, ...]
+    """Joints of the file, those of no length among them."""
     parents: tuple[int, ...]
+    """Index of each joint's parent, -1 for the root."""
     rest: np.ndarray
+    """Place of each joint in its parent's frame, shape (joint, 3)."""
     root: np.ndarray
+    """Where the root is, shape (time, 3)."""
     rotations: np.ndarray
+    """Relative to the parent, unit quaternions x, y, z, w of shape (time, joint, 4)."""
 
 
 def write_bvh(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
-    """Write a BVH file, which names neither its unit nor its upward axis.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        The 15 joints, and any of those beyond that `virtual_markers` gives, in `unit`, with the
-        axis `up` upwards.
-    unit, up : str
-        As said to the user.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    ValueError
-        If joints are missing, or unknown, or were not seen in some frames.
-
-    """
+    """Write a BVH file, which names neither its unit nor its upward axis."""
     del unit
     bones = fit_bones(walk, turn_upright(up))
     angles = Rotation.from_quat(bones.rotations.reshape(-1, 4)).as_euler(
@@ -159,17 +132,7 @@ def constant_bones(walk: xr.DataArray) -> xr.DataArray:
 def fit_bones(walk: xr.DataArray, turn: np.ndarray) -> Bones:
     """Return the body with constant bones that lies over the joints.
 
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        In any unit, in the frame that `turn` brings upright.
-    turn : array of shape (3, 3)
-        Rotation of that frame into the one with x forward and z up.
-
-    Returns
-    -------
-    Bones
-
+    `turn` is the rotation of the frame of `walk` into the one with x forward and z up.
     """
     _check(walk)
     joints = _joints([str(name) for name in walk.marker.values])

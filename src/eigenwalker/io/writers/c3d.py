@@ -20,21 +20,6 @@ def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     """Write a C3D file of 4-byte floats, Intel.
 
     Frame 1 is at 0 s. The format cannot hold a start between two frames or before 0 s.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        In `unit`, with the axis `up` upwards; NaN is written as not seen.
-    unit, up : str
-        Named in the file.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    ValueError
-        If there are more markers, or longer names, than the format holds.
-
     """
     names = [str(name).encode() for name in walk.marker.values]
     width = max(map(len, names))

@@ -19,16 +19,6 @@ def write_csv(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
 
     The first line is a comment that names unit, upward axis and number of frames, so that a file
     cut short is noticed; missing samples are empty.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        In `unit`, with the axis `up` upwards.
-    unit, up : str
-        Named in the file.
-    path : Path
-        File to write.
-
     """
     columns = [f"{marker}_{axis}" for marker in walk.marker.values for axis in "xyz"]
     table = pd.DataFrame(walk.values.reshape(len(walk), -1), columns=pd.Index(columns))
@@ -39,23 +29,7 @@ def write_csv(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
 
 
 def write_trc(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
-    """Write a TRC file, as OpenSim reads it; missing samples are empty.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        In `unit`, with the axis `up` upwards, which the format cannot tell.
-    unit, up : str
-        The unit is named in the file.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    ValueError
-        If the name of a marker holds a tab or a line break.
-
-    """
+    """Write a TRC file, as OpenSim reads it; missing samples are empty."""
     del up
     names = [str(name) for name in walk.marker.values]
     if unfit := [name for name in names if not name.isprintable()]:

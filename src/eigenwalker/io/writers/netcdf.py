@@ -18,23 +18,7 @@ from eigenwalker.markers.label_repair import Repair
 
 
 def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
-    """Write a NetCDF file: a variable ``position`` (time, marker, axis), and ``rotation`` if known.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        In millimetres, z up.
-    unit, up : str
-        Must be ``"mm"`` and ``"z"``: what xarray opens is to be trajectories.
-    path : Path
-        File to write.
-
-    Raises
-    ------
-    ValueError
-        If unit or axis is another one.
-
-    """
+    """Write ``position`` (time, marker, axis), and ``rotation`` if known; unit and up are fixed."""
     if (unit, up) != ("mm", "z"):
         raise ValueError(
             f"NetCDF holds trajectories in millimetres, z up, not unit={unit!r}, up={up!r}; leave "

@@ -22,39 +22,7 @@ def sampled_walk(
     rate_hz: float = RATE_HZ,
     overground: bool = False,
 ) -> xr.DataArray:
-    """Return a walker's trajectories from the moment its first phase is 0, which becomes 0 s.
-
-    Parameters
-    ----------
-    walker : Walker
-        The walker.
-    n_strides : int, optional
-        Length in strides, to the nearest frame; 4 if neither this nor `duration_s` is given.
-    duration_s : float, optional
-        Length in seconds.
-    rate_hz : float
-        Frames a second.
-    overground : bool
-        Whether it walks forward with its ``speed_mm_s``, or in place.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        Millimetres; attribute ``speed_mm_s``.
-
-    Raises
-    ------
-    ValueError
-        If a number makes no sense, or the walker is to walk forward and has no speed.
-
-    Examples
-    --------
-    >>> walker = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 2.0, speed_mm_s=1000)
-    >>> walk = sampled_walk(walker, n_strides=1, rate_hz=8, overground=True)
-    >>> walk.sel(marker="foot", axis="x").values.tolist()
-    [0.0, 125.0, 250.0, 375.0]
-
-    """
+    """Return a walker's trajectories from the moment its first phase is 0, which becomes 0 s."""
     if n_strides is not None and duration_s is not None:
         raise ValueError("n_strides and duration_s are both given; give one.")
     if duration_s is None:
@@ -72,14 +40,7 @@ def sampled_walk(
 
 
 def with_progress(walk: xr.DataArray) -> xr.DataArray:
-    """Return trajectories in place as a walk forward with their ``attrs["speed_mm_s"]``.
-
-    Raises
-    ------
-    ValueError
-        If the speed is not known.
-
-    """
+    """Return trajectories in place as a walk forward with their ``attrs["speed_mm_s"]``."""
     speed = float(walk.attrs.get("speed_mm_s", np.nan))
     if not np.isfinite(speed):
         raise ValueError(
