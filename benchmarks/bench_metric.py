@@ -16,11 +16,11 @@ from scipy.spatial.distance import cdist
 from side_by_side import machine, print_table, seconds
 
 import eigenwalker as ew
-from eigenwalker.metric.clip_distances import pair_table, prepare
-from eigenwalker.metric.frame_metrics import FrameMetric, Shape, shaped
-from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
+from eigenwalker.metric import FrameMetric, least_cost_path, pair_table, prepare, shaped
+from eigenwalker.metric.frame_metrics import Shape
+from eigenwalker.metric.kernels import n_threads
+from eigenwalker.metric.paths import SLOPE_LIMIT
 from eigenwalker.metric.point_maps import point_map
-from eigenwalker.metric.threads import n_threads
 
 N_FRAMES, N_JOINTS, N_CLIPS = 1400, 15, 21
 ALIKE = np.full(N_JOINTS, 1 / N_JOINTS)

@@ -10,9 +10,6 @@ each other at such moments.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.metric.comparison import compare_walks
-from eigenwalker.metric.motion_maps import motion_map
-from eigenwalker.metric.retargeting import retarget
 from eigenwalker.plotting.difference_maps import (
     MapPicture,
     figure_maps,
@@ -24,13 +21,14 @@ people = ew.load_population()
 step = ew.trait_axis(people, "happy").step
 time = np.arange(0, 4, 1 / 60)
 happy, sad = (
-    retarget(people.walker(people.average + alpha * step).trajectories(time)) for alpha in (4, -4)
+    ew.metric.retarget(people.walker(people.average + alpha * step).trajectories(time))
+    for alpha in (4, -4)
 )
 
-found = compare_walks(happy, sad, metric="positions-sigmoid")
+found = ew.metric.compare_walks(happy, sad, metric="positions-sigmoid")
 print(f"{found.distance:.3f}, of which {found.shares.round(2).to_dict()}")
 
-itself, both = motion_map(happy), found.registration.map
+itself, both = ew.motion_map(happy), found.registration.map
 clocks = both.time_a.values, both.time_b.values
 names = ("happy", "sad")
 figure = figure_maps(

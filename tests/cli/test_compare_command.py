@@ -16,8 +16,7 @@ import typer
 from eigenwalker.cli import main as cli
 from eigenwalker.cli.compare_command import compare
 from eigenwalker.io.write import write_mocap
-from eigenwalker.metric.clip_distances import pair_distances
-from eigenwalker.metric.published import PUBLISHED
+from eigenwalker.metric import PUBLISHED, pair_distances
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.people import simulate_population
 from eigenwalker.simulation.walk import simulate_walk

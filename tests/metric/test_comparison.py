@@ -6,18 +6,23 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
 
 from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.metric.angles import joint_quaternions
-from eigenwalker.metric.clip_distances import clip_distance, step_distances
-from eigenwalker.metric.comparison import by_metric, compare_walks, share_nearer
-from eigenwalker.metric.frame_metrics import FrameMetric, shaped
-from eigenwalker.metric.groups import GROUPS
+from eigenwalker.metric import (
+    GROUPS,
+    PUBLISHED,
+    FrameMetric,
+    clip_distance,
+    compare_walks,
+    distances_by_metric,
+    joint_quaternions,
+    prepare,
+    retarget,
+    shaped,
+    step_distances,
+)
 from eigenwalker.metric.points import UNITS
-from eigenwalker.metric.prepared import prepare, registration_of
-from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.metric.retargeting import retarget
+from eigenwalker.metric.registration import register_prepared
 from eigenwalker.simulation.walk import simulate_walk
 
 
@@ -67,7 +72,7 @@ def test_joints_of_no_group_are_counted_too(two):
     found = compare_walks(*two, metric=FrameMetric())
     assert found.shares.sum() == pytest.approx(1)
     assert 0 < found.shares["other joints"] < 0.2  # pelvis alone
-    assert found.left_out == ()
+    assert found.missing_groups == ()
 
 
 def test_groups_are_told_in_units_one_can_read(two):
@@ -122,8 +127,8 @@ def test_paths_of_actions_turn_round_with_the_way_they_lie_over_each_other():
         )
         for _ in range(2)
     )
-    there = registration_of(prepare(a), prepare(b))
-    back = registration_of(prepare(b), prepare(a))
+    there = register_prepared(prepare(a), prepare(b))
+    back = register_prepared(prepare(b), prepare(a))
     for by in ("positions", "velocities"):
         np.testing.assert_allclose(there.distances(by), back.distances(by), atol=1e-6)
     over = there.alignment.apply(there.second.values[there.path[:, 1]])
@@ -135,23 +140,17 @@ def test_the_mannequin_has_no_clavicles():
     walks = [retarget(simulate_walk(seed=seed, rate_hz=60, truth=False)) for seed in (1, 2)]
     found = compare_walks(*walks, metric="angles-absolute")
     assert "clavicle" not in found.groups.index
-    assert found.left_out == ("clavicle",)
+    assert found.missing_groups == ("clavicle",)
     assert "left_clavicle" not in joint_quaternions(walks[0])["joint"]
 
 
 def test_a_table_of_metrics_holds_the_distance_of_each_pair(people):
     told = []
     names = ["positions-sigmoid", "angles-squared", "lee"]
-    table = by_metric(people, names, progress=lambda *steps: told.append(steps))
+    table = distances_by_metric(people, names, progress=lambda *steps: told.append(steps))
     assert list(table) == names
     assert table.index.tolist() == list(itertools.combinations(people, 2))
     for name in names:
         alone = clip_distance(people["walk 3"], people["walk 0"], metric=name)
         assert table.loc[("walk 0", "walk 3"), name] == pytest.approx(alone, rel=1e-12)
     assert told == [(1, 3), (2, 3), (3, 3)]
-
-
-@given(st.lists(st.integers(0, 5), min_size=1, max_size=20), st.integers(0, 5))
-def test_share_of_nearer_pairs_is_that_of_ranks(others, value):
-    counted = [1.0 if each < value else 0.5 if each == value else 0.0 for each in others]
-    assert share_nearer(value, np.array(others)) == pytest.approx(np.mean(counted))

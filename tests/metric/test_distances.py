@@ -11,21 +11,23 @@ from scipy.spatial.transform import Rotation
 
 import eigenwalker as ew
 from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.metric.clip_distances import (
+from eigenwalker.metric import (
+    PUBLISHED,
+    FrameMetric,
     clip_components,
     clip_distance,
+    compare_walks,
+    distances_by_metric,
+    group_table,
     pair_components,
     pair_distances,
     pair_table,
     prepare,
-    registration_of,
+    register,
+    register_walks,
     step_distances,
 )
-from eigenwalker.metric.comparison import by_metric, compare_walks
-from eigenwalker.metric.frame_metrics import FrameMetric
-from eigenwalker.metric.group_tables import group_table
-from eigenwalker.metric.published import PUBLISHED
-from eigenwalker.metric.registration import register, register_walks
+from eigenwalker.metric.registration import register_prepared
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.walk import simulate_walk
 
@@ -105,7 +107,7 @@ def test_the_frame_rate_of_a_capture_does_not_matter():
 
 
 def test_the_distance_is_the_mean_of_the_map_along_the_path(two):
-    found = registration_of(*two)
+    found = register_prepared(*two)
     assert found.cost == pytest.approx(clip_distance(*two), rel=0.01)
     steps = step_distances(*two)
     assert steps.shape == (len(found.path), 15)
@@ -354,7 +356,7 @@ def test_what_only_one_clip_has_decides_no_table_of_many():
     for table_of in (
         pair_components,
         lambda clips: group_table(clips, "positions-sigmoid"),
-        lambda clips: by_metric(clips, ["kovar", "velocities-absolute"]),
+        lambda clips: distances_by_metric(clips, ["kovar", "velocities-absolute"]),
         lambda clips: compare_walks(clips["a"], clips["b"]).groups,
         lambda clips: step_distances(clips["a"], clips["b"]),
     ):

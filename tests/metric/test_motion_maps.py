@@ -11,12 +11,16 @@ from scipy.spatial.distance import cdist
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.metric import (
+    FrameMetric,
+    common_clock,
+    loop,
+    motion_map,
+    motion_maps,
+    shaped,
+)
 from eigenwalker.metric.alignment import align_windows
-from eigenwalker.metric.cycles import common_clock
-from eigenwalker.metric.frame_metrics import FrameMetric, shaped
 from eigenwalker.metric.kernels import diagonal_means
-from eigenwalker.metric.loops import loop
-from eigenwalker.metric.motion_maps import motion_map, motion_maps
 from eigenwalker.metric.point_maps import EXACT, point_distances, point_map
 from eigenwalker.metric.points import points_of
 from eigenwalker.simulation.walk import simulate_walk

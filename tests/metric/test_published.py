@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.metric import published
-from eigenwalker.metric.groups import BONES
-from eigenwalker.metric.published import PUBLISHED, GroupMetric, metric_named
+from eigenwalker.metric import BONES, FIGURE_5, PUBLISHED, GroupMetric, metric_named
 
-FIGURE_5 = [
+ROWS = [
     f"{by}-{shape}"
     for by in ("angles", "positions", "velocities")
     for shape in ("squared", "absolute", "sigmoid")
@@ -40,7 +38,7 @@ def test_each_row_is_that_of_the_paper(line):
     metric = PUBLISHED[f"{by}-{shape}"]
     assert (metric.by, metric.shape) == (by, shape)
     assert metric.group_weights == dict(zip(COLUMNS, weights, strict=True))
-    printed = published.FIGURE_5[by, shape]
+    printed = FIGURE_5[by, shape]
     assert printed[:3] == (difference, constant, normalisation)
 
 
@@ -51,13 +49,13 @@ def test_groups_weigh_the_same_in_the_manner_of_kovar():
     assert weights["pelvis"] == weights["left_ankle"] == 0
 
 
-@pytest.mark.parametrize("name", FIGURE_5)
+@pytest.mark.parametrize("name", ROWS)
 def test_weights_of_each_row_sum_to_one_but_for_rounding_and_one_misprint(name):
     total = sum(PUBLISHED[name].group_weights.values())
     assert total == pytest.approx(1.027 if name == "velocities-sigmoid" else 1, abs=0.0021)
 
 
-@pytest.mark.parametrize("name", FIGURE_5)
+@pytest.mark.parametrize("name", ROWS)
 def test_each_row_weighs_points_of_a_walker(name):
     metric = PUBLISHED[name]
     names = BONES if metric.by == "angles" else JOINTS.markers
@@ -84,7 +82,7 @@ def test_left_and_right_share_a_weight_and_one_side_alone_takes_it():
 def test_what_a_clip_lacks_is_said_and_its_weight_falls_to_others():
     metric = PUBLISHED["velocities-absolute"]  # hand, calf and toe
     names = ["left_knee", "right_knee", "left_hip"]
-    assert metric.left_out(names) == ["hand", "toe"]
+    assert metric.missing_groups(names) == ["hand", "toe"]
     np.testing.assert_allclose(metric.weights_for(names), [0.5, 0.5, 0])
 
 

@@ -9,11 +9,14 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.trajectories import sampling_rate, trajectories_at
 from eigenwalker.core.walker import Walker
-from eigenwalker.metric.frame_metrics import FrameMetric
-from eigenwalker.metric.paths import least_cost_path
-from eigenwalker.metric.registration import register, register_walks
-from eigenwalker.metric.spline_warps import register_by_spline
-from eigenwalker.metric.transitions import find_transitions
+from eigenwalker.metric import (
+    FrameMetric,
+    find_transitions,
+    least_cost_path,
+    register,
+    register_by_spline,
+    register_walks,
+)
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.walk import simulate_walk
 

@@ -13,9 +13,14 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.metric.angles import angle_between, joint_quaternions
-from eigenwalker.metric.comparison_pipeline import comparable_walk
-from eigenwalker.metric.retargeting import HEIGHT_MM, SHARES, retarget
+from eigenwalker.metric import (
+    HEIGHT_MM,
+    SHARES,
+    angle_between,
+    joint_quaternions,
+    prepare_walk,
+    retarget,
+)
 from eigenwalker.simulation.walk import simulate_walk
 
 BONES = [
@@ -136,16 +141,16 @@ def test_who_it_was_cannot_be_told_from_bones_any_more():
 
 
 def test_hands_and_feet_stay_where_they_were_captured():
-    skin = comparable_walk(simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin"))
+    skin = prepare_walk(simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin"))
     assert skin.marker.values.tolist()[15:] == ["left_hand", "right_hand", "left_toe", "right_toe"]
-    assert skin.attrs["left_out"] == []
+    assert skin.attrs["hidden_markers"] == []
 
 
 def test_a_hand_hidden_throughout_is_left_out_and_said():
     capture = simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin").copy(deep=True)
     capture.loc[{"marker": "LFIN"}][100:] = np.nan
-    walk = comparable_walk(capture)
-    assert walk.attrs["left_out"] == ["left_hand"]
+    walk = prepare_walk(capture)
+    assert walk.attrs["hidden_markers"] == ["left_hand"]
     assert "right_hand" in walk.marker
 
 
@@ -173,7 +178,7 @@ def test_missing_joints_are_named():
 )
 def test_captures_become_one_body(captures, name, told):
     capture = read_mocap(captures / name, **told)
-    placed = comparable_walk(capture)
+    placed = prepare_walk(capture)
     usual = lengths(retarget(in_place(simulate_walk(seed=0, duration_s=3.0, rate_hz=30))))
     np.testing.assert_allclose(lengths(placed), usual, rtol=1e-6)
     ankles = placed.sel(marker=["left_ankle", "right_ankle"]).values[..., 2]
@@ -192,14 +197,14 @@ def check_feet(placed: xr.DataArray) -> None:
 
 
 def test_toes_stand_on_the_floor():
-    check_feet(comparable_walk(simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin")))
+    check_feet(prepare_walk(simulate_walk(seed=5, duration_s=4.0, rate_hz=60, markers="skin")))
 
 
 @pytest.mark.parametrize(
     "name", ["cmu/02_01.c3d", *(f"bandai-namco/dataset-2_walk_{s}.bvh" for s in ("active_001",))]
 )
 def test_toes_of_captures_stand_on_the_floor(captures, name):
-    check_feet(comparable_walk(read_mocap(captures / name, unit="cm" if "bvh" in name else None)))
+    check_feet(prepare_walk(read_mocap(captures / name, unit="cm" if "bvh" in name else None)))
 
 
 def test_feet_turn_as_the_walker_s_do():
@@ -233,7 +238,7 @@ def test_a_toe_that_is_hidden_for_moments_moves_nothing_else():
 
 
 def test_the_mannequin_rises_and_falls_as_smoothly_as_the_walker():
-    walk = comparable_walk(
+    walk = prepare_walk(
         simulate_walk(seed=5, duration_s=6.0, rate_hz=60, markers="skin"), mannequin=False
     )
     placed = retarget(walk)

@@ -9,9 +9,7 @@ import pytest
 from hypothesis import given, strategies as st
 from matplotlib.colors import to_rgb
 
-from eigenwalker.metric.loops import loop
-from eigenwalker.metric.motion_maps import motion_map
-from eigenwalker.metric.registration import register_walks
+from eigenwalker.metric import loop, motion_map, register_walks
 from eigenwalker.plotting.difference_maps import (
     MapPicture,
     figure_maps,

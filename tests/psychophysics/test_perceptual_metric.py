@@ -13,9 +13,14 @@ from scipy.optimize import lsq_linear
 from scipy.spatial.distance import pdist
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from eigenwalker.metric.clip_distances import pair_components
-from eigenwalker.metric.group_tables import by_group, group_table
-from eigenwalker.metric.published import PUBLISHED
+from eigenwalker.metric import (
+    PUBLISHED,
+    collinear_groups,
+    group_means,
+    group_table,
+    missing_groups,
+    pair_components,
+)
 from eigenwalker.psychophysics.cross_validation import compare_metrics, goodness, leave_walkers_out
 from eigenwalker.psychophysics.fit_to_answers import fit_to_answers
 from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric
@@ -126,14 +131,15 @@ def test_shares_of_trials_level_off_which_blurs_weights_of_groups_that_go_togeth
 
 def test_with_the_mannequin_s_sternum_for_clavicles_weights_would_be_lost(mannequins):
     points = pair_components(mannequins, metric="positions-absolute")
-    X = by_group(points, "positions")
+    X = group_means(points, "positions")
     assert X.corr().loc["clavicle", "upper_arm"] > 0.99
     planted = planted_in(X, "positions-absolute")
     told = X.to_numpy() @ planted
     chosen, shown = answers(0.75 * told / told.mean(), seed=0, temperature=0.1)
     assert nearness(X, share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0)), planted) < 0.6
-    kept = group_table(mannequins, "positions-absolute")
-    assert kept.attrs == {"left_out": ["clavicle"], "alike": []}
+    table = group_table(mannequins, "positions-absolute")
+    assert missing_groups(table) == ["clavicle"]
+    assert collinear_groups(table).empty
 
 
 def test_weights_that_differences_were_made_with_come_back():

@@ -15,8 +15,8 @@ import typer
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eigenwalker.metric.prepared import PreparedClip
-    from eigenwalker.metric.published import GroupMetric
+    from eigenwalker.metric.clips import PreparedClip
+    from eigenwalker.metric.frame_metrics import GroupMetric
     from eigenwalker.study.walks import Walks
 
 SOME_REFUSED = 1

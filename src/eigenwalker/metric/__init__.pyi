@@ -1,23 +1,46 @@
-from .angles import angle_between as angle_between, joint_quaternions as joint_quaternions
+from .alignment import Alignment as Alignment
 from .clip_distances import (
     clip_components as clip_components,
     clip_distance as clip_distance,
+    step_distances as step_distances,
+)
+from .clips import Clip as Clip, Clips as Clips, Loop as Loop, PreparedClip as PreparedClip
+from .comparison import Comparison as Comparison, compare_walks as compare_walks
+from .comparison_pipeline import full_joints as full_joints, prepare_walk as prepare_walk
+from .cycles import CYCLE_FRAMES as CYCLE_FRAMES, common_clock as common_clock
+from .frame_metrics import (
+    FrameMetric as FrameMetric,
+    GroupMetric as GroupMetric,
+    Metric as Metric,
+    shaped as shaped,
+)
+from .group_tables import (
+    collinear_groups as collinear_groups,
+    group_table as group_table,
+    missing_groups as missing_groups,
+)
+from .joint_angles import angle_between as angle_between, joint_quaternions as joint_quaternions
+from .joint_groups import (
+    BONES as BONES,
+    GROUPS as GROUPS,
+    group_means as group_means,
+    group_points as group_points,
+)
+from .loops import loop as loop
+from .mannequin import HEIGHT_MM as HEIGHT_MM, SHARES as SHARES, is_mannequin as is_mannequin
+from .motion_maps import motion_map as motion_map, motion_maps as motion_maps
+from .neighbours import label_table as label_table, nearest_walks as nearest_walks
+from .pairwise import (
+    distances_by_metric as distances_by_metric,
     pair_components as pair_components,
     pair_distances as pair_distances,
     pair_table as pair_table,
-    step_distances as step_distances,
 )
-from .comparison import Comparison as Comparison, compare_walks as compare_walks
-from .comparison_pipeline import comparable_walk as comparable_walk
-from .frame_metrics import ComparesFrames as ComparesFrames, FrameMetric as FrameMetric
-from .group_tables import group_table as group_table
-from .groups import group_points as group_points
-from .loops import Loop as Loop, loop as loop
-from .motion_maps import motion_map as motion_map, motion_maps as motion_maps
-from .prepared import PreparedClip as PreparedClip, prepare as prepare
+from .paths import least_cost_path as least_cost_path
+from .prepared import prepare as prepare
 from .published import (
+    FIGURE_5 as FIGURE_5,
     PUBLISHED as PUBLISHED,
-    GroupMetric as GroupMetric,
     metric_named as metric_named,
 )
 from .registration import (

@@ -1,9 +1,4 @@
-"""Where one posture has to turn and move to lie over another: heading and place removed.
-
-The closed form of Kovar, Gleicher & Pighin (2002, section 3.1): of all turns about the vertical and
-moves along the floor, those that bring the points of a window of frames nearest to the points of
-another, by least squares.
-"""
+"""Alignment of postures in heading and place, in closed form (Kovar, Gleicher & Pighin 2002)."""
 
 from __future__ import annotations
 
@@ -11,125 +6,157 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eigenwalker.core.kinematics import rotate_z
 from eigenwalker.metric.frame_metrics import Shape
-from eigenwalker.metric.kernels import SHAPE_CODES, diagonal_means, rows_of_aligned_map
-from eigenwalker.metric.threads import in_threads
+from eigenwalker.metric.kernels import SHAPE_CODES, diagonal_means, in_threads, rows_of_aligned_map
 
 _ROWS = 32
+"""Rows of a map that one thread fills at a time."""
 
 
 class Alignment(NamedTuple):
-    """Turns about z in radians, then moves along x and y in mm, of the second clip onto the first.
+    """Rotations about the vertical and then translations that lay one clip over another.
 
-    Of shape (frame, other frame) and (frame, other frame, 2) for all pairs of frames; of shape
-    (step,) and (step, 2) along a path.
+    Parameters
+    ----------
+    angles : array of shape (step,) or (frame, other frame)
+        Radians, counter-clockwise seen from above.
+    shifts : array of shape (step, 2) or (frame, other frame, 2)
+        Translations along x and y in mm.
+
     """
 
     angles: np.ndarray
     shifts: np.ndarray
 
     def apply(self, positions: np.ndarray) -> np.ndarray:
-        """Return positions of shape (step, marker, axis), turned and moved step by step."""
-        cos, sin = np.cos(self.angles)[:, None], np.sin(self.angles)[:, None]
-        x, y, z = np.moveaxis(positions, 2, 0)
-        turned = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=2)
-        turned[..., :2] += self.shifts[:, None]
-        return turned
+        """Return positions of shape (step, marker, axis), rotated and translated step by step."""
+        rotated = rotate_z(positions, self.angles)
+        rotated[..., :2] += self.shifts[:, None]
+        return rotated
 
     def inverse(self) -> Alignment:
-        """Return what brings the first clip over the second, along a path."""
-        moves = np.concatenate([self.shifts, 0 * self.shifts[:, :1]], axis=1)[:, None]
-        back = Alignment(-self.angles, 0 * self.shifts)
-        return Alignment(-self.angles, -back.apply(moves)[:, 0, :2])
+        """Return the alignment that lays the first clip over the second, along a path."""
+        shifts = np.concatenate([self.shifts, 0 * self.shifts[:, :1]], axis=1)[:, None]
+        return Alignment(-self.angles, -rotate_z(shifts, -self.angles)[:, 0, :2])
 
 
 def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
-    """Return how each window of frames of one clip is brought over each window of another.
+    r"""Return how each window of frames of one clip is laid over each window of another.
+
+    The rotation :math:`\theta` about the vertical and translation :math:`(s_x, s_y)` that minimise
+    the summed squared distance between the points of both windows. With means
+    :math:`\langle\cdot\rangle` over all points and frames of the windows, and primes for the
+    second clip:
+
+    .. math::
+
+        \theta = \arctan\frac
+        {\langle y x' - x y' \rangle - \langle y \rangle\langle x' \rangle
+        + \langle x \rangle\langle y' \rangle}
+        {\langle x x' + y y' \rangle - \langle x \rangle\langle x' \rangle
+        - \langle y \rangle\langle y' \rangle}, \qquad
+        (s_x, s_y) = (\langle x \rangle, \langle y \rangle)
+        - R_\theta\, (\langle x' \rangle, \langle y' \rangle)
 
     Parameters
     ----------
     a, b : array of shape (frame, point, axis)
-        Positions, none missing.
+        Positions in mm, none missing.
     half : int
         Frames of the window on either side of each frame; fewer at the ends of the clips.
 
     Returns
     -------
     Alignment
-        For every pair of frames.
+        Of shape (frame, other frame).
+
+    References
+    ----------
+    Kovar, Gleicher & Pighin (2002), Motion graphs, section 3.1.
 
     Examples
     --------
     >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
     >>> turned = np.array([[[50.0, 0, 0], [50, 100, 0]]])
-    >>> found = align_windows(posture, turned)
-    >>> np.rad2deg(found.angles).round(6).tolist(), found.shifts.round(6).tolist()
+    >>> alignment = align_windows(posture, turned)
+    >>> np.rad2deg(alignment.angles).round(6).tolist(), alignment.shifts.round(6).tolist()
     ([[-90.0]], [[[0.0, 50.0]]])
 
     """
     n_points = a.shape[1]
-    middle_a, middle_b = (values[..., :2].mean(axis=(0, 1)) for values in (a, b))
+    middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)
     (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
-    along = xa @ xb.T + ya @ yb.T
-    across = ya @ xb.T - xa @ yb.T
-    ones = np.ones_like(along)
+    dots = xa @ xb.T + ya @ yb.T
+    crosses = ya @ xb.T - xa @ yb.T
+    ones = np.ones_like(dots)
     means = [xa.mean(1)[:, None] * ones, ya.mean(1)[:, None] * ones]
     means += [xb.mean(1) * ones, yb.mean(1) * ones]
     if half:
-        along, across = diagonal_means(along, half), diagonal_means(across, half)
+        dots, crosses = diagonal_means(dots, half), diagonal_means(crosses, half)
         means = [diagonal_means(mean, half) for mean in means]
-    return _closed_form([*means, along / n_points, across / n_points], middle_a, middle_b)
+    return _closed_form([*means, dots / n_points, crosses / n_points], middle_a, middle_b)
+
+
+def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
+    """Return how the frames of one clip are laid over those of another, step by step.
+
+    Parameters
+    ----------
+    a, b : array of shape (step, point, axis)
+        Corresponding positions in mm, none missing.
+    half : int
+        Steps on either side that count too (`align_windows`); fewer at the ends.
+
+    Returns
+    -------
+    Alignment
+        Of shape (step,).
+
+    Examples
+    --------
+    >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
+    >>> alignment = align_steps(posture, posture + np.array([30.0, 0, 0]))
+    >>> alignment.angles.tolist(), alignment.shifts.tolist()
+    ([0.0], [[-30.0, 0.0]])
+
+    """
+    middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)
+    (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
+    means = [values.mean(axis=1) for values in (xa, ya, xb, yb)]
+    means += [(xa * xb + ya * yb).mean(axis=1), (ya * xb - xa * yb).mean(axis=1)]
+    steps = np.arange(len(a))
+    first, stop = np.maximum(steps - half, 0), np.minimum(steps + half + 1, len(a))
+    windows = window_means(np.stack(means, axis=1), first, stop)
+    return _closed_form(list(windows.T), middle_a, middle_b)
+
+
+def window_means(values: np.ndarray, first: np.ndarray, stop: np.ndarray) -> np.ndarray:
+    """Return means over the rows from each `first` up to each `stop`, not included."""
+    sums = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
+    return ((sums[stop] - sums[first]).T / (stop - first)).T
+
+
+def horizontal_mean(values: np.ndarray) -> np.ndarray:
+    """Return the mean x and y of all points and frames."""
+    return values[..., :2].mean(axis=(0, 1))
+
+
+def _horizontal(values: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return values[..., 0] - middle[0], values[..., 1] - middle[1]
 
 
 def _closed_form(means: list[np.ndarray], middle_a: np.ndarray, middle_b: np.ndarray) -> Alignment:
-    """Turn and move from means over points of x, y, x', y', x x' + y y' and y x' - x y'."""
-    mean_xa, mean_ya, mean_xb, mean_yb, along, across = means
-    along = along - (mean_xa * mean_xb + mean_ya * mean_yb)
-    across = across - (mean_ya * mean_xb - mean_xa * mean_yb)
-    angles = np.arctan2(across, along)
+    """Return the alignment from the means of x, y, x', y', x x' + y y' and y x' - x y'."""
+    mean_xa, mean_ya, mean_xb, mean_yb, dots, crosses = means
+    dots = dots - (mean_xa * mean_xb + mean_ya * mean_yb)
+    crosses = crosses - (mean_ya * mean_xb - mean_xa * mean_yb)
+    angles = np.arctan2(crosses, dots)
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = mean_xb + middle_b[0], mean_yb + middle_b[1]
     shift_x = mean_xa + middle_a[0] - (cos * x - sin * y)
     shift_y = mean_ya + middle_a[1] - (sin * x + cos * y)
     return Alignment(angles, np.stack([shift_x, shift_y], axis=-1))
-
-
-def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
-    """Return how the frames of one clip are brought over those of another, step by step.
-
-    Parameters
-    ----------
-    a, b : array of shape (step, point, axis)
-        Positions that correspond to each other, none missing.
-    half : int
-        Steps on either side that count too; fewer at the ends.
-
-    Returns
-    -------
-    Alignment
-        One turn and move a step.
-
-    Examples
-    --------
-    >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
-    >>> found = align_steps(posture, posture + np.array([30.0, 0, 0]))
-    >>> found.angles.tolist(), found.shifts.tolist()
-    ([0.0], [[-30.0, 0.0]])
-
-    """
-    middle_a, middle_b = (values[..., :2].mean(axis=(0, 1)) for values in (a, b))
-    (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
-    means = [values.mean(axis=1) for values in (xa, ya, xb, yb)]
-    means += [(xa * xb + ya * yb).mean(axis=1), (ya * xb - xa * yb).mean(axis=1)]
-    sums = np.concatenate([np.zeros((1, 6)), np.cumsum(np.stack(means, axis=1), axis=0)])
-    steps = np.arange(len(a))
-    first, stop = np.maximum(steps - half, 0), np.minimum(steps + half + 1, len(a))
-    windows = (sums[stop] - sums[first]) / (stop - first)[:, None]
-    return _closed_form(list(windows.T), middle_a, middle_b)
-
-
-def _horizontal(values: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return values[..., 0] - middle[0], values[..., 1] - middle[1]
 
 
 def aligned_map(
@@ -140,21 +167,21 @@ def aligned_map(
     *,
     shape: Shape,
     parameter: float = 1.0,
-    moved: bool = True,
+    translate: bool = True,
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of all pairs of frames, the second clip aligned to the first.
 
     Parameters
     ----------
     a, b : array of shape (frame, point, axis)
-        Positions or velocities, none missing.
+        Positions in mm or velocities in mm/s, none missing.
     alignment : Alignment
-        For every pair of frames.
+        Of shape (frame, other frame).
     weights : array of shape (point,)
     shape, parameter
         F, as in `point_map`.
-    moved : bool
-        Whether points move as well as turn: positions do, velocities do not.
+    translate : bool
+        Whether points are translated as well as rotated: positions are, velocities are not.
 
     Returns
     -------
@@ -162,24 +189,18 @@ def aligned_map(
 
     """
     rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
-    turns = np.zeros((4, len(a), len(b)))
-    np.cos(alignment.angles, out=turns[0])
-    np.sin(alignment.angles, out=turns[1])
-    if moved:
-        turns[2:] = np.moveaxis(alignment.shifts, 2, 0)
+    moves = np.zeros((4, len(a), len(b)))
+    np.cos(alignment.angles, out=moves[0])
+    np.sin(alignment.angles, out=moves[1])
+    if translate:
+        moves[2:] = np.moveaxis(alignment.shifts, 2, 0)
     result = np.empty((len(a), len(b)))
+    form = SHAPE_CODES[shape], parameter
 
     def fill(start: int) -> None:
         block = slice(start, start + _ROWS)
-        rows_of_aligned_map(
-            rows[block],
-            columns,
-            weights,
-            SHAPE_CODES[shape],
-            parameter,
-            np.ascontiguousarray(turns[:, block]),
-            result[block],
-        )
+        own = np.ascontiguousarray(moves[:, block])
+        rows_of_aligned_map(rows[block], columns, weights, *form, own, result[block])
 
     in_threads(fill, range(0, len(a), _ROWS), few=result.size < 10_000)
     return result

@@ -1,58 +1,161 @@
-"""Captures made comparable: joints, in place, on the neutral mannequin (P2, P4)."""
+"""From a capture to a walk that can be compared: joints, in place, on the neutral mannequin."""
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
+from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.core.trajectories import DIMS, sampling_rate
 from eigenwalker.gait.gaps import MAX_GAP_S, find_gaps
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.metric.captured_rotations import with_rotations
+from eigenwalker.metric.clips import Clip, as_trajectories
+from eigenwalker.metric.joint_angles import SKELETON_BONES
 from eigenwalker.metric.retargeting import retarget
 
+RIGID_MM = 1.0
+"""Standard deviation of a point in the frame of a body up to which it is a part of that body."""
 
-def comparable_walk(capture: xr.DataArray, *, mannequin: bool = True) -> xr.DataArray:
+
+def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
     """Return the steady strides of a capture as a walk that can be compared with others.
 
-    Joints are made of markers, feet, hands and captured rotations kept where there are any; the
-    walk is brought in place, facing +x; and shown on the neutral mannequin, so that what differs
-    is how people move and not how they are built.
+    1. `full_joints`: joints, feet, hands and captured rotations.
+    2. `in_place`: the steady strides, facing +x, without progress and drift.
+    3. `retarget`: the neutral mannequin, so that differences are of movement and not of build.
 
     Parameters
     ----------
-    capture : DataArray of shape (time, marker, axis)
-        As `read_mocap` gives it, or joints.
+    capture : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        A capture of markers or joints, from `read_mocap`, or any clip of joints.
     mannequin : bool
-        Whether to show the walk on the mannequin (`retarget`), rather than on its own body.
+        Whether to show the walk on the mannequin rather than on its own body.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        ``attrs["left_out"]`` names hands, feet and the like that were hidden for too long.
+        Positions in mm. ``attrs["hidden_markers"]`` names hands, feet and the like that were
+        hidden for too long and are left out.
 
     Raises
     ------
     ValueError
         As `virtual_markers` and `in_place` do.
 
+    See Also
+    --------
+    compare_walks, clip_distance : Compare such walks.
+    prepare : The stride of a walk, for many comparisons.
+
+    References
+    ----------
+    Pražák et al. (2010), section 3.
+
     Examples
     --------
-    >>> walk = comparable_walk(ew.simulate_walk(seed=1, markers="skin"))
-    >>> walk.attrs["retargeted"], "left_toe" in walk.marker
+    >>> walk = prepare_walk(ew.simulate_walk(seed=1, markers="skin"))
+    >>> ew.metric.is_mannequin(walk), "left_toe" in walk.marker
     (True, True)
 
     """
-    joints = with_rotations(virtual_markers(capture, joints="full"), capture)
-    hidden = _hidden(joints)
-    walk = in_place(joints.drop_sel(marker=hidden)).assign_attrs(left_out=hidden)
+    walk = in_place(full_joints(capture))
     return retarget(walk) if mannequin else walk
 
 
-def _hidden(joints: xr.DataArray) -> list[str]:
-    """Return hands, feet and the like that were not seen for longer than can be filled."""
+def full_joints(capture: Clip) -> xr.DataArray:
+    """Return the joints of a capture with feet, hands and captured rotations, where it has them.
+
+    Parameters
+    ----------
+    capture : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        A capture of markers or joints.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        The 15 joints and those of feet, hands, neck and clavicles that were not hidden for longer
+        than gaps are filled (`MAX_GAP_S`); ``attrs["hidden_markers"]`` names the others. A
+        coordinate ``rotation`` as `with_rotations` adds it.
+
+    """
+    capture = as_trajectories(capture)
+    joints = with_rotations(virtual_markers(capture, joints="full"), capture)
     longest = MAX_GAP_S * sampling_rate(joints)
     gaps = [gap for gap in find_gaps(joints.values) if gap.stop - gap.start > longest]
-    names = {str(joints.marker.values[gap.marker]) for gap in gaps}
-    return sorted(names - set(JOINTS.markers))
+    hidden = {str(joints.marker.values[gap.marker]) for gap in gaps} - set(JOINTS.markers)
+    return joints.drop_sel(marker=sorted(hidden)).assign_attrs(hidden_markers=sorted(hidden))
+
+
+def with_rotations(joints: xr.DataArray, capture: xr.DataArray) -> xr.DataArray:
+    """Return joints with the captured rotations of their bones.
+
+    A bone turns like the body of the capture in whose frame both its ends stay most nearly fixed
+    (`RIGID_MM`). Names and rest postures, which differ between formats, do not matter.
+
+    Parameters
+    ----------
+    joints : DataArray of shape (time, marker, axis)
+        The joints of the capture (`virtual_markers`).
+    capture : DataArray of shape (time, marker, axis)
+        The capture, on the same clock.
+
+    Returns
+    -------
+    DataArray of shape (time, marker, axis)
+        With a coordinate ``rotation``: rotation vectors in the frame of the room of the bone that
+        begins at each joint (of the head at the head), NaN where none is known. Unchanged if the
+        capture has no rotation of a bone.
+
+    Examples
+    --------
+    >>> walk = ew.simulate_walk(seed=1, duration_s=1)
+    >>> "rotation" in with_rotations(walk, walk).coords
+    False
+
+    """
+    if "rotation" not in capture.coords or capture.sizes["time"] != joints.sizes["time"]:
+        return joints
+    bodies = _bodies(capture)
+    place = {str(name): joints.values[:, i] for i, name in enumerate(joints.marker.values)}
+    rotation = np.full(joints.shape, np.nan)
+    for index, joint in enumerate(place):
+        if ends := _bone_at(joint, place):
+            rotation[:, index] = _rotation_of(bodies, *ends)
+    if np.isnan(rotation).all():
+        return joints
+    return joints.assign_coords(rotation=(DIMS, rotation))
+
+
+def _bone_at(joint: str, place: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return both ends of the bone whose rotation is stored at a joint."""
+    if joint == "head":
+        return place["head"], place["head"]
+    if joint.endswith("_clavicle"):
+        return place[joint], place[joint.replace("clavicle", "shoulder")]
+    for bone in SKELETON_BONES.values():
+        if bone.start == joint and joint != "sternum" and bone.end in place:
+            return place[bone.start], place[bone.end]
+    return None
+
+
+def _bodies(capture: xr.DataArray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return positions and rotation vectors of the markers that have both in all frames."""
+    rotation = capture.rotation.transpose(*DIMS).values
+    known = np.isfinite(rotation).all(axis=(0, 2)) & np.isfinite(capture.values).all(axis=(0, 2))
+    return [(capture.values[:, i], rotation[:, i]) for i in np.flatnonzero(known)]
+
+
+def _rotation_of(
+    bodies: list[tuple[np.ndarray, np.ndarray]], start: np.ndarray, end: np.ndarray
+) -> np.ndarray:
+    """Return the rotation of the body that both points are parts of; NaN if there is none."""
+    best, rotation = RIGID_MM, np.full_like(start, np.nan)
+    for place, vectors in bodies:
+        into_body = Rotation.from_rotvec(vectors).inv()
+        spread = [into_body.apply(point - place).std(axis=0) for point in (start, end)]
+        worst = float(np.sqrt(np.max(np.sum(np.square(spread), axis=1))))
+        if worst < best:
+            best, rotation = worst, vectors
+    return rotation

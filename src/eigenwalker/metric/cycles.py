@@ -1,4 +1,4 @@
-"""Strides on a common clock: when they begin no longer matters, nor where and how fast they are."""
+"""Strides on a common clock, and their registration in phase, heading and place, pair by pair."""
 
 from __future__ import annotations
 
@@ -9,36 +9,40 @@ import xarray as xr
 
 from eigenwalker.core.quaternions import quaternions_at, vectors_of
 from eigenwalker.core.trajectories import trajectories_at
-from eigenwalker.metric.frame_metrics import ComparesFrames, shape_parameter
-from eigenwalker.metric.kernels import SHAPE_CODES, compiled, mean_along_path
-from eigenwalker.metric.loops import Loop
+from eigenwalker.metric.clips import Loop
+from eigenwalker.metric.frame_metrics import Metric, shape_parameter
+from eigenwalker.metric.kernels import SHAPE_CODES, compiled, in_threads, mean_along_path
 from eigenwalker.metric.paths import SLOPE_LIMIT, closed_path
-from eigenwalker.metric.threads import in_threads
 
 CYCLE_FRAMES = 120
 """Frames of a stride on the common clock: about a hundred a second."""
 
 N_HARMONICS = 10
-"""Harmonics that decide how cycles are turned and shifted on the whole; above them is noise."""
+"""Harmonics from which the global shift and heading are computed; above them is noise."""
 
 BAND = CYCLE_FRAMES // 12
-"""Frames by which one stride may be ahead of the other in passing. When a foot lifts differs
-between people by less than half of that."""
+"""Frames by which one stride may be ahead of the other along the path. The moment at which a foot
+lifts differs between people by less than half of that."""
 
-_LEADS = 4 * BAND + 8
-"""Frames ahead for which distances are at hand, of which a path needs `4 * BAND + 1`: whole vectors
-of numbers are quicker than a few less."""
+_N_LEADS = 4 * BAND + 8
+"""Leads for which distances are computed. A path needs `4 * BAND + 1`; whole vectors of numbers are
+faster than a few fewer."""
 
 _PAIRS = 16
 """Pairs that one thread takes at a time."""
 
 
 def common_clock(loop: Loop) -> xr.DataArray:
-    """Return a cycle at `CYCLE_FRAMES` evenly spaced phases, beginning where its own movement says.
+    r"""Return a loop in `CYCLE_FRAMES` frames that begins at a phase given by its own movement.
 
-    Uniform scaling: all strides get the same number of frames, time keeps the seconds they took.
-    They begin where the fundamental, all markers together, is furthest from its middle; of the two
-    such moments either.
+    With :math:`X_h` the Fourier coefficients of all coordinates over the cycle, the cycle begins at
+    the phase
+
+    .. math:: \theta = -\tfrac12 \arg \sum_{marker, axis} X_1^2
+
+    at which the fundamental of all markers together is farthest from its mean (one of two such
+    phases, half a stride apart), and is resampled by its Fourier series. Every stride gets the same
+    number of frames (uniform time scaling); its times keep its duration.
 
     Parameters
     ----------
@@ -48,11 +52,11 @@ def common_clock(loop: Loop) -> xr.DataArray:
     Returns
     -------
     DataArray of shape (time, marker, axis)
+        Positions in mm, `CYCLE_FRAMES` frames from 0 s.
 
     Examples
     --------
-    >>> from eigenwalker.metric.loops import loop
-    >>> cycle = common_clock(loop(ew.simulate_walk(seed=1, frequency_hz=0.8)))
+    >>> cycle = common_clock(ew.loop(ew.simulate_walk(seed=1, frequency_hz=0.8)))
     >>> cycle.sizes["time"], round(float(cycle.time[-1]) * 120 / 119, 2)
     (120, 1.25)
 
@@ -61,20 +65,33 @@ def common_clock(loop: Loop) -> xr.DataArray:
     n_frames = cycle.sizes["time"]
     spectrum = np.fft.rfft(cycle.values, axis=0)
     origin = -0.5 * np.angle(np.sum(spectrum[1] ** 2)) if len(spectrum) > 1 else 0.0
-    kept = min((n_frames - 1) // 2, (CYCLE_FRAMES - 1) // 2) + 1
-    turns = np.exp(1j * origin * np.arange(kept))[:, None, None]
-    values = np.fft.irfft(spectrum[:kept] * turns, CYCLE_FRAMES, axis=0) * CYCLE_FRAMES / n_frames
+    n_coefficients = min((n_frames - 1) // 2, (CYCLE_FRAMES - 1) // 2) + 1
+    shifts = np.exp(1j * origin * np.arange(n_coefficients))[:, None, None]
+    values = np.fft.irfft(spectrum[:n_coefficients] * shifts, CYCLE_FRAMES, axis=0)
     time = np.arange(CYCLE_FRAMES) * loop.period_s / CYCLE_FRAMES
-    result = trajectories_at(time, values, cycle.marker.values).assign_attrs(cycle.attrs)
+    result = trajectories_at(time, values * CYCLE_FRAMES / n_frames, cycle.marker.values)
     if "rotation" in cycle.coords:
         phases = (np.arange(CYCLE_FRAMES) / CYCLE_FRAMES + origin / (2 * np.pi)) % 1
-        turns = quaternions_at(cycle.rotation.values, phases * n_frames, wraps=True)
-        result = result.assign_coords(rotation=(cycle.rotation.dims, vectors_of(turns)))
-    return result
+        quaternions = quaternions_at(cycle.rotation.values, phases * n_frames, wraps=True)
+        result = result.assign_coords(rotation=(cycle.rotation.dims, vectors_of(quaternions)))
+    return result.assign_attrs(cycle.attrs)
 
 
-class Registered(NamedTuple):
-    """Pairs of cycles, registered: how the second is turned, and the closed path round both."""
+class RegisteredPairs(NamedTuple):
+    """Registered pairs of cycles.
+
+    Parameters
+    ----------
+    pairs : array of int of shape (pair, 2)
+        Indices of the cycles.
+    angles : array of shape (pair,)
+        Rotations of the second cycle about the vertical in radians.
+    steps : array of int of shape (pair, step, 2)
+        Frames of both cycles along the closed path.
+    lengths : array of int of shape (pair,)
+        Steps of each path.
+
+    """
 
     pairs: np.ndarray
     angles: np.ndarray
@@ -82,30 +99,33 @@ class Registered(NamedTuple):
     lengths: np.ndarray
 
     def path(self, pair: int) -> np.ndarray:
-        """Return the frames of both cycles along the path, of shape (step, 2)."""
+        """Return the frames of both cycles along the path of a pair, of shape (step, 2)."""
         return self.steps[pair, : self.lengths[pair]].astype(int)
 
 
-def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> Registered:
-    """Return how pairs of cycles lie over each other in phase, heading and place.
+def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
+    """Return how pairs of cycles correspond in phase, heading and place, as in `register_walks`.
+
+    The sums over frames and points of its second step are correlations, computed from the first
+    `N_HARMONICS` Fourier coefficients.
 
     Parameters
     ----------
     cycles : array of shape (cycle, frame, point, axis)
-        Strides on the common clock.
+        Strides on the common clock (`common_clock`), in mm.
     pairs : array of int of shape (pair, 2)
-        Which with which.
+        Indices of the cycles of each pair.
 
     Returns
     -------
-    Registered
+    RegisteredPairs
 
     """
     centred = cycles.copy()
     centred[..., :2] -= centred[..., :2].mean(axis=(1, 2), keepdims=True)
     spectra = np.ascontiguousarray(np.fft.rfft(centred, axis=1)[:, : N_HARMONICS + 1])
-    single = centred.astype(np.float32)  # half the time, and off by a ten-thousandth of a mm
-    found = Registered(
+    single = centred.astype(np.float32)  # half the time; the error is a ten-thousandth of a mm
+    registered = RegisteredPairs(
         pairs,
         np.empty(len(pairs)),
         np.empty((len(pairs), 2 * CYCLE_FRAMES + 2, 2), dtype=np.int16),
@@ -113,24 +133,23 @@ def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> Registered:
     )
 
     def register(start: int) -> None:
-        some = slice(start, start + _PAIRS)
-        _register(single, spectra, SLOPE_LIMIT, BAND, *(each[some] for each in found))
+        block = slice(start, start + _PAIRS)
+        _register(single, spectra, SLOPE_LIMIT, BAND, *(each[block] for each in registered))
 
     in_threads(register, range(0, len(pairs), _PAIRS))
-    return found
+    return registered
 
 
-def mean_distances(points: np.ndarray, found: Registered, metric: ComparesFrames) -> np.ndarray:
-    """Return for each pair of cycles, and each point, the mean of F(d) along their path.
+def mean_distances(points: np.ndarray, registered: RegisteredPairs, metric: Metric) -> np.ndarray:
+    """Return the mean of F(d) along the path of each pair of cycles, for each point.
 
     Parameters
     ----------
     points : array of shape (cycle, frame, point, part)
         What is compared: positions, velocities or orientations.
-    found : Registered
-        How the cycles lie over each other.
-    metric : FrameMetric
-        Of which what is compared and F count.
+    registered : RegisteredPairs
+    metric : FrameMetric or GroupMetric
+        Of which `by` and F are used.
 
     Returns
     -------
@@ -140,29 +159,30 @@ def mean_distances(points: np.ndarray, found: Registered, metric: ComparesFrames
     if metric.by == "positions":
         points = points.copy()
         points[..., :2] -= points[..., :2].mean(axis=(1, 2), keepdims=True)
-    result = np.empty((len(found.pairs), points.shape[2]))
+    result = np.empty((len(registered.pairs), points.shape[2]))
+    rotate = metric.by != "angles"
     form = SHAPE_CODES[metric.shape], shape_parameter(metric)
 
     def fill(start: int) -> None:
-        some = slice(start, start + _PAIRS)
-        _fill_means(points, metric.by != "angles", *form, result[some], *(e[some] for e in found))
+        block = slice(start, start + _PAIRS)
+        _fill_means(points, rotate, *form, result[block], *(each[block] for each in registered))
 
-    in_threads(fill, range(0, len(found.pairs), _PAIRS))
+    in_threads(fill, range(0, len(result), _PAIRS))
     return result
 
 
 @compiled
 def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
-    """Fill in angles, steps and lengths of pairs, as in `Registered`.
+    """Fill in angles, steps and lengths of `RegisteredPairs`.
 
     positions: (cycle, frame, point, axis); spectra: (cycle, harmonic, point, axis), complex.
     """
     n_frames, n_points = positions.shape[1], positions.shape[2]
-    columns = np.empty((n_points, 3, n_frames + _LEADS), positions.dtype)
-    cost = np.empty((n_frames, _LEADS), positions.dtype)
+    columns = np.empty((n_points, 3, n_frames + _N_LEADS), positions.dtype)
+    cost = np.empty((n_frames, _N_LEADS), positions.dtype)
     for p in range(len(pairs)):
         first, second = pairs[p, 0], pairs[p, 1]
-        shift, angle = _on_the_whole(spectra[first], spectra[second], n_frames)
+        shift, angle = _global_shift(spectra[first], spectra[second], n_frames)
         _lay_out(positions[second], angle, columns)
         _map_near_line(positions[first], columns, (shift - 2 * band) % n_frames, cost)
         path = closed_path(cost, shift, limit, band)
@@ -173,22 +193,28 @@ def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
 
 
 @compiled
-def _lay_out(positions, angle, columns):
-    """Fill in turned positions of a cycle as (point, axis, frame), beyond its end begun again."""
-    n_frames = positions.shape[0]
-    cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
-    for k in range(positions.shape[1]):
-        for i in range(n_frames):
+def _rotated(positions, angle, result):
+    """Fill in positions of shape (frame, point, axis), rotated about the vertical."""
+    cos, sin = positions.dtype.type(np.cos(angle)), positions.dtype.type(np.sin(angle))
+    for i in range(positions.shape[0]):
+        for k in range(positions.shape[1]):
             x, y = positions[i, k, 0], positions[i, k, 1]
-            columns[k, 0, i] = cos * x - sin * y
-            columns[k, 1, i] = sin * x + cos * y
-            columns[k, 2, i] = positions[i, k, 2]
+            result[i, k, 0] = cos * x - sin * y
+            result[i, k, 1] = sin * x + cos * y
+            result[i, k, 2] = positions[i, k, 2]
+
+
+@compiled
+def _lay_out(positions, angle, columns):
+    """Fill in rotated positions of a cycle as (point, axis, frame), repeated beyond its end."""
+    n_frames = positions.shape[0]
+    _rotated(positions, angle, columns.transpose(2, 0, 1))
     columns[:, :, n_frames:] = columns[:, :, : columns.shape[2] - n_frames]
 
 
 @compiled
 def _map_near_line(rows, columns, start, cost):
-    """Fill in mean distances of each frame from those about the frame that corresponds to it."""
+    """Fill in summed distances of each frame from those near the corresponding frame."""
     n_frames, n_points, n_leads = rows.shape[0], rows.shape[1], cost.shape[1]
     for i in range(n_frames):
         first = (start + i) % n_frames
@@ -203,12 +229,8 @@ def _map_near_line(rows, columns, start, cost):
 
 
 @compiled
-def _on_the_whole(a, b, n_frames):
-    """Shift in frames and turn of the second cycle at which it is nearest to the first.
-
-    The closed form of Kovar, Gleicher & Pighin (2002) for all frames at once, at every shift: the
-    sums over frames are correlations, which the spectra give.
-    """
+def _global_shift(a, b, n_frames):
+    """Return the shift in frames and rotation of the second cycle, step 2 of `register_walks`."""
     n_harmonics = a.shape[0]
     cross = np.zeros((3, n_harmonics), np.complex128)
     for h in range(n_harmonics):
@@ -219,34 +241,28 @@ def _on_the_whole(a, b, n_frames):
             cross[0, h] += once * (ax * bx + ay * by)
             cross[1, h] += once * (ay * bx - ax * by)
             cross[2, h] += once * az * bz
-    best, shift, turn = -np.inf, 0, 0.0
+    best, shift, angle = -np.inf, 0, 0.0
     for s in range(n_frames):
-        along, across, upright = 0.0, 0.0, 0.0
+        dot, cross_product, vertical = 0.0, 0.0, 0.0
         step = np.exp(-2j * np.pi * s / n_frames)
         phase = 1.0 + 0.0j
         for h in range(n_harmonics):
-            along += (cross[0, h] * phase).real
-            across += (cross[1, h] * phase).real
-            upright += (cross[2, h] * phase).real
+            dot += (cross[0, h] * phase).real
+            cross_product += (cross[1, h] * phase).real
+            vertical += (cross[2, h] * phase).real
             phase *= step
-        agreement = np.sqrt(along * along + across * across) + upright
+        agreement = np.sqrt(dot * dot + cross_product * cross_product) + vertical
         if agreement > best:
-            best, shift, turn = agreement, s, np.arctan2(across, along)
-    return shift, turn
+            best, shift, angle = agreement, s, np.arctan2(cross_product, dot)
+    return shift, angle
 
 
 @compiled
-def _fill_means(points, turns, code, parameter, result, pairs, angles, steps, lengths):
-    """Fill in means of F(d), of shape (pair, point); `turns` says whether points turn with us."""
-    n_frames, n_points = points.shape[1], points.shape[2]
+def _fill_means(points, rotate, code, parameter, result, pairs, angles, steps, lengths):
+    """Fill in means of F(d), of shape (pair, point); `rotate`: whether points have a heading."""
     for p in range(len(pairs)):
         other = points[pairs[p, 1]].copy()
-        if turns:
-            cos, sin = np.cos(angles[p]), np.sin(angles[p])
-            for i in range(n_frames):
-                for k in range(n_points):
-                    x, y = other[i, k, 0], other[i, k, 1]
-                    other[i, k, 0] = cos * x - sin * y
-                    other[i, k, 1] = sin * x + cos * y
+        if rotate:
+            _rotated(points[pairs[p, 1]], angles[p], other)
         path = steps[p, : lengths[p]]
         mean_along_path(path, points[pairs[p, 0]], other, code, parameter, result[p])

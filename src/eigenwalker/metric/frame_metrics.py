@@ -1,82 +1,68 @@
-"""How different two frames are: a weighted sum of shaped distances of joints (Pražák, eq. 1-3)."""
+"""Distances between two frames: weighted sums over joints (Pražák et al. 2010, eqs. 1 to 3)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal, Protocol, get_args
+from dataclasses import dataclass, field
+from typing import Literal, get_args
 
 import numpy as np
 
-By = Literal["positions", "velocities", "angles"]
+from eigenwalker.metric.joint_groups import GROUPS, By, group_points
+
 Shape = Literal["absolute", "squared", "sigmoid", "power"]
 
-SHAPES: dict[Shape, Callable[[np.ndarray, float], np.ndarray]] = {
+SHAPES: Mapping[Shape, Callable[[np.ndarray, float], np.ndarray]] = {
     "absolute": lambda d, _: d,
     "squared": lambda d, _: d * d,
     "sigmoid": lambda d, scale: d / (d + scale),
     "power": lambda d, exponent: d**exponent,
 }
-"""F of P9, given distances and the one number that the shape takes."""
-
+"""The functions F of Pražák et al. (2010, section 5), of distances and one parameter."""
 
 SIGMOID_SCALE: Mapping[By, float] = {"positions": 1000.0, "velocities": 1000.0, "angles": 1.0}
-"""What 1 stands for in d / (d + 1): a metre, a metre a second, a radian."""
-
-
-class ComparesFrames(Protocol):
-    """What maps and clip distances ask of a metric."""
-
-    @property
-    def by(self) -> By:
-        """What of the joints is compared."""
-        ...
-
-    @property
-    def shape(self) -> Shape:
-        """The function F of P9."""
-        ...
-
-    @property
-    def scale(self) -> float | None:
-        """Distance at which the sigmoid is a half."""
-        ...
-
-    @property
-    def exponent(self) -> float | None:
-        """Power of the shape "power"."""
-        ...
-
-    def weights_for(self, names: Sequence[str]) -> np.ndarray:
-        """Return a weight for each named point; they sum to 1."""
-        ...
+"""The unit in d / (d + 1): a metre, a metre a second, a radian."""
 
 
 @dataclass(frozen=True)
 class FrameMetric:
-    """A distance of two frames: ``sum_k w_k F(d_k)`` over points that both have (P8).
+    r"""A distance between two frames, with a weight for each point.
+
+    .. math:: D(i, j) = \sum_k w_k F(d_k), \qquad w_k \ge 0, \quad \sum_k w_k = 1
+
+    with :math:`d_k` the distance of point k in frame i of one clip from the same point in frame j
+    of the other, over the points that both have. The constant c of the paper is left out: a frame
+    has no distance from itself.
 
     Parameters
     ----------
     by : {"positions", "velocities", "angles"}
-        Whether d_k is the Euclidean distance of positions (mm) or velocities (mm/s), or the angle
-        between orientations (radians, A26).
+        Whether d_k is the Euclidean distance of positions (mm, eq. 2) or velocities (mm/s, eq. 3),
+        or the angle between orientations of bones (radians, eq. 1; `angle_between`).
     shape : {"absolute", "squared", "sigmoid", "power"}
-        F: d, d^2, d / (d + scale), d^exponent (P9).
+        F(d): d, d^2, d / (d + scale) or d^exponent.
     scale : float, optional
-        For the sigmoid, the distance at which it is a half, in the unit of `by`. Left out, a metre,
-        a metre a second or a radian (`SIGMOID_SCALE`): the paper's d / (d + 1) leaves the unit open
-        (A28).
+        Distance at which the sigmoid is a half, in the unit of d. Left out, a metre, a metre a
+        second or a radian (`SIGMOID_SCALE`): the d / (d + 1) of the paper leaves the unit open.
     exponent : float, optional
         For "power".
     weights : mapping of str to float, optional
-        Weight of each point, 0 or more; points that are not named weigh nothing. Left out, all
-        weigh the same. Weights are divided by their sum over the points that are compared.
+        Weight of each point, 0 or more; other points have none. Left out, all are equal. Weights
+        are divided by their sum over the points that are compared.
 
     Raises
     ------
     ValueError
-        If something is unknown, missing or negative.
+        If a parameter is unknown, missing or negative.
+
+    See Also
+    --------
+    GroupMetric : A weight for each joint group.
+    PUBLISHED : Metrics of the literature.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3 and section 5.
 
     Examples
     --------
@@ -95,21 +81,21 @@ class FrameMetric:
     weights: Mapping[str, float] | None = None
 
     def __post_init__(self) -> None:
-        amiss = []
-        if self.by not in get_args(By):
-            amiss.append(f"by={self.by!r} is not known; give one of {list(get_args(By))}")
-        if self.shape not in get_args(Shape):
-            amiss.append(f"shape={self.shape!r} is not known; give one of {list(get_args(Shape))}")
-        if self.shape == "power" and not _above_0(self.exponent):
-            amiss.append(f"shape='power' needs exponent=..., above 0; got {self.exponent}")
-        if self.shape == "sigmoid" and self.scale is not None and not _above_0(self.scale):
-            amiss.append(f"scale={self.scale} is no distance above 0")
-        if self.weights is not None:
-            wrong = {name: w for name, w in self.weights.items() if not 0 <= w < np.inf}
-            if wrong:
-                amiss.append(f"weights must be finite and 0 or more; got {wrong}")
-        if amiss:
-            raise ValueError("This is no metric of frames: " + "; ".join(amiss) + ".")
+        problems = []
+        for name, value, known in (("by", self.by, By), ("shape", self.shape, Shape)):
+            if value not in get_args(known):
+                problems.append(
+                    f"{name}={value!r} is not known; give one of {list(get_args(known))}"
+                )
+        if self.shape == "power" and not _is_positive(self.exponent):
+            problems.append(f"shape='power' needs exponent=..., above 0; got {self.exponent}")
+        if self.shape == "sigmoid" and self.scale is not None and not _is_positive(self.scale):
+            problems.append(f"scale={self.scale} is no distance above 0")
+        wrong = {name: w for name, w in (self.weights or {}).items() if not 0 <= w < np.inf}
+        if wrong:
+            problems.append(f"weights must be finite and 0 or more; got {wrong}")
+        if problems:
+            raise ValueError("This is no metric of frames: " + "; ".join(problems) + ".")
 
     def weights_for(self, names: Sequence[str]) -> np.ndarray:
         """Return a weight for each named point, 0 or more; they sum to 1.
@@ -117,7 +103,7 @@ class FrameMetric:
         Raises
         ------
         ValueError
-            If none of them weighs anything.
+            If all weights are 0.
 
         """
         given = dict.fromkeys(names, 1.0) if self.weights is None else self.weights
@@ -130,21 +116,115 @@ class FrameMetric:
         return weights / weights.sum()
 
 
-def _above_0(number: float | None) -> bool:
+def _is_positive(number: float | None) -> bool:
     return number is not None and 0 < number < np.inf
 
 
+@dataclass(frozen=True)
+class GroupMetric:
+    """A distance between two frames, with a weight for each joint group of figure 5.
+
+    Parameters
+    ----------
+    name : str
+        Name for tables and reports.
+    by, shape, scale, exponent
+        As in `FrameMetric`.
+    group_weights : mapping of str to float
+        Weight of each of `GROUPS`, 0 or more; other groups have none. The points of a group, left
+        and right (`group_points`), share its weight.
+
+    Raises
+    ------
+    ValueError
+        If a group is unknown, a weight negative, or what the shape needs is missing.
+
+    See Also
+    --------
+    FrameMetric : A weight for each point.
+    PUBLISHED : Metrics of the literature.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3 and fig. 5.
+
+    Examples
+    --------
+    >>> legs = GroupMetric("legs", "positions", "absolute", {"calf": 3, "toe": 1})
+    >>> legs.weights_for(["left_knee", "right_knee", "left_ankle"]).tolist()
+    [0.375, 0.375, 0.25]
+
+    """
+
+    name: str
+    by: By
+    shape: Shape
+    group_weights: Mapping[str, float] = field(default_factory=dict)
+    scale: float | None = None
+    exponent: float | None = None
+
+    def __post_init__(self) -> None:
+        FrameMetric(self.by, self.shape, self.scale, self.exponent)  # checks them
+        unknown = [group for group in self.group_weights if group not in GROUPS]
+        wrong = {group: w for group, w in self.group_weights.items() if not 0 <= w < np.inf}
+        if unknown or wrong or not sum(self.group_weights.values()) > 0:
+            raise ValueError(
+                f"A metric of joint groups needs weights of 0 or more for some of {list(GROUPS)}, "
+                f"one of them above 0; got {dict(self.group_weights)}."
+            )
+
+    def weights_for(self, names: Sequence[str]) -> np.ndarray:
+        """Return a weight for each named point; they sum to 1.
+
+        The weight of a group without points falls to the others.
+
+        Raises
+        ------
+        ValueError
+            If no group with a weight has points among these.
+
+        """
+        names = [str(name) for name in names]
+        weights = dict.fromkeys(names, 0.0)
+        for group, points in group_points(names, self.by).items():
+            for point in points:
+                weights[point] += self.group_weights.get(group, 0.0) / len(points)
+        total = sum(weights.values())
+        if not total > 0:
+            weighed = [group for group, weight in self.group_weights.items() if weight > 0]
+            raise ValueError(
+                f"The metric {self.name!r} weighs {weighed} alone, and none of them can be had "
+                f"from {names[:20]}."
+            )
+        return np.array([weights[name] for name in names]) / total
+
+    def missing_groups(self, names: Sequence[str]) -> list[str]:
+        """Return the groups that have a weight and no points among these.
+
+        Examples
+        --------
+        >>> metric = ew.metric.PUBLISHED["angles-absolute"]
+        >>> metric.missing_groups(["head", "left_thigh", "left_calf"])
+        ['clavicle', 'upper_arm']
+
+        """
+        present = group_points(names, self.by)
+        return [g for g, weight in self.group_weights.items() if weight > 0 and g not in present]
+
+
+Metric = FrameMetric | GroupMetric
+
 POSITIONS = FrameMetric()
-"""Mean Euclidean distance of positions, all points weighing the same."""
+"""Mean Euclidean distance of positions, all points with the same weight."""
 
 
-def shape_parameter(metric: ComparesFrames) -> float:
-    """Return the one number that the shape of a metric takes; 1 where it takes none."""
+def shape_parameter(metric: Metric) -> float:
+    """Return the scale or exponent of a metric; 1 where its shape has none."""
     if metric.shape == "sigmoid":
         return SIGMOID_SCALE[metric.by] if metric.scale is None else float(metric.scale)
     return 1.0 if metric.exponent is None else float(metric.exponent)
 
 
-def shaped(metric: ComparesFrames, distances: np.ndarray) -> np.ndarray:
-    """Return F of distances, elementwise (P9)."""
+def shaped(metric: Metric, distances: np.ndarray) -> np.ndarray:
+    """Return F(d) of a metric, elementwise."""
     return SHAPES[metric.shape](distances, shape_parameter(metric))

@@ -1,11 +1,16 @@
-"""Loops over frames and points, compiled once by numba and kept on disk.
+"""Loops over frames and points, compiled by numba and cached on disk, and threads that run them.
 
-What makes them fast: the frames of the second clip lie side by side for every coordinate, inner
-loops run over slices from their beginning, and a division does not look for zeros. They let other
-threads run.
+What makes them fast: the frames of the second clip are contiguous for every coordinate, inner loops
+run over slices from index 0, and divisions do not check for zeros. They release the interpreter
+lock, so threads run side by side.
 """
 
 from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import numba
 import numpy as np
@@ -19,10 +24,10 @@ SHAPE_CODES: dict[Shape, int] = {"absolute": 0, "squared": 1, "sigmoid": 2, "pow
 
 @compiled
 def rows_of_map(rows, columns, weights, code, parameter, first, result):
-    """Fill rows of a map from a first column on, by any shape but the power.
+    """Fill rows of a map of absolute distances or sigmoids, from a first column on.
 
     rows: (frame, point, 3); columns: (point, 3, other frame); weights: (point,); parameter: (1,);
-    all of one precision, in which it is computed; result: (frame, other frame).
+    all of the precision of the computation; result: (frame, other frame).
     """
     row = np.empty(columns.shape[2] - first, rows.dtype)
     scale = parameter[0]
@@ -35,10 +40,6 @@ def rows_of_map(rows, columns, weights, code, parameter, first, result):
                 for j in range(row.size):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
                     row[j] += weight * np.sqrt(dx * dx + dy * dy + dz * dz)
-            elif code == 1:
-                for j in range(row.size):
-                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    row[j] += weight * (dx * dx + dy * dy + dz * dz)
             else:
                 for j in range(row.size):
                     dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
@@ -49,7 +50,7 @@ def rows_of_map(rows, columns, weights, code, parameter, first, result):
 
 @compiled
 def squares_of_point(rows, columns, result):
-    """Fill in squared distances of one point.
+    """Fill in the squared distances of one point.
 
     rows: (frame, 3); columns: (3, other frame); result: (frame, other frame).
     """
@@ -63,8 +64,8 @@ def squares_of_point(rows, columns, result):
 
 
 @compiled
-def turns_of_point(rows, columns, result):
-    """Fill in squared tangents of a quarter of the angle between orientations of one point.
+def tangents_of_point(rows, columns, result):
+    """Fill in the squared tangents of a quarter of the angle between orientations of one bone.
 
     rows: (frame, 4), quaternions; columns: (4, other frame); result: (frame, other frame).
     """
@@ -75,29 +76,29 @@ def turns_of_point(rows, columns, result):
         for j in range(row.size):
             dw, dx, dy, dz = w - ws[j], x - xs[j], y - ys[j], z - zs[j]
             sw, sx, sy, sz = w + ws[j], x + xs[j], y + ys[j], z + zs[j]
-            apart = dw * dw + dx * dx + dy * dy + dz * dz
-            together = sw * sw + sx * sx + sy * sy + sz * sz
-            row[j] = min(apart, together) / max(apart, together)
+            minus = dw * dw + dx * dx + dy * dy + dz * dz
+            plus = sw * sw + sx * sx + sy * sy + sz * sz
+            row[j] = min(minus, plus) / max(minus, plus)
 
 
 @compiled
-def rows_of_aligned_map(rows, columns, weights, code, parameter, turns, result):
-    """Fill rows of a map in which every cell turns and moves the second clip in its own way.
+def rows_of_aligned_map(rows, columns, weights, code, parameter, moves, result):
+    """Fill rows of a map in which every cell has an alignment of its own.
 
-    turns: (4, frame, other frame), that is cosine and sine of the turn and the way along x and y.
+    moves: (4, frame, other frame), the cosine and sine of the rotation and the shifts along x, y.
     """
     n_columns = columns.shape[2]
     distances = np.empty(n_columns)
     for i in range(rows.shape[0]):
         row = result[i, :n_columns]
         row[:] = 0.0
-        cos, sin, along, aside = turns[0, i, :], turns[1, i, :], turns[2, i, :], turns[3, i, :]
+        cos, sin, shift_x, shift_y = moves[0, i, :], moves[1, i, :], moves[2, i, :], moves[3, i, :]
         for k in range(rows.shape[1]):
             x, y, z = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2]
             xs, ys, zs = columns[k, 0, :], columns[k, 1, :], columns[k, 2, :]
             for j in range(n_columns):
-                dx = x - (cos[j] * xs[j] - sin[j] * ys[j] + along[j])
-                dy = y - (sin[j] * xs[j] + cos[j] * ys[j] + aside[j])
+                dx = x - (cos[j] * xs[j] - sin[j] * ys[j] + shift_x[j])
+                dy = y - (sin[j] * xs[j] + cos[j] * ys[j] + shift_y[j])
                 dz = z - zs[j]
                 distances[j] = np.sqrt(dx * dx + dy * dy + dz * dz)
             _add_shaped(distances, weights[k], code, parameter, row)
@@ -121,7 +122,7 @@ def _add_shaped(distances, weight, code, parameter, row):
 
 @compiled
 def mean_along_path(path, a, b, code, parameter, result):
-    """Fill in, for each point, the mean of F(d) over the cells of a path.
+    """Fill in the mean of F(d) of each point over the cells of a path.
 
     path: (step, 2); a, b: (frame, point, part); result: (point,).
     """
@@ -133,11 +134,8 @@ def mean_along_path(path, a, b, code, parameter, result):
             if a.shape[2] == 4:
                 distances[k] = _angle_between(here[k], there[k])
             else:
-                dx, dy, dz = (
-                    here[k, 0] - there[k, 0],
-                    here[k, 1] - there[k, 1],
-                    here[k, 2] - there[k, 2],
-                )
+                dx, dy = here[k, 0] - there[k, 0], here[k, 1] - there[k, 1]
+                dz = here[k, 2] - there[k, 2]
                 distances[k] = np.sqrt(dx * dx + dy * dy + dz * dz)
         _add_shaped(distances, 1.0 / path.shape[0], code, parameter, result)
 
@@ -145,11 +143,11 @@ def mean_along_path(path, a, b, code, parameter, result):
 @compiled
 def _angle_between(quaternion, other):
     """Return 2 acos(abs(q.q')) from the squares of q - q' and q + q', exactly 0 for equal ones."""
-    apart, together = 0.0, 0.0
+    minus, plus = 0.0, 0.0
     for part in range(4):
-        apart += (quaternion[part] - other[part]) ** 2
-        together += (quaternion[part] + other[part]) ** 2
-    return 4 * np.arctan2(np.sqrt(min(apart, together)), np.sqrt(max(apart, together)))
+        minus += (quaternion[part] - other[part]) ** 2
+        plus += (quaternion[part] + other[part]) ** 2
+    return 4 * np.arctan2(np.sqrt(min(minus, plus)), np.sqrt(max(minus, plus)))
 
 
 @compiled
@@ -162,12 +160,12 @@ def diagonal_means(values, half):
     sums = np.zeros((n + 1, m + 1))
     counts = np.zeros((n + 1, m + 1), np.int32)
     for i in range(n):
-        above, below, row = sums[i, :m], sums[i + 1, 1:], values[i, :m]
-        so_far, number = counts[i, :m], counts[i + 1, 1:]
+        above, here, row = sums[i, :m], sums[i + 1, 1:], values[i, :m]
+        n_above, n_here = counts[i, :m], counts[i + 1, 1:]
         for j in range(m):
             seen = not np.isnan(row[j])
-            below[j] = above[j] + (row[j] if seen else 0.0)
-            number[j] = so_far[j] + seen
+            here[j] = above[j] + (row[j] if seen else 0.0)
+            n_here[j] = n_above[j] + seen
     means = np.empty((n, m))
     for i in range(n):
         for j in range(m):
@@ -176,3 +174,27 @@ def diagonal_means(values, half):
             total = sums[i + after, j + after] - sums[i - before, j - before]
             means[i, j] = total / (counts[i + after, j + after] - counts[i - before, j - before])
     return means
+
+
+def in_threads(work: Callable[[int], object], starts: range, *, few: bool = False) -> None:
+    """Call a function with each number, in threads on all cores."""
+    if few or len(starts) < 2 or n_threads() < 2:
+        for start in starts:
+            work(start)
+    else:
+        for _ in _pool().map(work, starts):
+            pass
+
+
+def n_threads() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(n_threads(), thread_name_prefix="eigenwalker-metric")
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)  # a child has no threads

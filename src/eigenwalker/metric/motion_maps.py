@@ -1,4 +1,4 @@
-"""Motion maps: how different every frame of one clip is from every frame of another (P3)."""
+"""Motion maps: distances of every frame of one clip from every frame of another."""
 
 from __future__ import annotations
 
@@ -8,77 +8,90 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.metric.alignment import align_windows, aligned_map
-from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames, shape_parameter
+from eigenwalker.metric.clips import SAME_RATE, Clip, Loop, as_trajectories
+from eigenwalker.metric.frame_metrics import POSITIONS, Metric, shape_parameter
 from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.point_maps import point_map
 from eigenwalker.metric.points import (
     UNITS,
     common_names,
     common_positions,
-    picked,
+    match_rotations,
     points_of,
-    told_alike,
+    select_points,
 )
 from eigenwalker.metric.published import metric_named
-from eigenwalker.metric.resampling import SAME_RATE
 
-MOST_CELLS = 60_000_000
+MAX_CELLS = 60_000_000
 """Cells of the largest map: half a gigabyte. Two clips of a minute at 120 Hz stay below."""
 
-MOST_ALIGNED_CELLS = MOST_CELLS // 6
-"""Aligned maps need several numbers a cell. Two clips of 25 s at 120 Hz stay below."""
+MAX_ALIGNED_CELLS = MAX_CELLS // 6
+"""Aligned maps need several numbers for each cell. Two clips of 25 s at 120 Hz stay below."""
 
 
 def motion_map(
-    a: xr.DataArray,
-    b: xr.DataArray | None = None,
+    a: Clip,
+    b: Clip | None = None,
     *,
-    metric: str | ComparesFrames = POSITIONS,
+    metric: str | Metric = POSITIONS,
     window_s: float = 0.0,
     align: bool = False,
-    periodic: bool = False,
+    periodic: bool | None = None,
 ) -> xr.DataArray:
-    """Return how different every frame of one clip is from every frame of another.
+    r"""Return the distance of every frame of one clip from every frame of another.
 
-    The motion map of Pražák et al. (2010, fig. 1 and 6): ``D[i, j] = sum_k w_k F(d_k)``, with d_k
-    the distance of point k in frame i of one clip from the same point in frame j of the other.
+    .. math:: D(i, j) = \sum_k w_k F(d_k(i, j))
+
+    with :math:`d_k` the distance of point k in frame i of one clip from the same point in frame j
+    of the other (`FrameMetric`). With a window of :math:`2h + 1` frames the map is averaged along
+    its diagonals, over :math:`D(i + s, j + s)` for :math:`s = -h \ldots h`.
 
     Parameters
     ----------
-    a : DataArray of shape (time, marker, axis)
-        Trajectories. Points are compared that both clips have.
-    b : DataArray of shape (time, marker, axis), optional
-        The other clip; left out, the clip is compared to itself.
-    metric : FrameMetric or str
+    a : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        A clip. Points are compared that both clips have.
+    b : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip, optional
+        The other clip; left out, the clip is compared with itself.
+    metric : str, FrameMetric or GroupMetric
         What is compared and how, or the name of a published metric; left out, the mean Euclidean
-        distance of positions in mm, all points weighing the same.
+        distance of positions in mm, all points with the same weight.
     window_s : float
-        Seconds over which corresponding frames are averaged, fewer at the ends of the clips (P4).
-        Both clips must have the same frame rate then.
+        Length of the window in seconds, shorter at the ends of the clips. Both clips must have the
+        same frame rate then.
     align : bool
-        Whether the second clip is turned about the vertical and moved along the floor, for every
-        cell on its own, so that the points in the window lie nearest to those of the first.
-    periodic : bool
-        Whether the clips are cycles, such as `loop` gives them, whose first frame follows the last:
-        their velocities are those of clip distances then.
+        Whether the second clip is rotated about the vertical and translated along the floor, for
+        each cell on its own, so that the points in the window lie nearest to those of the first
+        (`align_windows`).
+    periodic : bool, optional
+        Whether the first frame of a clip follows its last, for velocities; left out, in a `Loop`.
 
     Returns
     -------
     DataArray of shape (time_a, time_b)
-        In the unit of F(d). A point that is missing in either frame is left out and the others
-        weigh more; a cell is NaN where all are missing. Of more than 4 million distances, such as
-        520 x 520 frames of 15 joints, a map is of single precision.
+        In the unit of F(d). A point that is missing in either frame is left out and the weights of
+        the others grow; a cell is NaN where all are missing. Maps of more than 4 million
+        distances, such as 520 x 520 frames of 15 joints, are computed in single precision.
 
     Raises
     ------
     ValueError
-        If the clips have no points in common, or lack what the metric asks for.
+        If the clips have no points in common, or lack what the metric needs.
+
+    See Also
+    --------
+    motion_maps : One map for each group of points.
+    register : The path through a map.
+    find_transitions : The minima of a map.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3, figs. 1 and 6; Kovar, Gleicher & Pighin (2002), section 3.1.
 
     Examples
     --------
-    A foot that moves at 1 m/s, seen in two clips half a metre apart:
+    A foot that moves at 1 m/s, in two clips half a metre apart:
 
     >>> foot = [[[0, 0, 0]], [[10, 0, 0]], [[20, 0, 0.0]]]
     >>> a = ew.label_trajectories(foot, markers=["foot"], rate_hz=100)
@@ -89,24 +102,24 @@ def motion_map(
 
     """
     metric = metric_named(metric)
-    clips = _both(a, b, metric, align, periodic)
+    clips = _clip_pair(a, b, metric, align, periodic)
     half = _half_window(clips.a, clips.b, window_s)
     values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
     return xr.DataArray(
         values,
         dims=("time_a", "time_b"),
-        coords=_clocks(clips.a, clips.b),
+        coords=clips.times(),
         name="distance",
-        attrs=_about(metric),
+        attrs=_description(metric),
     )
 
 
 def motion_maps(
-    a: xr.DataArray,
-    b: xr.DataArray | None = None,
+    a: Clip,
+    b: Clip | None = None,
     *,
     groups: Mapping[str, Sequence[str]],
-    metric: str | ComparesFrames = POSITIONS,
+    metric: str | Metric = POSITIONS,
     window_s: float = 0.0,
     align: bool = False,
 ) -> xr.DataArray:
@@ -115,19 +128,28 @@ def motion_maps(
     Parameters
     ----------
     a, b, metric, window_s, align
-        As in `motion_map`. Of the metric only what is compared and its shape count: points of one
-        group weigh the same.
+        As in `motion_map`. Of the metric only `by` and its shape are used: the points of a group
+        have the same weight.
     groups : mapping of str to sequence of str
-        The points of each group. A group of which the clips have none is left out.
+        The points of each group. Groups without points in both clips are left out.
 
     Returns
     -------
     DataArray of shape (group, time_a, time_b)
+        In the unit of F(d).
 
     Raises
     ------
     ValueError
         If no group has points that both clips have.
+
+    See Also
+    --------
+    motion_map : One map of all points.
+
+    References
+    ----------
+    Pražák et al. (2010), fig. 6.
 
     Examples
     --------
@@ -139,32 +161,30 @@ def motion_maps(
 
     """
     metric = metric_named(metric)
-    clips = _both(a, b, metric, align)
+    clips = _clip_pair(a, b, metric, align)
     half = _half_window(clips.a, clips.b, window_s)
-    present = {name: set(points) & set(clips.names) for name, points in groups.items()}
-    present = {name: points for name, points in present.items() if points}
-    if not present:
+    members = {name: set(points) & set(clips.names) for name, points in groups.items()}
+    members = {name: points for name, points in members.items() if points}
+    if not members:
         raise ValueError(
             f"No group has points that both clips have. The groups are {dict(groups)}, the points "
             f"of both clips {clips.names}."
         )
-    maps = [
-        clips.map_of(
-            np.array([(name in points) / len(points) for name in clips.names]), metric, half, align
-        )
-        for points in present.values()
+    weights = [
+        np.array([(name in points) / len(points) for name in clips.names])
+        for points in members.values()
     ]
     return xr.DataArray(
-        np.stack(maps),
+        np.stack([clips.map_of(each, metric, half, align) for each in weights]),
         dims=("group", "time_a", "time_b"),
-        coords={"group": list(present), **_clocks(clips.a, clips.b)},
+        coords={"group": list(members), **clips.times()},
         name="distance",
-        attrs=_about(metric),
+        attrs=_description(metric),
     )
 
 
-class _Both(NamedTuple):
-    """Two clips, and as arrays of shape (time, point, part) the points that both have."""
+class _ClipPair(NamedTuple):
+    """Two clips, and their common points as arrays of shape (time, point, part)."""
 
     a: xr.DataArray
     b: xr.DataArray
@@ -172,47 +192,47 @@ class _Both(NamedTuple):
     points_a: np.ndarray
     points_b: np.ndarray
 
-    def map_of(
-        self, weights: np.ndarray, metric: ComparesFrames, half: int, align: bool
-    ) -> np.ndarray:
+    def map_of(self, weights: np.ndarray, metric: Metric, half: int, align: bool) -> np.ndarray:
         form = {"shape": metric.shape, "parameter": shape_parameter(metric)}
         if align and metric.by != "angles":
-            a, b = common_positions(self.a, self.b)
-            alignment = align_windows(a, b, half)
-            kept = weights > 0
-            a, b = _complete(self.points_a[:, kept]), _complete(self.points_b[:, kept])
-            moved = metric.by == "positions"
-            cells = aligned_map(a, b, alignment, weights[kept], **form, moved=moved)
+            alignment = align_windows(*common_positions(self.a, self.b), half)
+            weighed = weights > 0
+            a, b = _complete(self.points_a[:, weighed]), _complete(self.points_b[:, weighed])
+            translate = metric.by == "positions"
+            cells = aligned_map(a, b, alignment, weights[weighed], **form, translate=translate)
         else:
             cells = point_map(self.points_a, self.points_b, weights, **form)
         return diagonal_means(cells, half) if half else cells
 
+    def times(self) -> dict[str, tuple[str, np.ndarray]]:
+        return {
+            "time_a": ("time_a", self.a.time.values),
+            "time_b": ("time_b", self.b.time.values),
+        }
 
-def _both(
-    a: xr.DataArray,
-    b: xr.DataArray | None,
-    metric: ComparesFrames,
-    align: bool,
-    periodic: bool = False,
-) -> _Both:
-    a = check_trajectories(a)
-    b = a if b is None else check_trajectories(b)
+
+def _clip_pair(
+    a: Clip, b: Clip | None, metric: Metric, align: bool, periodic: bool | None = None
+) -> _ClipPair:
+    b = a if b is None else b
+    wraps = [isinstance(clip, Loop) if periodic is None else periodic for clip in (a, b)]
+    a, b = (as_trajectories(a),) * 2 if b is a else (as_trajectories(a), as_trajectories(b))
     n_cells = a.sizes["time"] * b.sizes["time"]
     if not n_cells:
         raise ValueError("A clip without frames has no motion map.")
-    most = MOST_ALIGNED_CELLS if align else MOST_CELLS
-    if n_cells > most:
+    limit = MAX_ALIGNED_CELLS if align else MAX_CELLS
+    if n_cells > limit:
         raise ValueError(
             f"A map of {a.sizes['time']} x {b.sizes['time']} frames would hold {n_cells:.2g} "
-            f"cells, more than {most:.2g}. Take parts of the clips, or every n-th frame."
+            f"cells, more than {limit:.2g}. Take parts of the clips, or every n-th frame."
         )
-    alike = (a, b) if b is a else told_alike((a, b))
-    points_a = points_of(alike[0], metric.by, periodic=periodic)
-    points_b = points_a if b is a else points_of(alike[1], metric.by, periodic=periodic)
+    alike = (a, b) if b is a else match_rotations((a, b))
+    points_a = points_of(alike[0], metric.by, periodic=wraps[0])
+    points_b = points_a if b is a else points_of(alike[1], metric.by, periodic=wraps[1])
     names = common_names(points_a[0], points_b[0])
-    values_a = picked(*points_a, names)
-    values_b = values_a if b is a else picked(*points_b, names)
-    return _Both(a, b, names, values_a, values_b)
+    values_a = select_points(*points_a, names)
+    values_b = values_a if b is a else select_points(*points_b, names)
+    return _ClipPair(a, b, names, values_a, values_b)
 
 
 def _complete(values: np.ndarray) -> np.ndarray:
@@ -238,15 +258,11 @@ def _half_window(a: xr.DataArray, b: xr.DataArray, window_s: float) -> int:
     return round(window_s * rates[0] / 2)
 
 
-def _clocks(a: xr.DataArray, b: xr.DataArray) -> dict[str, tuple[str, np.ndarray]]:
-    return {"time_a": ("time_a", a.time.values), "time_b": ("time_b", b.time.values)}
-
-
-def _about(metric: ComparesFrames) -> dict[str, str]:
+def _description(metric: Metric) -> dict[str, str]:
     unit = UNITS[metric.by]
-    power = {"absolute": unit, "squared": f"({unit})^2", "sigmoid": "1"}
+    units = {"absolute": unit, "squared": f"({unit})^2", "sigmoid": "1"}
     return {
-        "units": power.get(metric.shape, f"({unit})^{metric.exponent}"),
+        "units": units.get(metric.shape, f"({unit})^{metric.exponent}"),
         "by": metric.by,
         "shape": metric.shape,
     }

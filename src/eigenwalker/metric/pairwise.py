@@ -1,85 +1,221 @@
-"""All pairs of many clips, compared point by point."""
+"""All pairs of many clips: their distances as a table, a column, or by points."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.progress import Progress, ticked
+from eigenwalker.metric.clips import Clips, PreparedClip
 from eigenwalker.metric.cycles import mean_distances, register_pairs
-from eigenwalker.metric.frame_metrics import By, ComparesFrames, shaped
-from eigenwalker.metric.points import common_names, picked, points_of, told_alike
-from eigenwalker.metric.prepared import Clips, PreparedClip, prepare_alike
+from eigenwalker.metric.frame_metrics import POSITIONS, Metric, shaped
+from eigenwalker.metric.joint_groups import By
+from eigenwalker.metric.points import (
+    common_names,
+    content_ranks,
+    match_rotations,
+    points_of,
+    select_points,
+)
+from eigenwalker.metric.prepared import prepare_together
+from eigenwalker.metric.published import PUBLISHED, metric_named
 from eigenwalker.metric.registration import register
 
-if TYPE_CHECKING:
-    from eigenwalker.core.progress import Progress
-
-_AT_ONCE = 4096
-"""Pairs whose paths are kept in memory at a time."""
+_BATCH = 4096
+"""Pairs whose paths are in memory at a time."""
 
 
-def compared_pairs(
-    clips: Clips, metric: ComparesFrames, progress: Progress | None
-) -> tuple[list[str], np.ndarray, list[str]]:
-    """Return names of clips, means of F(d) along the paths of all pairs, and names of points.
+def pair_table(
+    clips: Clips, *, metric: str | Metric = POSITIONS, progress: Progress | None = None
+) -> pd.DataFrame:
+    """Return the clip distances of all pairs as a square table.
 
     Parameters
     ----------
-    clips : mapping of str to DataArray, Walker or PreparedClip, or sequence
-        Two or more. If one does not repeat, all are registered from end to end.
-    metric : FrameMetric
-        Of which what is compared and F count.
+    clips : mapping of str to clip, or sequence of clips
+        Two or more clips by name, or in order, such as ``population.walkers``; each a DataArray of
+        shape (time, marker, axis), Walker, Loop or PreparedClip. Points are compared that all have.
+        If one clip does not repeat, all are registered from end to end, so that all distances mean
+        the same.
+    metric : str, FrameMetric or GroupMetric
+        As in `clip_distance`.
     progress : callable, optional
         Called with the number of clips and pairs that are done, and of all.
+
+    Returns
+    -------
+    DataFrame of clips by clips
+        Symmetric, 0 on the diagonal.
+
+    See Also
+    --------
+    pair_distances : The same as one column.
+    nearest_walks : The distances of all clips from one.
+    label_table : Whether clips with the same label are near to each other.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4 and fig. 4.
+
+    Examples
+    --------
+    >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
+    >>> table = pair_table(walks)
+    >>> table.shape, bool((table == table.T).all(axis=None))
+    ((3, 3), True)
+
+    """
+    distances = pair_distances(clips, metric=metric, progress=progress)
+    names = list(dict.fromkeys(name for pair in distances.index for name in pair))
+    table = np.zeros((len(names), len(names)))
+    rows, columns = np.triu_indices(len(names), 1)
+    table[rows, columns] = table[columns, rows] = distances
+    return pd.DataFrame(table, index=names, columns=names)
+
+
+def pair_distances(
+    clips: Clips, *, metric: str | Metric = POSITIONS, progress: Progress | None = None
+) -> pd.Series:
+    """Return the clip distances of all pairs as one column.
+
+    Parameters
+    ----------
+    clips, metric, progress
+        As in `pair_table`.
+
+    Returns
+    -------
+    Series of pairs
+        In the order of `itertools.combinations`.
+
+    See Also
+    --------
+    pair_components : The same by points.
+    distances_by_metric : The same by several metrics.
+
+    Examples
+    --------
+    >>> walks = {name: ew.simulate_walk(seed=len(name), rate_hz=60) for name in ("a", "bb", "ccc")}
+    >>> pair_distances(walks).index.to_list()
+    [('a', 'bb'), ('a', 'ccc'), ('bb', 'ccc')]
+
+    """
+    metric = metric_named(metric)
+    components = pair_components(clips, metric=metric, progress=progress)
+    weights = metric.weights_for(list(components.columns))
+    return pd.Series(components.to_numpy() @ weights, index=components.index, name="distance")
+
+
+def distances_by_metric(
+    clips: Clips,
+    metrics: Sequence[str] = tuple(PUBLISHED),
+    *,
+    progress: Progress | None = None,
+) -> pd.DataFrame:
+    """Return the clip distances of all pairs by several published metrics.
+
+    Parameters
+    ----------
+    clips
+        As in `pair_table`.
+    metrics : sequence of str
+        Names of published metrics; left out, all.
+    progress : callable, optional
+        Called with the number of metrics that are done, and of all.
+
+    Returns
+    -------
+    DataFrame of pairs by metrics
+        Each on a scale of its own.
+
+    Examples
+    --------
+    >>> walks = [ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2)]
+    >>> distances_by_metric(walks, ["kovar", "lee"]).columns.to_list()
+    ['kovar', 'lee']
+
+    """
+    prepared = prepare_together(clips)
+    names = ticked(metrics, len(metrics), progress)
+    return pd.DataFrame({name: pair_distances(prepared, metric=name) for name in names})
+
+
+def pair_components(
+    clips: Clips, *, metric: str | Metric = POSITIONS, progress: Progress | None = None
+) -> pd.DataFrame:
+    r"""Return the distance of all pairs of clips for each point: the mean of F(d_k).
+
+    A weighted sum of the columns is a clip distance:
+    :math:`d(a, b) = \sum_k w_k \overline{F(d_k)}`, the mean along the path of `clip_distance`.
+
+    Parameters
+    ----------
+    clips, progress
+        As in `pair_table`.
+    metric : str, FrameMetric or GroupMetric
+        Of which `by` and F are used; its weights are not.
+
+    Returns
+    -------
+    DataFrame of pairs by points
+        Pairs in the order of `itertools.combinations`; points that are known in all clips.
+
+    See Also
+    --------
+    group_table : The same by joint groups.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3.
+
+    Examples
+    --------
+    >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
+    >>> pair_components(walks).shape
+    (3, 15)
 
     """
     if len(clips) < 2:
         raise ValueError(f"Pairs need two clips or more; got {len(clips)}.")
-    steps = _Steps(progress, len(clips))
-    prepared = prepare_alike(clips, done=lambda: steps.forward(1))
-    pairs = np.array(list(combinations(range(len(clips)), 2)))
-    still = [name for name, clip in prepared.items() if clip.cycle is None]
-    if still:
-        _tell_of_actions(still, prepared)
-    means = _of_actions if still else _of_strides
-    return list(prepared), *means(list(prepared.values()), pairs, metric, steps)
+    n_steps = len(clips) + len(clips) * (len(clips) - 1) // 2
+    n_done = 0
+
+    def done(steps: int = 1) -> None:
+        nonlocal n_done
+        n_done += steps
+        if progress is not None:
+            progress(n_done, n_steps)
+
+    prepared = prepare_together(clips, done=done)
+    not_periodic = [name for name, clip in prepared.items() if clip.cycle is None]
+    if not_periodic:
+        _warn_of_actions(not_periodic, prepared)
+    components = _components_of_actions if not_periodic else _components_of_strides
+    pairs = np.array(list(combinations(range(len(prepared)), 2)))
+    values, points = components(list(prepared.values()), pairs, metric_named(metric), done)
+    index = pd.MultiIndex.from_tuples(combinations(prepared, 2), names=["first", "second"])
+    return pd.DataFrame(values, index=index, columns=points)
 
 
-def _tell_of_actions(still: list[str], prepared: Mapping[str, PreparedClip]) -> None:
-    """Warn that not strides are compared, but clips from beginning to end."""
-    rest = len(prepared) - len(still)
+def _warn_of_actions(not_periodic: list[str], prepared: Mapping[str, PreparedClip]) -> None:
+    rest = len(prepared) - len(not_periodic)
     advice = "Leave them out to compare strides." if rest >= 2 else "No strides are compared."
     warnings.warn(
-        f"All clips are compared from end to end, as {still[:6]} do not repeat: "
-        f"{prepared[still[0]].complaint} {advice}",
-        stacklevel=4,
+        f"All clips are compared from end to end, as {not_periodic[:6]} do not repeat: "
+        f"{prepared[not_periodic[0]].not_periodic_reason} {advice}",
+        stacklevel=3,
     )
 
 
-class _Steps:
-    """Tells how many clips and pairs are done."""
-
-    def __init__(self, progress: Progress | None, n_clips: int) -> None:
-        self._progress, self._done = progress, 0
-        self._total = n_clips + n_clips * (n_clips - 1) // 2
-
-    def forward(self, steps: int) -> None:
-        self._done += steps
-        if self._progress is not None:
-            self._progress(self._done, self._total)
-
-
-def _of_strides(
-    clips: list[PreparedClip], pairs: np.ndarray, metric: ComparesFrames, steps: _Steps
+def _components_of_strides(
+    clips: list[PreparedClip], pairs: np.ndarray, metric: Metric, done: Callable[[int], None]
 ) -> tuple[np.ndarray, list[str]]:
-    """Components of all pairs of strides, each pair in an order that its contents decide."""
     cycles = [clip.cycle for clip in clips if clip.cycle is not None]
     names, compared = _stacked(cycles, metric.by)
     positions = compared if metric.by == "positions" else _stacked(cycles, "positions")[1]
@@ -87,41 +223,36 @@ def _of_strides(
     if not known.size:
         raise ValueError(f"Of the {metric.by} of {names} none is known throughout all clips.")
     compared = np.ascontiguousarray(compared[:, :, known])
-    ordered = _in_order_of_contents([cycle.tobytes() for cycle in positions], pairs)
-    parts = []
-    for start in range(0, len(pairs), _AT_ONCE):
-        found = register_pairs(positions, ordered[start : start + _AT_ONCE])
-        parts.append(mean_distances(compared, found, metric))
-        steps.forward(len(found.pairs))
-    return np.concatenate(parts), [names[index] for index in known]
+    ordered = _ordered_pairs(positions, pairs)
+    means = []
+    for start in range(0, len(pairs), _BATCH):
+        registered = register_pairs(positions, ordered[start : start + _BATCH])
+        means.append(mean_distances(compared, registered, metric))
+        done(len(registered.pairs))
+    return np.concatenate(means), [names[index] for index in known]
 
 
-def _of_actions(
-    clips: list[PreparedClip], pairs: np.ndarray, metric: ComparesFrames, steps: _Steps
+def _components_of_actions(
+    clips: list[PreparedClip], pairs: np.ndarray, metric: Metric, done: Callable[[int], None]
 ) -> tuple[np.ndarray, list[str]]:
-    """Components of all pairs of clips from beginning to end."""
-    contents = [clip.clip.values.tobytes() for clip in clips]
     rows = []
-    for first, second in _in_order_of_contents(contents, pairs):
-        found = register(clips[first].clip, clips[second].clip)
-        apart = found.distances(metric.by)
-        means = shaped(metric, apart.to_numpy()).mean(axis=0)
-        rows.append(dict(zip(apart.columns, means, strict=True)))
-        steps.forward(1)
+    for first, second in _ordered_pairs([clip.clip.values for clip in clips], pairs):
+        distances = register(clips[first].clip, clips[second].clip).distances(metric.by)
+        means = shaped(metric, distances.to_numpy()).mean(axis=0)
+        rows.append(dict(zip(distances.columns, means, strict=True)))
+        done(1)
     table = pd.DataFrame(rows).dropna(axis=1)
     return table.to_numpy(), list(table.columns)
 
 
-def _in_order_of_contents(contents: list[bytes], pairs: np.ndarray) -> np.ndarray:
-    """Return pairs so turned that it does not matter which clip of a pair was named first."""
-    rank = np.empty(len(contents), dtype=int)
-    rank[sorted(range(len(contents)), key=contents.__getitem__)] = np.arange(len(contents))
-    turned = rank[pairs[:, 0]] > rank[pairs[:, 1]]
-    return np.where(turned[:, None], pairs[:, ::-1], pairs)
+def _ordered_pairs(clips: Sequence[np.ndarray], pairs: np.ndarray) -> np.ndarray:
+    """Return pairs with the clip of lower rank first, so that distances are symmetric."""
+    ranks = content_ranks(clips)[pairs]
+    return np.where((ranks[:, 0] > ranks[:, 1])[:, None], pairs[:, ::-1], pairs)
 
 
 def _stacked(cycles: list[xr.DataArray], by: By) -> tuple[list[str], np.ndarray]:
-    """Points that all cycles have, and their values of shape (cycle, frame, point, part)."""
-    points = [points_of(cycle, by, periodic=True) for cycle in told_alike(cycles)]
+    """Return the common points of all cycles, and values of shape (cycle, frame, point, part)."""
+    points = [points_of(cycle, by, periodic=True) for cycle in match_rotations(cycles)]
     names = reduce(common_names, [each for each, _ in points])
-    return names, np.stack([picked(*each, names) for each in points])
+    return names, np.stack([select_points(*each, names) for each in points])

@@ -1,9 +1,8 @@
 """Monotone paths of least cost through a motion map.
 
-Plain dynamic time warping, and the same with slope limits: no more than so many frames of one clip
-in a row while the other stands still (Kovar & Gleicher 2003, section 3.1). Both sum the cells that
-they pass, so that a way round has to be worth its length; the distance of two clips is the mean of
-these cells (P4).
+Plain dynamic time warping, and the same with slope limits (Kovar & Gleicher 2003, section 3.1).
+Both minimise the sum of the cells that they pass, so that a detour has to save more than the cells
+that it adds; the distance between two clips is the mean of these cells.
 """
 
 from __future__ import annotations
@@ -13,27 +12,33 @@ import numpy as np
 from eigenwalker.metric.kernels import compiled
 
 SLOPE_LIMIT = 3
-"""Frames in a row that one clip may stand still: warps from a quarter to four times the speed."""
+"""Frames in succession for which one clip may be held: speeds from a quarter to four times."""
 
-SLACK = 1e-5
-"""Share of a usual cell that a frame of standing still has to gain: where frames hardly differ,
-both clips go on."""
+HOLD_COST = 1e-5
+"""Cost of a held frame, relative to the median cell: where frames hardly differ, none is held."""
 
-_CELLS_LOOKED_AT = 2000
-"""Of which the median tells what is usual."""
+_N_SAMPLED = 2000
+"""Cells of which the median is taken."""
 
 
 def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.ndarray:
-    """Return the monotone path from the first frames to the last whose cells sum to least.
+    r"""Return the monotone path from the first frames to the last with the least sum of cells.
+
+    Of all sequences of cells from (0, 0) to (n - 1, m - 1) whose steps are (1, 1), (1, 0) or (0, 1)
+    the one that minimises
+
+    .. math:: \sum_{(i, j)} D(i, j) + \epsilon\, n_{held}
+
+    By a slope limit L, at most L steps (1, 0) or (0, 1) follow a step (1, 1), all of one kind: one
+    clip is held while at most L frames of the other pass. :math:`\epsilon` is `HOLD_COST` times
+    the median of D, and 0 without a limit.
 
     Parameters
     ----------
     cost : array of shape (frame, other frame)
         Distances, 0 or more, none missing.
     slope_limit : int, optional
-        Frames of one clip in a row that may be passed while the other stands still, where that
-        gains more than rounding errors do (`SLACK`). Left out, any number: plain dynamic time
-        warping.
+        L; left out, plain dynamic time warping.
 
     Returns
     -------
@@ -43,7 +48,16 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     Raises
     ------
     ValueError
-        If there are no frames, a cell is missing, or slopes within the limit cannot join the ends.
+        If there are no frames, a cell is missing, or no path within the limit joins the ends.
+
+    See Also
+    --------
+    register : The path through the motion map of two clips.
+
+    References
+    ----------
+    Kovar & Gleicher (2003), Flexible automatic motion blending with registration curves, section
+    3.1; Sakoe & Chiba (1978), Dynamic programming algorithm optimization.
 
     Examples
     --------
@@ -63,9 +77,10 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
         return _warped(cost)
     if slope_limit < 1:
         raise ValueError(f"slope_limit={slope_limit}; give 1 or more, or None for no limit.")
-    some = cost.ravel()[:: max(1, cost.size // _CELLS_LOOKED_AT)]
-    usual = float(np.median(some[np.isfinite(some)])) if np.isfinite(some).any() else 0.0
-    path = limited_path(cost, min(slope_limit, max(n, m)), SLACK * usual)
+    sampled = cost.ravel()[:: max(1, cost.size // _N_SAMPLED)]
+    sampled = sampled[np.isfinite(sampled)]
+    hold_cost = HOLD_COST * float(np.median(sampled)) if sampled.size else 0.0
+    path = limited_path(cost, min(slope_limit, max(n, m)), hold_cost)
     if not len(path):
         raise ValueError(
             f"With slope_limit={slope_limit} no path joins {n} frames with {m}: one clip would "
@@ -77,7 +92,7 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
 
 @compiled
 def _warped(cost):
-    """Path of plain dynamic time warping; of equal ways the diagonal one."""
+    """Return the path of plain dynamic time warping; of equal paths the most diagonal one."""
     n, m = cost.shape
     total = np.empty((n, m))
     total[0, 0] = cost[0, 0]
@@ -91,10 +106,10 @@ def _warped(cost):
             left = min(min(above[j - 1], above[j]), left) + here[j]
             row[j] = left
     path = np.empty((n + m, 2), np.int64)
-    i, j, at = n - 1, m - 1, n + m
+    i, j, step = n - 1, m - 1, n + m
     while True:
-        at -= 1
-        path[at, 0], path[at, 1] = i, j
+        step -= 1
+        path[step, 0], path[step, 1] = i, j
         if i == 0 and j == 0:
             break
         if i == 0:
@@ -110,42 +125,41 @@ def _warped(cost):
                 i -= 1
             else:
                 j -= 1
-    return path[at:].copy()
+    return path[step:].copy()
 
 
 @compiled
-def limited_path(cost, limit, slack):
-    """Path with slope limits through a whole map; empty if there is none."""
+def limited_path(cost, limit, hold_cost):
+    """Return the path with a slope limit through a whole map; empty if there is none."""
     n, m = cost.shape
     margin = limit + 1
     cells = np.full((margin + n, margin + m), np.inf, cost.dtype)
     cells[margin:, margin:] = cost
     row = margin + m
     return _path_between(
-        cells.ravel(), margin * row + margin, n, row, m, row + 1, m - 1, limit, slack
+        cells.ravel(), margin * row + margin, n, row, m, row + 1, m - 1, limit, hold_cost
     )
 
 
 @compiled
 def closed_path(cost, shift, limit, band):
-    """Path once round two cycles of as many frames each, near the line on which both advance alike.
+    """Return the path once round two cycles of equally many frames.
 
-    Nothing marks the beginning of a cycle, so a first path, of every second frame, is laid from
-    where we happen to begin; where it is half a cycle later, free of both ends, the second one
-    begins and ends.
+    A cycle has no first frame. So a coarse path, of every second frame, is found from frame 0.
+    Where it is half a cycle later, independent of its ends, the final path begins and ends.
 
-    Parameters: the shift of the second cycle that suits best on the whole; cost[frame, lead],
-    where the second is ahead of that by ``lead - 2 * band`` frames; the limit of slope; the band
-    about the line in which each path keeps. The number of frames divides by 4.
+    cost: (frame, lead), where the second cycle is ahead of the global shift by ``lead - 2 * band``
+    frames; shift: frames by which the second cycle is globally ahead; band: frames by which each
+    path may deviate from that line. The number of frames is divisible by 4.
     """
     n = cost.shape[0]
-    slack = SLACK * cost[0].mean()
-    coarse = _path_near_line(cost, 0, 2 * band, band // 2, 2, limit, slack)
+    hold_cost = HOLD_COST * cost[0].mean()
+    coarse = _path_near_line(cost, 0, 2 * band, band // 2, 2, limit, hold_cost)
     middle = 0
     while coarse[middle, 0] < n // 4:
         middle += 1
     begin, lead = n // 2, 2 * (coarse[middle, 1] - coarse[middle, 0])
-    path = _path_near_line(cost, begin, 2 * band + lead, band, 1, limit, slack)[:-1]
+    path = _path_near_line(cost, begin, 2 * band + lead, band, 1, limit, hold_cost)[:-1]
     for step in range(len(path)):
         path[step, 0] = (path[step, 0] + begin) % n
         path[step, 1] = (path[step, 1] + begin + shift + lead) % n
@@ -153,8 +167,8 @@ def closed_path(cost, shift, limit, band):
 
 
 @compiled
-def _path_near_line(cost, origin, lead, band, every, limit, slack):
-    """Path from one frame of two cycles, of which every n-th is taken, on to the same one again."""
+def _path_near_line(cost, origin, lead, band, every, limit, hold_cost):
+    """Return the path from one frame of two cycles, of which every n-th counts, round to itself."""
     n_frames, width = cost.shape[0], 2 * band + 1
     n_rows, length = n_frames // every + 1, (width + 7) // 8 * 8  # whole vectors of numbers
     margin, row = limit + 1, 2 * limit + length
@@ -164,48 +178,49 @@ def _path_near_line(cost, origin, lead, band, every, limit, slack):
         for x in range(max(0, band - i), min(width, band + n_rows - i)):
             cells[margin + i, limit + x] = leads[lead + (x - band) * every]
     begin, last = margin * row + limit, n_rows - 1
-    return _path_between(cells.ravel(), begin, n_rows, row, length, row, last, limit, slack, band)
+    return _path_between(
+        cells.ravel(), begin, n_rows, row, length, row, last, limit, hold_cost, band
+    )
 
 
 @compiled
-def _path_between(cost, begin, n_rows, row, length, across, last, limit, slack, first=0):
-    """Path from the first frames of two clips to the last, through cells that lie in one line.
+def _path_between(cost, begin, n_rows, row, length, diagonal, last, limit, hold_cost, first=0):
+    """Return the path from the first frames of two clips to the last; empty if there is none.
 
-    A cell is reached by a diagonal step, after which up to `limit` frames of one clip may pass.
-    All that it can be reached from stands in rows before, so each row is summed up at once.
+    A cell is reached by a diagonal step, after which up to `limit` frames of one clip may pass. All
+    cells from which it can be reached are in earlier rows, so each row is summed at once.
 
-    cost: cells of a map in one line, with a margin of infinite ones; begin: where the first row
-    begins; n_rows, row, length: how many rows there are, how far apart, how many cells in each;
-    across: how far a step of both clips leads; last: frame of the second clip at which the path
-    ends; slack: what a frame of standing still has to gain; first: which cell of the first row the
-    path begins with.
+    cost: cells of a map as one vector, with a margin of infinite ones; begin: index of the first
+    row; n_rows, row, length: number of rows, their distance, cells in each; diagonal: distance of a
+    step of both clips; last: frame of the second clip at which the path ends; hold_cost: cost of a
+    held frame; first: cell of the first row with which the path begins.
     """
     total = np.full(len(cost), np.inf, cost.dtype)
-    start = begin + first - across
+    start = begin + first - diagonal
     total[start] = 0.0
-    slack = cost.dtype.type(slack)
-    passed, climbed = np.empty(length, cost.dtype), np.empty(length, cost.dtype)
+    hold_cost = cost.dtype.type(hold_cost)
+    along_second, along_first = np.empty(length, cost.dtype), np.empty(length, cost.dtype)
     for at in range(begin, begin + n_rows * row, row):
         best = total[at : at + length]
-        best[:] = total[at - across : at - across + length]
-        passed[:] = 0.0
-        climbed[:] = 0.0
+        best[:] = total[at - diagonal : at - diagonal + length]
+        along_second[:] = 0.0
+        along_first[:] = 0.0
         for s in range(1, limit + 1):
-            beside, source = cost[at - s :], total[at - across - s :]
-            below, deeper = cost[at - s * across + s :], total[at - (s + 1) * across + s :]
+            beside, source = cost[at - s :], total[at - diagonal - s :]
+            above, higher = cost[at - s * diagonal + s :], total[at - (s + 1) * diagonal + s :]
             for x in range(length):
-                passed[x] += beside[x] + slack
-                climbed[x] += below[x] + slack
-                best[x] = min(best[x], min(source[x] + passed[x], deeper[x] + climbed[x]))
+                along_second[x] += beside[x] + hold_cost
+                along_first[x] += above[x] + hold_cost
+                best[x] = min(best[x], min(source[x] + along_second[x], higher[x] + along_first[x]))
         best += cost[at : at + length]
     i, j = n_rows - 1, last
-    end = start + n_rows * across + (j - i)
+    end = start + n_rows * diagonal + (j - i)
     if total[end] == np.inf:
         return np.empty((0, 2), np.int64)
     path = np.empty((2 * (i + j + 2), 2), np.int64)
     step, at = len(path), end
     while at != start:
-        s = _frames_passed(cost, total, at, across, limit, slack)
+        s = _held_before(cost, total, at, diagonal, limit, hold_cost)
         for _ in range(abs(s)):
             step -= 1
             path[step, 0], path[step, 1] = i, j
@@ -217,20 +232,20 @@ def _path_between(cost, begin, n_rows, row, length, across, last, limit, slack, 
         path[step, 0], path[step, 1] = i, j
         i -= 1
         j -= 1
-        at -= across + s if s > 0 else across - s * (across - 1)
+        at -= diagonal + s if s > 0 else diagonal - s * (diagonal - 1)
     return path[step:].copy()
 
 
 @compiled
-def _frames_passed(cost, total, at, across, limit, slack):
-    """Frames of the second clip that pass before a cell, below 0 those of the first."""
-    best, chosen = total[at - across], 0
-    passed, climbed = 0.0, 0.0
+def _held_before(cost, total, at, diagonal, limit, hold_cost):
+    """Return how many frames of the second clip pass before a cell; negative, of the first."""
+    best, chosen = total[at - diagonal], 0
+    along_second, along_first = 0.0, 0.0
     for s in range(1, limit + 1):
-        passed += cost[at - s] + slack
-        climbed += cost[at - s * across + s] + slack
-        if total[at - across - s] + passed < best:
-            best, chosen = total[at - across - s] + passed, s
-        if total[at - (s + 1) * across + s] + climbed < best:
-            best, chosen = total[at - (s + 1) * across + s] + climbed, -s
+        along_second += cost[at - s] + hold_cost
+        along_first += cost[at - s * diagonal + s] + hold_cost
+        if total[at - diagonal - s] + along_second < best:
+            best, chosen = total[at - diagonal - s] + along_second, s
+        if total[at - (s + 1) * diagonal + s] + along_first < best:
+            best, chosen = total[at - (s + 1) * diagonal + s] + along_first, -s
     return chosen

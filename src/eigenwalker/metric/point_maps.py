@@ -5,18 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from eigenwalker.metric.frame_metrics import SHAPES, Shape
-from eigenwalker.metric.kernels import SHAPE_CODES, rows_of_map, squares_of_point, turns_of_point
-from eigenwalker.metric.threads import in_threads
+from eigenwalker.metric.joint_angles import angle_between
+from eigenwalker.metric.kernels import (
+    SHAPE_CODES,
+    in_threads,
+    rows_of_map,
+    squares_of_point,
+    tangents_of_point,
+)
 
 _ROWS = 32
-"""Rows that one thread takes at a time."""
+"""Rows of a map that one thread fills at a time."""
 
 EXACT = 4_000_000
 """Distances up to which a map is computed in double precision. Larger maps are in single, in a
-third of the time: off by some ten-millionths of how far points are from their common middle."""
+third of the time; errors are ten-millionths of the distance of points from their common mean."""
 
 _FEW = 1_000_000
-"""Distances below which a second thread costs more than it brings."""
+"""Distances below which a second thread costs more than it saves."""
 
 
 def point_map(
@@ -27,20 +33,20 @@ def point_map(
     Parameters
     ----------
     a : array of shape (frame, point, part)
-        Three parts are a place or velocity and compared by their Euclidean distance, four a unit
-        quaternion and compared by the angle between orientations, 2 acos(min(1, abs(q.q'))) (A26).
+        Three parts are a position or velocity, compared by Euclidean distance; four are a unit
+        quaternion, compared by the angle between orientations (`angle_between`).
     b : array of shape (other frame, point, part)
     weights : array of shape (point,)
     shape : {"absolute", "squared", "sigmoid", "power"}
-        F.
+        F (`SHAPES`).
     parameter : float
         Scale of the sigmoid, exponent of the power.
 
     Returns
     -------
     array of shape (frame, other frame)
-        Points with a missing part (NaN) in either frame are left out and the others weigh more;
-        NaN where nothing is left.
+        Points with a missing part (NaN) in either frame are left out and the weights of the others
+        grow; NaN where no point is left.
 
     Examples
     --------
@@ -51,48 +57,30 @@ def point_map(
 
     """
     a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
-    same = a is b
-    kept = weights > 0
-    a, weights = a[:, kept], np.asarray(weights, dtype=float)[kept]
-    b = a if same else b[:, kept]
-    missing = np.isnan(a).any() or np.isnan(b).any()
+    weighed = weights > 0
+    weights = np.asarray(weights, dtype=float)[weighed]
+    b = None if b is a else b[:, weighed]
+    a = a[:, weighed]
+    b = a if b is None else b
     large = len(a) * len(b) * len(weights) > EXACT
-    if shape == "squared" and a.shape[-1] == 3 and not missing:
-        return _squared_map(a, b, weights)
-    if missing:
+    if np.isnan(a).any() or np.isnan(b).any():
         return _map_with_gaps(a, b, weights, shape, parameter, large)
     return _filled(a, b, weights, shape, parameter, large)
-
-
-def _squared_map(a: np.ndarray, b: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Squared Euclidean distances by one product of matrices, about a common middle."""
-    middle = b.mean(axis=0, keepdims=True)
-    root = np.sqrt(weights)[:, None]
-    x = ((a - middle) * root).reshape(len(a), -1)
-    y = x if a is b else ((b - middle) * root).reshape(len(b), -1)
-    squared = x @ y.T
-    squared *= -2
-    squared += np.einsum("ij,ij->i", x, x)[:, None]
-    squared += np.einsum("ij,ij->i", y, y)
-    if a is b:
-        np.fill_diagonal(squared, 0)
-    return np.maximum(squared, 0, out=squared)
 
 
 def _map_with_gaps(
     a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float, large: bool
 ) -> np.ndarray:
-    """Map in which each cell is made of the points that both frames have."""
+    """Fill a map of which each cell is made of the points that both frames have."""
     seen_a, seen_b = (np.atleast_2d(~np.isnan(values).any(axis=2)) for values in (a, b))
     total = np.zeros((len(a), len(b)))
     weight = (seen_a * weights) @ seen_b.T.astype(float)
     for k, w in enumerate(weights):
         rows, columns = np.flatnonzero(seen_a[:, k]), np.flatnonzero(seen_b[:, k])
-        if not rows.size or not columns.size:
-            continue
-        point = a[rows, k : k + 1], b[columns, k : k + 1]
-        part = _filled(*point, np.array([w]), shape, parameter, large)
-        total[np.ix_(rows, columns)] += part
+        if rows.size and columns.size:
+            point = a[rows, k : k + 1], b[columns, k : k + 1]
+            cells = _filled(*point, np.array([w]), shape, parameter, large)
+            total[np.ix_(rows, columns)] += cells
     total *= weights.sum()
     return np.divide(total, weight, out=np.full_like(total, np.nan), where=weight > 1e-12)
 
@@ -100,7 +88,9 @@ def _map_with_gaps(
 def _filled(
     a: np.ndarray, b: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float, large: bool
 ) -> np.ndarray:
-    """Fill a map by blocks of rows; of a clip with itself half of them, which is mirrored."""
+    """Fill a map by blocks of rows; of a clip with itself only half, which is mirrored."""
+    if shape == "squared" and a.shape[2] == 3:
+        return _squared_map(a, b, weights)
     result = np.empty((len(a), len(b)))
     precision = np.float32 if large else np.float64
     middle = 0.0 if a.shape[2] == 4 else (a.mean(axis=0) + b.mean(axis=0)) / 2
@@ -126,10 +116,25 @@ def _filled(
     return result
 
 
+def _squared_map(a: np.ndarray, b: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Fill a map of squared Euclidean distances by one product of matrices."""
+    middle = b.mean(axis=0, keepdims=True)
+    root = np.sqrt(weights)[:, None]
+    x = ((a - middle) * root).reshape(len(a), -1)
+    y = x if a is b else ((b - middle) * root).reshape(len(b), -1)
+    squared = x @ y.T
+    squared *= -2
+    squared += np.einsum("ij,ij->i", x, x)[:, None]
+    squared += np.einsum("ij,ij->i", y, y)
+    if a is b:
+        np.fill_diagonal(squared, 0)
+    return np.maximum(squared, 0, out=squared)
+
+
 def _point_by_point(
     rows: np.ndarray, columns: np.ndarray, weights: np.ndarray, shape: Shape, parameter: float
 ) -> np.ndarray:
-    """Return rows of a map by powers or arc tangents, of which numpy has a faster form."""
+    """Return rows of a map of powers or angles, whose functions are faster in numpy."""
     total = np.zeros((len(rows), columns.shape[2]), dtype=rows.dtype)
     cells = np.empty_like(total)
     for k, weight in enumerate(weights):
@@ -138,14 +143,14 @@ def _point_by_point(
             np.power(cells, cells.dtype.type(parameter / 2), out=cells)
             total += weight * cells
         else:
-            turns_of_point(rows[:, k], columns[k], cells)
+            tangents_of_point(rows[:, k], columns[k], cells)
             np.arctan(np.sqrt(cells, out=cells), out=cells)
             total += weight * SHAPES[shape](4 * cells, parameter)
     return total
 
 
 def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return how far each point of one clip is from the same point of another, frame by frame.
+    """Return the distance of each point of one clip from the same point of another, frame by frame.
 
     Parameters
     ----------
@@ -162,8 +167,4 @@ def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     array([[3.141593]])
 
     """
-    apart = np.linalg.norm(a - b, axis=2)
-    if a.shape[2] == 3:
-        return apart
-    together = np.linalg.norm(a + b, axis=2)
-    return 4 * np.arctan2(np.minimum(apart, together), np.maximum(apart, together))
+    return np.linalg.norm(a - b, axis=2) if a.shape[2] == 3 else angle_between(a, b)

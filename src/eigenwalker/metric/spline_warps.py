@@ -1,48 +1,47 @@
-"""Smooth warps of time for actions that do not repeat (J44)."""
+"""Smooth warps of time for actions that do not repeat (Troje 2002, discussion)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import least_squares
 
 from eigenwalker.metric.alignment import align_steps
+from eigenwalker.metric.clips import Clip, as_trajectories, at_one_rate
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.points import common_positions
-from eigenwalker.metric.registration import Registration, register, unmoved
-from eigenwalker.metric.resampling import at_one_rate
+from eigenwalker.metric.registration import Registration, no_alignment, register
 
 _DEGREE = 3
 
-_AT_MOST = 150
-"""Moments at which clips are compared while the warp is sought."""
+_MAX_MOMENTS = 150
+"""Moments at which clips are compared during the fit."""
 
 _STIFFNESS = 1e-3
-"""Weight of a warp's changes of speed beside the movement's variance: enough where nothing moves
-and any warp would do, too little to be seen elsewhere."""
+"""Weight of changes of speed relative to the variance of the movement: it decides where nothing
+moves, and is negligible elsewhere."""
 
 
-def register_by_spline(
-    a: xr.DataArray, b: xr.DataArray, *, n_pieces: int = 6, align: bool = True
-) -> Registration:
-    """Return which moments of two clips of one action correspond, by a smooth warp of time.
+def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = True) -> Registration:
+    r"""Return which moments of two clips of one action correspond, by a smooth warp of time.
 
-    The time of one clip is a cubic B-spline of the other's that always goes forward, so that no
-    frame is held, as a path through the map does. From the registered path (`register`) it
-    is fitted to the positions by least squares; where actions are not periodic, it takes the place
-    of uniform scaling (Troje 2002, discussion).
+    The time of the second clip is a monotone cubic B-spline of the time of the first, whose
+    coefficients are cumulative sums of exponentials, :math:`c_n = \sum_{m \le n} e^{r_m}`, scaled
+    to the duration of the second clip. Starting from the registered path (`register`), r minimises
+    the squared distance between corresponding positions, relative to their variance, plus
+    :math:`\lambda^2 \sum (r_m - \bar r)^2` with :math:`\lambda` = 0.001. Where actions are not
+    periodic, this replaces uniform scaling of time.
 
     Parameters
     ----------
-    a, b : DataArray of shape (time, marker, axis)
-        Trajectories of one action each, begun and ended alike.
+    a, b : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        Clips of one action each, with the same beginning and end.
     n_pieces : int
         Pieces of the spline: how often the second clip may change its speed.
     align : bool
-        Whether heading and place are removed, for every pair of moments on its own.
+        Whether heading and place are removed, for each pair of moments on its own.
 
     Returns
     -------
@@ -53,6 +52,14 @@ def register_by_spline(
     ------
     ValueError
         If the clips have no points in common, or samples are missing.
+
+    See Also
+    --------
+    register : By a path, which holds frames.
+
+    References
+    ----------
+    Troje (2002), discussion.
 
     Examples
     --------
@@ -72,7 +79,7 @@ def register_by_spline(
     """
     if n_pieces < 1:
         raise ValueError(f"n_pieces={n_pieces}; a warp needs 1 or more.")
-    a, b = at_one_rate(a, b)
+    a, b = at_one_rate(as_trajectories(a), as_trajectories(b))
     start = register(a, b, align=align, slope_limit=None)
     first, second = common_positions(a, b)
     warp = _fitted_warp(a.time.values, first, b.time.values, second, start, n_pieces, align)
@@ -81,16 +88,16 @@ def register_by_spline(
     frames = np.abs(np.subtract.outer(other, b.time.values)).argmin(axis=1)
     path = np.stack([np.arange(len(time)), frames], axis=1)
     placed = CubicSpline(b.time.values, second)(other)
-    alignment = align_steps(first, placed) if align else unmoved(len(time))
+    alignment = align_steps(first, placed) if align else no_alignment(len(time))
     cells = motion_map(a, b, align=align)
-    apart = np.linalg.norm(first - alignment.apply(placed), axis=2)
+    distances = np.linalg.norm(first - alignment.apply(placed), axis=2)
     return Registration(
         first=a,
         second=b,
         path=path,
         times=np.stack([time, other], axis=1),
         map=cells,
-        cost=float(apart.mean()),
+        cost=float(distances.mean()),
         alignment=alignment,
         periodic=False,
     )
@@ -105,18 +112,14 @@ def _fitted_warp(
     n_pieces: int,
     align: bool,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the time of the second clip as a function of that of the first.
-
-    A B-spline whose coefficients rise always goes forward; their rises are exponentials that sum to
-    what the second clip lasts, so that any parameters make a warp.
-    """
+    """Return the time of the second clip as a function of the time of the first."""
     length, origin = time[-1] - time[0], time[0]
     inner = np.linspace(0, 1, n_pieces + 1)
     knots = np.concatenate([np.zeros(_DEGREE), inner, np.ones(_DEGREE)])
-    moments = np.linspace(0, 1, min(len(time), _AT_MOST))
-    wanted = CubicSpline(time, first)(origin + length * moments)
+    moments = np.linspace(0, 1, min(len(time), _MAX_MOMENTS))
+    target = CubicSpline(time, first)(origin + length * moments)
     path = CubicSpline(other, second)
-    size = np.sqrt(first.var(axis=0).sum() * len(moments))
+    scale = np.sqrt(first.var(axis=0).sum() * len(moments))
 
     def warp_of(rises: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         steps = np.exp(rises - rises.max())
@@ -127,18 +130,17 @@ def _fitted_warp(
     def misfit(rises: np.ndarray) -> np.ndarray:
         placed = path(warp_of(rises)(origin + length * moments))
         if align:
-            placed = align_steps(wanted, placed).apply(placed)
+            placed = align_steps(target, placed).apply(placed)
         stiff = _STIFFNESS * (rises - rises.mean())
-        return np.concatenate([(wanted - placed).ravel() / max(size, 1e-9), stiff])
+        return np.concatenate([(target - placed).ravel() / max(scale, 1e-9), stiff])
 
     return warp_of(least_squares(misfit, _rises_of(start, knots, origin, length)).x)
 
 
 def _rises_of(start: Registration, knots: np.ndarray, origin: float, length: float) -> np.ndarray:
-    """Logarithms of how fast the registered path goes, about the middles of the coefficients."""
+    """Return the r at which the spline follows the registered path, from its Greville abscissae."""
     n = len(knots) - _DEGREE - 1
     averages = np.array([knots[i + 1 : i + 1 + _DEGREE].mean() for i in range(n)])
     clock, first = np.unique(start.times[:, 0], return_index=True)
-    reached = np.interp(origin + length * averages, clock, start.times[first, 1])
-    rises = np.diff(reached)
+    rises = np.diff(np.interp(origin + length * averages, clock, start.times[first, 1]))
     return np.log(np.maximum(rises, 0.05 * rises.mean()))

@@ -1,4 +1,4 @@
-"""Where one walk can pass into another: the edges of a motion graph (P13)."""
+"""Transitions from one walk to another: the edges of a motion graph (Kovar et al. 2002)."""
 
 from __future__ import annotations
 
@@ -7,55 +7,56 @@ import pandas as pd
 import xarray as xr
 from scipy.ndimage import minimum_filter
 
-from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.metric.alignment import align_steps
-from eigenwalker.metric.frame_metrics import POSITIONS, ComparesFrames
+from eigenwalker.metric.clips import Clip, as_trajectories
+from eigenwalker.metric.frame_metrics import POSITIONS, Metric
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.points import common_positions
 
 WINDOW_S = 1 / 3
 """Seconds over which clips are blended in Kovar, Gleicher & Pighin (2002)."""
 
-UNSEEN_S = 0.1
-"""A jump as large as what moves anyway in this time counts as good enough."""
+UNNOTICED_S = 0.1
+"""A jump no larger than the movement in this time is assumed to be hardly noticed."""
 
 
 def find_transitions(
-    a: xr.DataArray,
-    b: xr.DataArray | None = None,
+    a: Clip,
+    b: Clip | None = None,
     *,
-    metric: str | ComparesFrames = POSITIONS,
+    metric: str | Metric = POSITIONS,
     window_s: float = WINDOW_S,
     threshold: float | None = None,
 ) -> pd.DataFrame:
     """Return the moments at which one clip can pass into another.
 
-    The transitions of Kovar, Gleicher & Pighin (2002): local minima of the motion map, each pair of
-    frames aligned in heading and place and averaged over a window, that lie below a threshold. Of
-    minima that are less than half a window from each other in both clips the best is taken. Half a
-    window at the beginning and end of the clips is left out, as one could not blend there.
-    Bodies of different build are apart at every moment: bring both to one mannequin first.
+    Local minima of the motion map (`motion_map`, each pair of frames aligned and averaged over a
+    window) that are below a threshold; of minima less than half a window from each other in both
+    clips the lowest. Half a window at the ends of the clips is left out, as one could not blend
+    there. Bodies of different build differ at all moments: bring both to the mannequin first
+    (`retarget`).
 
     Parameters
     ----------
-    a : DataArray of shape (time, marker, axis)
-        Trajectories that are left.
-    b : DataArray of shape (time, marker, axis), optional
-        Those that are entered, at the same frame rate; left out, the same clip, whose moments less
-        than `window_s` apart are no transitions.
-    metric : FrameMetric or str
+    a : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        The clip that is left.
+    b : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip, optional
+        The clip that is entered, at the same frame rate; left out, the same clip, of which moments
+        less than `window_s` apart are no transitions.
+    metric : str, FrameMetric or GroupMetric
         As in `motion_map`.
     window_s : float
         Seconds over which the map is averaged: as long as one would blend.
     threshold : float, optional
         Largest distance, in the unit of the metric. Left out, the mean distance of frames
-        `UNSEEN_S` apart within the clips.
+        `UNNOTICED_S` apart within the clips.
 
     Returns
     -------
     DataFrame
         The best first. Columns ``time_a``, ``time_b`` (s), ``distance``, and how the second clip is
-        to be turned about the vertical and then moved: ``angle_deg``, ``shift_x_mm``,
+        rotated about the vertical and then translated: ``angle_deg``, ``shift_x_mm``,
         ``shift_y_mm``.
 
     Raises
@@ -63,9 +64,13 @@ def find_transitions(
     ValueError
         If the clips have no points in common, or samples are missing.
 
+    References
+    ----------
+    Kovar, Gleicher & Pighin (2002), Motion graphs, section 3.
+
     Examples
     --------
-    A walk can pass into itself a stride later, and nowhere better:
+    The best moment to pass from a walk into itself is one stride later:
 
     >>> walk = ew.simulate_walk(seed=1, frequency_hz=1.0, duration_s=4, rate_hz=50)
     >>> best = find_transitions(walk).iloc[0]
@@ -73,18 +78,18 @@ def find_transitions(
     np.float64(0.0)
 
     """
-    a = check_trajectories(a)
-    other = a if b is None else check_trajectories(b)
+    a = as_trajectories(a)
+    other = a if b is None else as_trajectories(b)
     rate_hz = sampling_rate(a)
-    cells = motion_map(a, b, metric=metric, window_s=window_s, align=True).values
+    cells = motion_map(a, other, metric=metric, window_s=window_s, align=True).values
     if b is None:
         cells = np.where(_far_apart(len(cells), window_s * rate_hz), cells, np.inf)
     if threshold is None:
-        threshold = float(np.mean([_unseen(clip, metric, window_s) for clip in (a, other)]))
+        threshold = float(np.mean([_unnoticed(clip, metric, window_s) for clip in (a, other)]))
     half = round(window_s * rate_hz / 2)
-    frames = _lowest_apart(cells, threshold, half)
+    frames = _separate_minima(cells, threshold, half)
     positions = common_positions(a, other)
-    rows = [_moves(*positions, i, j, half) for i, j in frames.tolist()]
+    rows = [_alignment_at(*positions, i, j, half) for i, j in frames.tolist()]
     moves = np.reshape(rows, (len(rows), 3))
     return pd.DataFrame(
         {
@@ -98,7 +103,7 @@ def find_transitions(
     )
 
 
-def _lowest_apart(cells: np.ndarray, threshold: float, half: int) -> np.ndarray:
+def _separate_minima(cells: np.ndarray, threshold: float, half: int) -> np.ndarray:
     """Return local minima, the lowest first, none of them within half a window of a lower one."""
     n, m = cells.shape
     inside = np.full(cells.shape, np.inf)
@@ -107,11 +112,11 @@ def _lowest_apart(cells: np.ndarray, threshold: float, half: int) -> np.ndarray:
     lowest = (cells == minimum_filter(cells, size=3, mode="nearest")) & (inside <= threshold)
     frames = np.argwhere(lowest & np.isfinite(inside))
     frames = frames[np.argsort(cells[tuple(frames.T)], kind="stable")]
-    kept: list[np.ndarray] = []
+    minima: list[np.ndarray] = []
     for frame in frames:
-        if all(np.abs(frame - other).max() >= max(half, 1) for other in kept):
-            kept.append(frame)
-    return np.reshape(kept, (len(kept), 2)).astype(int)
+        if all(np.abs(frame - other).max() >= max(half, 1) for other in minima):
+            minima.append(frame)
+    return np.reshape(minima, (len(minima), 2)).astype(int)
 
 
 def _far_apart(n_frames: int, least: float) -> np.ndarray:
@@ -119,17 +124,17 @@ def _far_apart(n_frames: int, least: float) -> np.ndarray:
     return np.abs(frames[:, None] - frames) >= max(least, 1)
 
 
-def _unseen(clip: xr.DataArray, metric: str | ComparesFrames, window_s: float) -> float:
-    """Mean distance of frames `UNSEEN_S` apart, aligned and averaged as in the map."""
-    lag = max(1, round(UNSEEN_S * sampling_rate(clip)))
+def _unnoticed(clip: xr.DataArray, metric: str | Metric, window_s: float) -> float:
+    """Return the mean distance of frames `UNNOTICED_S` apart, averaged as in the map."""
+    lag = max(1, round(UNNOTICED_S * sampling_rate(clip)))
     cells = motion_map(clip, metric=metric, window_s=window_s, align=True).values
     return float(np.mean(np.diagonal(cells, lag))) if len(cells) > lag else 0.0
 
 
-def _moves(a: np.ndarray, b: np.ndarray, i: int, j: int, half: int) -> list[float]:
+def _alignment_at(a: np.ndarray, b: np.ndarray, i: int, j: int, half: int) -> list[float]:
     before = min(half, i, j)
     after = min(half, len(a) - 1 - i, len(b) - 1 - j)
     length = before + after + 1
     windows = a[i - before : i + after + 1], b[j - before : j + after + 1]
-    found = align_steps(*windows, length)
-    return [float(found.angles[0]), *found.shifts[0].tolist()]
+    alignment = align_steps(*windows, length)
+    return [float(alignment.angles[0]), *alignment.shifts[0].tolist()]

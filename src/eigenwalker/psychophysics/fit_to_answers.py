@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from sklearn.model_selection import cross_val_predict
 
 from eigenwalker.core.progress import Progress
-from eigenwalker.metric.comparison import by_metric
+from eigenwalker.metric.clips import Clip
 from eigenwalker.metric.group_tables import group_table
-from eigenwalker.metric.prepared import Clip
+from eigenwalker.metric.pairwise import distances_by_metric
 from eigenwalker.psychophysics.choice_prediction import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.conditional_logit import (
     bootstrap_choices,
@@ -151,7 +151,7 @@ def fit_to_answers(
             stacklevel=2,
         )
     table = group_table(walks, metric, progress=progress)
-    published = by_metric(walks).add_suffix(AS_PUBLISHED)
+    published = distances_by_metric(walks).add_suffix(AS_PUBLISHED)
     tables = {FITTED: table.to_numpy(), **published.to_dict("series"), **(others or {})}
     X, y, pairs = table[seen], y[seen], counts.pairs[seen].tolist()
     chosen, shown = counts.chosen[:, seen], counts.shown[:, seen]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from eigenwalker.metric.published import PUBLISHED, GroupMetric
+from eigenwalker.metric.frame_metrics import GroupMetric
+from eigenwalker.metric.published import PUBLISHED
 
 WEIGHTS_NAME, BY_CHOICES_NAME = "weights.csv", "weights-by-choices.csv"
 _COLUMNS = ("group", "weight", "metric")

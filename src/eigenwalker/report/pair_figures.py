@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.metric.clips import Loop
 from eigenwalker.metric.comparison import PLAIN, Comparison
-from eigenwalker.metric.loops import Loop, loop
+from eigenwalker.metric.loops import loop
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.transitions import find_transitions
 from eigenwalker.plotting.difference_maps import MapPicture, figure_maps, picture_of_strides

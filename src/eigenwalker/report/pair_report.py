@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from eigenwalker.metric.clip_distances import clip_distance
+from eigenwalker.metric.clips import Loop
 from eigenwalker.metric.comparison import Comparison
-from eigenwalker.metric.loops import Loop, loop
-from eigenwalker.metric.published import GroupMetric
+from eigenwalker.metric.frame_metrics import GroupMetric
+from eigenwalker.metric.loops import loop
 from eigenwalker.plotting.difference_maps import figure_shares, figure_two_walks
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
@@ -100,8 +101,8 @@ def in_words(
     most = found.shares.sort_values(ascending=False)
     parts = [f"{in_plain(g)} {100 * share:.0f} %" for g, share in most.items() if share > 0.005]
     said.append(f"Of the difference are {', '.join(parts)}.")
-    if found.left_out:
-        groups = ", ".join(in_plain(group) for group in found.left_out)
+    if found.missing_groups:
+        groups = ", ".join(in_plain(group) for group in found.missing_groups)
         said.append(f"The metric weighs {groups} too, which the walks do not show.")
     return said
 

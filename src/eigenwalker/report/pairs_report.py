@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.core.progress import Progress
-from eigenwalker.metric.clip_distances import pair_distances, pair_table
-from eigenwalker.metric.prepared import Clip
-from eigenwalker.metric.published import GroupMetric
+from eigenwalker.metric.clips import Clip
+from eigenwalker.metric.frame_metrics import GroupMetric
+from eigenwalker.metric.pairwise import pair_distances, pair_table
 from eigenwalker.plotting.difference_tables import (
     figure_difference_table,
     figure_map_of_walks,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from eigenwalker.metric.retargeting import SHARES
+from eigenwalker.metric.mannequin import SHARES
 
 WIDE_HIPS = 1.5
 """How much wider hips may be, beside shoulders, than those of the mannequin."""

@@ -186,7 +186,7 @@ def _joints(capture: xr.DataArray, joints: Literal["walker", "full"]) -> xr.Data
     points = virtual_markers(capture, joints=joints)
     if joints == "walker":
         return points
-    from eigenwalker.metric.captured_rotations import with_rotations
+    from eigenwalker.metric.comparison_pipeline import with_rotations
 
     return with_rotations(points, capture)
 

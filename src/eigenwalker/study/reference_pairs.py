@@ -8,16 +8,18 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
+from scipy.stats import percentileofscore
 
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.datasets.built_in import load_population
-from eigenwalker.metric.clip_distances import clip_distance, pair_distances
-from eigenwalker.metric.comparison import share_nearer
+from eigenwalker.metric.clip_distances import clip_distance
+from eigenwalker.metric.clips import PreparedClip
+from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.loops import loop
-from eigenwalker.metric.prepared import PreparedClip, prepare
-from eigenwalker.metric.published import GroupMetric
+from eigenwalker.metric.pairwise import pair_distances
+from eigenwalker.metric.prepared import prepare
 from eigenwalker.study.walks import Walks, walks_of_population, without_rotations
 
 
@@ -55,7 +57,8 @@ class SimulatedPairs:
         distance = clip_distance(a, b, metric=self.metrics[metric])
         if not distance > 0:
             return None
-        return distance, share_nearer(distance, self.distances[metric].to_numpy())
+        share = percentileofscore(self.distances[metric], distance, kind="mean") / 100
+        return distance, float(share)
 
 
 def simulated_pairs(

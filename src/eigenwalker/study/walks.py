@@ -12,7 +12,8 @@ from scipy.spatial.distance import pdist
 
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.progress import Progress
-from eigenwalker.metric.prepared import PreparedClip, as_trajectories, prepare
+from eigenwalker.metric.clips import PreparedClip, as_trajectories
+from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.retargeting import retarget
 from eigenwalker.population.population import FLAG, Population, flags_of
 from eigenwalker.study.body_warnings import strangeness
@@ -229,5 +230,5 @@ def repeating(walk: xr.DataArray) -> PreparedClip:
     """Return a walk made ready; refuse what does not repeat, as it would change how all compare."""
     prepared = prepare(walk)
     if prepared.cycle is None:
-        raise ValueError(prepared.complaint)
+        raise ValueError(prepared.not_periodic_reason)
     return prepared

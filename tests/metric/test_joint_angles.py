@@ -12,8 +12,8 @@ from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.metric.angles import angle_between, joint_quaternions
-from eigenwalker.metric.captured_rotations import with_rotations
+from eigenwalker.metric import angle_between, joint_quaternions
+from eigenwalker.metric.comparison_pipeline import with_rotations
 from eigenwalker.simulation.walk import simulate_walk
 
 

@@ -3,8 +3,7 @@ from __future__ import annotations
 import pytest
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.metric.group_tables import group_table
-from eigenwalker.metric.groups import BONES, GROUPS, group_points
+from eigenwalker.metric import BONES, GROUPS, collinear_groups, group_points, group_table
 from eigenwalker.simulation.walk import simulate_walk
 
 
@@ -44,8 +43,8 @@ def test_the_mannequin_s_sternum_does_not_stand_in_for_clavicles():
     assert own["clavicle"] == ("left_clavicle",)
 
 
-def test_groups_that_go_together_are_told():
+def test_collinear_groups_are_named():
     walks = {str(seed): simulate_walk(seed=seed, rate_hz=60) for seed in range(8)}
-    told = group_table(walks, "positions-absolute").attrs["alike"]
-    together = {(first, second): r for first, second, r in told}
-    assert 0.95 < together["clavicle", "upper_arm"] <= 1  # the sternum is between the shoulders
+    table = collinear_groups(group_table(walks, "positions-absolute"))
+    correlations = table.set_index(["first", "second"]).correlation
+    assert 0.95 < correlations["clavicle", "upper_arm"] <= 1  # the sternum is between the shoulders

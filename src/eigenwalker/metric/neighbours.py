@@ -1,0 +1,115 @@
+"""Which walks are near to each other: to one of them, or within a label."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.core.progress import Progress, ticked
+from eigenwalker.metric.clip_distances import clip_distance
+from eigenwalker.metric.clips import Clip
+from eigenwalker.metric.frame_metrics import Metric
+from eigenwalker.metric.prepared import prepare
+
+
+def nearest_walks(
+    query: Clip,
+    walks: Mapping[str, Clip],
+    *,
+    metric: str | Metric = "positions-sigmoid",
+    progress: Progress | None = None,
+) -> pd.Series:
+    """Return the distances of walks from one walk, the nearest first.
+
+    Parameters
+    ----------
+    query : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        A walk.
+    walks : mapping of str to DataArray, Walker, Loop or PreparedClip
+        The walks to search, by name.
+    metric : str, FrameMetric or GroupMetric
+        As in `clip_distance`; left out, the metric that predicted observers best in Pražák et al.
+        (2010).
+    progress : callable, optional
+        Called with the number of walks that are done, and of all.
+
+    Returns
+    -------
+    Series of walks
+        Clip distances. Of each pair those points are compared that both have.
+
+    Raises
+    ------
+    ValueError
+        If there are no walks to search.
+
+    See Also
+    --------
+    pair_table : The distances of all pairs.
+
+    Examples
+    --------
+    >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
+    >>> nearest_walks(walks["walk 2"], walks).index[0]
+    'walk 2'
+
+    """
+    if not walks:
+        raise ValueError("There is no walk to compare with.")
+    prepared = prepare(query)
+    distances = {
+        name: clip_distance(prepared, clip, metric=metric)
+        for name, clip in ticked(walks.items(), len(walks), progress)
+    }
+    return pd.Series(distances, name="distance").sort_values(kind="stable")
+
+
+def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+    """Return whether walks with the same label are nearer to each other than to others.
+
+    Parameters
+    ----------
+    table : DataFrame of walks by walks
+        Distances, from `pair_table`.
+    labels : mapping of str to str
+        Label of each walk; walks without one are left out.
+
+    Returns
+    -------
+    DataFrame of labels
+        ``walks``, their number; the mean distances ``within`` the label (NaN for one walk) and to
+        ``others``; ``nearest``, the share of its walks whose nearest walk has the same label; and
+        ``by_chance``, the expected share if labels were assigned at random.
+
+    See Also
+    --------
+    nearest_walks : The walks nearest to one.
+
+    Examples
+    --------
+    >>> place = pd.Series({"a": 0.0, "b": 1.0, "c": 9.0, "d": 10.0})
+    >>> table = (place.to_frame() @ np.ones((1, 4)) - place.to_numpy()).abs()
+    >>> table.columns = place.index
+    >>> labels = label_table(table, {"a": "slow", "b": "slow", "c": "fast", "d": "fast"})
+    >>> labels.loc["slow"].tolist()
+    [2.0, 1.0, 9.0, 1.0, 0.3333333333333333]
+
+    """
+    names = [name for name in table.index if name in labels]
+    values = table.loc[names, names].to_numpy()
+    label_of = np.array([labels[name] for name in names])
+    nearest = label_of[(values + np.diag(np.full(len(values), np.inf))).argmin(axis=1)]
+    rows = {}
+    for label in sorted(set(label_of)):
+        own = label_of == label
+        n = int(own.sum())
+        rows[label] = {
+            "walks": n,
+            "within": values[np.ix_(own, own)].sum() / (n * (n - 1)) if n > 1 else np.nan,
+            "others": values[np.ix_(own, ~own)].mean() if n < len(label_of) else np.nan,
+            "nearest": float(np.mean(nearest[own] == label)),
+            "by_chance": (n - 1) / max(len(label_of) - 1, 1),
+        }
+    return pd.DataFrame.from_dict(rows, orient="index")
