@@ -23,7 +23,7 @@ from eigenwalker.core.walker import Form, Walker
 from eigenwalker.simulation.walk import simulate_walk
 
 if TYPE_CHECKING:
-    from eigenwalker.metric import PreparedClip, prepare, retarget
+    from eigenwalker.metric import PreparedClip
 
 _KERNELS = sorted((Path(__file__).parents[1] / "src" / "eigenwalker" / "metric").glob("*.py"))
 _VERSION = hashlib.sha256(b"".join(path.read_bytes() for path in _KERNELS)).hexdigest()[:16]
@@ -49,6 +49,7 @@ def mannequins() -> dict[str, PreparedClip]:
     from eigenwalker.datasets.built_in import (
         load_population,  # these load numba, which is told above
     )
+    from eigenwalker.metric import prepare, retarget
 
     walkers = load_population().walkers[:21]
     walks = [walker.trajectories(np.arange(0, 3 * walker.period_s, 0.01)) for walker in walkers]
