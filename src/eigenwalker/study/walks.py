@@ -59,7 +59,7 @@ class Walks:
 def walk_of_capture(
     path: Path, *, mannequin: bool = True, unit: str | None = None, rate_hz: float | None = None
 ) -> xr.DataArray:
-    """Return the steady strides of a capture, ready to be compared (`comparable_walk`).
+    """Return the steady strides of a capture, ready to be compared (`prepare_walk`).
 
     Unit and frame rate are for files that name none: others keep their own. The attributes say what
     is wrong with the capture (``flag``), and why it is not itself on the mannequin (``strange``);
