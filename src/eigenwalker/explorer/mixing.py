@@ -1,4 +1,4 @@
-"""From what is chosen on the page to the walker that is made of it, as the page does it."""
+"""The walker that the page shows for its sliders, computed as the page does."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ import numpy as np
 from eigenwalker.core.walker import Walker
 from eigenwalker.population.features import FeatureLayout
 
+RANGES = {"traits": 6.0, "bias": 3.0, "eigenwalkers": 6.0, "strengths": 2.0}
+"""How far the page's sliders go, either way."""
+
 
 def model_layout(model: Mapping[str, Any]) -> FeatureLayout:
-    """Return which number of a model's vectors is what."""
+    """Return the layout of a model's vectors."""
     fixed = tuple(model["fixed_phases"]) if model["form"] == "fourier" else ()
     return FeatureLayout(
         tuple(model["markers"]), tuple(model["harmonics"]), model["form"], fixed_phases=fixed
@@ -20,63 +23,18 @@ def model_layout(model: Mapping[str, Any]) -> FeatureLayout:
 
 
 def mixed_walker(model: Mapping[str, Any], state: Mapping[str, Any]) -> Walker:
-    """Return the walker that the page shows for a state.
-
-    Parameters
-    ----------
-    model : mapping
-        Of `page_model`.
-    state : mapping
-        What is chosen; see `mixed_vector`.
-
-    Returns
-    -------
-    Walker
-
-    Raises
-    ------
-    ValueError
-        If the numbers do not make anything that could walk, or the state asks for what the model
-        does not have.
-
-    """
+    """Return the walker of `mixed_vector`."""
     return model_layout(model).walker(mixed_vector(model, state))
 
 
 def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
-    """Return the features of the walker that the page shows for a state.
+    """Return the features (feature,) of the walker that the page shows for a state.
 
-    Eq. 13 of Troje (2002) from any walker (W7), then Moler's bias, eigenwalkers, and the strength
-    of each component.
-
-    Parameters
-    ----------
-    model : mapping
-        Of `page_model`.
-    state : mapping
-        Any of ``traits`` {name: standard deviations}, ``kind``, ``part``, ``from`` ("average", the
-        number of a walker of the model, or "own" for the vector ``own``), ``bias`` {"trait",
-        "steps"} in half the difference of the classes' means, ``eigenwalkers`` in standard
-        deviations, ``strengths``, 1 being as it is. What is left out changes nothing.
-
-    Returns
-    -------
-    array of shape (feature,)
-
-    Raises
-    ------
-    ValueError
-        If there is no such trait, part or walker.
-
-    Examples
-    --------
-    >>> from eigenwalker.explorer.model import page_model
-    >>> people = ew.load_population()
-    >>> model = page_model(people, traits=["sex"])
-    >>> man = people.average + 2 * ew.trait_axis(people, "sex").step
-    >>> bool(np.abs(mixed_vector(model, {"traits": {"sex": 2}}) - man).max() < 1e-6)
-    True
-
+    Troje (2002), eq. 13, from any walker, then Moler's bias, eigenwalkers, and the strength of each
+    component. The state has any of ``traits`` {name: standard deviations}, ``kind``, ``part``,
+    ``from`` ("average", the number of a walker of the model, or "own" for the vector ``own``),
+    ``bias`` {"trait", "steps"} in half the difference of the classes' means, ``eigenwalkers`` in
+    standard deviations, ``strengths``, 1 being unchanged. What is left out changes nothing.
     """
     vector = _start(model, state)
     kind, part = state.get("kind", "discriminant"), state.get("part", "all")
@@ -86,52 +44,33 @@ def mixed_vector(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarr
             vector[columns] += steps * step
     if bias := state.get("bias"):
         vector += bias["steps"] * _half_difference(model, bias["trait"])
-    _check_count("eigenwalkers", state.get("eigenwalkers", ()), len(model["eigenwalkers"]))
-    for steps, each in zip(state.get("eigenwalkers", ()), model["eigenwalkers"], strict=False):
+    eigenwalkers, strengths = state.get("eigenwalkers", ()), state.get("strengths", ())
+    for name, values, most in (
+        ("eigenwalkers", eigenwalkers, len(model["eigenwalkers"])),
+        ("strengths", strengths, len(model["harmonics"])),
+    ):
+        if len(values) > most:
+            raise ValueError(f"There are {len(values)} {name} for a model that has {most}.")
+    for steps, each in zip(eigenwalkers, model["eigenwalkers"], strict=False):
         vector += steps * np.array(each["vector"])
-    _check_count("strengths", state.get("strengths", ()), len(model["harmonics"]))
-    for number, strength in enumerate(state.get("strengths", ()), start=1):
+    for number, strength in enumerate(strengths, start=1):
         vector[slice(*model["layout"][f"p{number}"])] *= strength
     if not np.isfinite(vector).all():
         raise ValueError("Some of the numbers chosen are not finite.")
     return vector
 
 
-RANGES = {"traits": 6.0, "bias": 3.0, "eigenwalkers": 6.0, "strengths": 2.0}
-"""How far the page's sliders go, either way."""
-
-
 def check_ranges(state: Mapping[str, Any]) -> None:
-    """Refuse a state that the page cannot show.
-
-    Parameters
-    ----------
-    state : mapping
-        As `mixed_vector` takes it.
-
-    Raises
-    ------
-    ValueError
-        If a number is beyond the page's sliders.
-
-    Examples
-    --------
-    >>> check_ranges({"traits": {"sex": 6}})
-    >>> check_ranges({"traits": {"sex": 99}})
-    Traceback (most recent call last):
-    ...
-    ValueError: sex is 99; give a number from -6 to 6, as far as the sliders go.
-
-    """
+    """Refuse a state, as `mixed_vector` takes it, beyond the page's sliders."""
     bias = state.get("bias")
-    given = {
+    values = {
         "traits": dict(state.get("traits", {})),
         "bias": {f"The bias towards {bias['trait']}": bias["steps"]} if bias else {},
         "eigenwalkers": _numbered("Eigenwalker", state.get("eigenwalkers", ())),
         "strengths": _numbered("The strength of component", state.get("strengths", ())),
     }
     for kind, most in RANGES.items():
-        for name, value in given[kind].items():
+        for name, value in values[kind].items():
             if abs(value) > most:
                 raise ValueError(
                     f"{name} is {value:g}; give a number from {-most:g} to {most:g}, as far as "
@@ -139,8 +78,8 @@ def check_ranges(state: Mapping[str, Any]) -> None:
                 )
 
 
-def _numbered(what: str, values: Any) -> dict[str, float]:
-    return {f"{what} {number}": value for number, value in enumerate(values, start=1)}
+def _numbered(name: str, values: Any) -> dict[str, float]:
+    return {f"{name} {number}": value for number, value in enumerate(values, start=1)}
 
 
 def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
@@ -159,11 +98,10 @@ def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
 
 
 def _trait(model: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    for trait in model["traits"]:
-        if trait["name"] == name:
-            return trait
-    known = [trait["name"] for trait in model["traits"]]
-    raise ValueError(f"There is no trait {name!r}; the model has {known}.")
+    traits = {trait["name"]: trait for trait in model["traits"]}
+    if name not in traits:
+        raise ValueError(f"There is no trait {name!r}; the model has {list(traits)}.")
+    return traits[name]
 
 
 def _step(
@@ -182,8 +120,3 @@ def _half_difference(model: Mapping[str, Any], name: str) -> np.ndarray:
     if means is None:
         raise ValueError(f"{name} has no two classes, so there is no bias towards one of them.")
     return (np.array(means["positive"]) - np.array(means["negative"])) / 2
-
-
-def _check_count(what: str, values: Any, most: int) -> None:
-    if len(values) > most:
-        raise ValueError(f"There are {len(values)} {what} for a model that has {most}.")

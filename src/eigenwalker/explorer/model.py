@@ -1,4 +1,4 @@
-"""A population as the interactive page holds it: what walks, what varies, what tells traits."""
+"""A population as the interactive page holds it: walkers, their variation, and their traits."""
 
 from __future__ import annotations
 
@@ -12,16 +12,14 @@ from eigenwalker._version import __version__
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
-from eigenwalker.explorer.model_traits import model_traits
-from eigenwalker.explorer.rounding import rounded, rounded_vectors, significant
+from eigenwalker.explorer.model_traits import model_traits, rounded_vectors, significant
 from eigenwalker.population.features import FeatureLayout
 from eigenwalker.population.population import FLAG, Population
 
-FORMAT, VERSION = "eigenwalker model", 1
 N_EIGENWALKERS = 10
-MOST_WALKERS = 100
-"""Walkers that can be shown themselves."""
-MOST_POINTS = 500
+MAX_WALKERS = 100
+"""Walkers that can be selected."""
+MAX_POINTS = 500
 """Walkers that are points of the cloud."""
 
 
@@ -33,7 +31,7 @@ def page_model(
     title: str = "",
     source: str = "",
 ) -> dict[str, Any]:
-    """Return a population as plain lists and numbers, for the page to play with.
+    """Return a population as plain lists and numbers, as the interactive page holds it.
 
     Flagged walkers are left out. Numbers are rounded, so that walkers are those of Python to a
     millionth of a millimetre.
@@ -42,18 +40,22 @@ def page_model(
     ----------
     population : Population
     traits : sequence of str, optional
-        Traits to have sliders for, as `contrast` takes them; left out, all that have an axis.
+        Traits that get sliders, as `trait_contrast` takes them; left out, all that have an axis.
     first : str
-        A trait to begin with where `traits` is left out: ``"style=feminine:masculine"``.
+        The first trait, where `traits` is left out: ``"style=feminine:masculine"``.
     title : str
-        What the page is called.
+        Title of the page.
     source : str
         File of the population, for the line of Python that makes a walker; empty for the built-in.
 
     Returns
     -------
     dict
-        To be written as JSON; ``docs/interactive.md`` says what it holds.
+        To be written as JSON; ``docs/interactive.md`` describes it.
+
+    See Also
+    --------
+    interactive_page : the page that holds it.
 
     Examples
     --------
@@ -65,76 +67,67 @@ def page_model(
     rows = np.flatnonzero(~population.flagged)
     if not len(rows):
         rows = np.arange(len(population))
-    known, layout = population.X[rows], population.layout
-    shown = _evenly(len(rows), MOST_WALKERS)
-    points = np.union1d(shown, _evenly(len(rows), MOST_POINTS - len(shown)))
     axes = model_traits(population, traits, first=first)
-    space = _space(known)
-    return {
-        "format": FORMAT,
-        "version": VERSION,
-        "program": f"eigenwalker {__version__}",
-        "title": title or f"{len(rows)} walkers",
+    selected = _evenly(len(rows), MAX_WALKERS)
+    content = _of_vectors(population.X[rows], population.layout, selected, title)
+    return content | {
         "source": source,
         "simulated": "simulated" in population.provenance,
-        "provenance": {str(name): str(said) for name, said in population.provenance.items()},
-        "n_walkers": len(rows),
+        "provenance": {str(name): str(value) for name, value in population.provenance.items()},
         "n_flagged": len(population) - len(rows),
-        **_body(layout),
-        "average": rounded_vectors(known.mean(axis=0), layout),
-        **_variation(space, known, layout, points),
-        "walkers": _walkers(population, rows[shown], axes),
-        "cloud": _cloud(space, known, points, shown),
+        "walkers": _walkers(population, rows[selected], axes),
         "traits": axes,
     }
 
 
 def walker_model(walker: Walker, *, title: str = "One walker") -> dict[str, Any]:
-    """Return one walker as the page holds it, without a population: it is its own average.
-
-    Parameters
-    ----------
-    walker : Walker
-        Of any markers.
-    title : str
-        What the page is called.
-
-    Returns
-    -------
-    dict
-        As `page_model` returns it.
-
-    Examples
-    --------
-    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
-    >>> walker_model(hop)["average"]
-    [0.0, 0.0, 50.0, 0.0, 0.0, 40.0, 1.0]
-
-    """
+    """Return one walker, of any markers, as the page holds it: it is its own average."""
     layout = FeatureLayout.of(walker)
-    vector = layout.vector(walker)
-    own = rounded_vectors(vector, layout)
+    content = _of_vectors(layout.vector(walker)[None], layout, np.array([0]), title)
+    vector = content["average"]
+    return content | {"walkers": [{"name": title, "row": 0, "vector": vector, "traits": {}}]}
+
+
+def _of_vectors(
+    X: np.ndarray, layout: FeatureLayout, selected: np.ndarray, title: str
+) -> dict[str, Any]:
+    """Return the model of walkers without traits or source."""
+    space = _space(X)
+    points = np.union1d(selected, _evenly(len(X), MAX_POINTS - len(selected)))
     return {
-        "format": FORMAT,
-        "version": VERSION,
+        "format": "eigenwalker model",
+        "version": 1,
         "program": f"eigenwalker {__version__}",
-        "title": title,
+        "title": title or f"{len(X)} walkers",
         "source": "",
         "simulated": False,
         "provenance": {},
-        "n_walkers": 1,
+        "n_walkers": len(X),
         "n_flagged": 0,
         **_body(layout),
-        "average": own,
-        **_variation(None, vector[None], layout, np.array([0])),
-        "walkers": [{"name": title, "row": 0, "vector": own, "traits": {}}],
-        "cloud": _cloud(None, vector[None], np.array([0]), np.array([0])),
+        "average": rounded_vectors(X.mean(axis=0), layout),
+        **_variation(space, X, layout, points),
+        "walkers": [],
+        "cloud": _cloud(space, X, points, selected),
         "traits": [],
     }
 
 
+def _space(X: np.ndarray) -> WalkerSpace | None:
+    """Return the space of the walkers; None for one walker, or where all are the same."""
+    try:
+        return WalkerSpace().fit(X)
+    except ValueError:
+        return None
+
+
+def _evenly(number: int, most: int) -> np.ndarray:
+    """Return so many indices, evenly spaced, all of them where they are not too many."""
+    return np.unique(np.linspace(0, number - 1, min(number, most)).round().astype(int))
+
+
 def _body(layout: FeatureLayout) -> dict[str, Any]:
-    """What walks: markers and how they are joined, and which number of a vector is what."""
+    """Return markers and how they are joined, and the place of each feature in a vector."""
     skeleton = JOINTS.restricted_to(layout.markers)
     free = layout.form == "eigenposture"
     unknown = [0.0, *[None] * (len(layout.harmonics) - 1)]
@@ -150,22 +143,18 @@ def _body(layout: FeatureLayout) -> dict[str, Any]:
     }
 
 
-def _evenly(number: int, most: int) -> np.ndarray:
-    """Places spread over so many, all of them where they are not too many."""
-    return np.unique(np.linspace(0, number - 1, min(number, most)).round().astype(int))
-
-
 def _variation(
-    space: WalkerSpace | None, known: np.ndarray, layout: FeatureLayout, points: np.ndarray
+    space: WalkerSpace | None, X: np.ndarray, layout: FeatureLayout, points: np.ndarray
 ) -> dict[str, Any]:
-    """What varies between the walkers: scale, eigenwalkers, and how far they spread."""
+    """Return scale, eigenwalkers, and the distances of walkers from the average."""
     if space is None:
         spread = {"rms": 1.0, "distances": [0.0] * len(points)}
         return {"scale": [1.0] * len(layout), "eigenwalkers": [], "spread": spread}
-    usual = float(np.sqrt(space.explained_variance_[0] / space.explained_variance_ratio_[0]))
-    far = np.sort(np.linalg.norm((known - space.average_walker_) / space.scale_, axis=1)) / usual
+    rms = float(np.sqrt(space.explained_variance_[0] / space.explained_variance_ratio_[0]))
+    far = np.sort(np.linalg.norm((X - space.average_walker_) / space.scale_, axis=1)) / rms
     upwards = np.ceil(far[points] * 1e5) / 1e5  # so that no walker is nearer than itself
     sds = np.sqrt(space.explained_variance_)
+    shares = space.explained_variance_ratio_
     return {
         "scale": [significant(each) for each in space.scale_],
         "eigenwalkers": [
@@ -174,62 +163,43 @@ def _variation(
                 "sd": significant(sd),
                 "share": significant(share, 6),
             }
-            for axis, sd, share in zip(
-                space.eigenwalkers_, sds, space.explained_variance_ratio_, strict=True
-            )
+            for axis, sd, share in zip(space.eigenwalkers_, sds, shares, strict=True)
         ][:N_EIGENWALKERS],
-        "spread": {"rms": significant(usual), "distances": rounded(upwards, 5)},
+        "spread": {"rms": significant(rms), "distances": np.round(upwards, 5).tolist()},
     }
 
 
-def _space(known: np.ndarray) -> WalkerSpace | None:
-    """The space of the walkers; None of one walker, or where all are the same."""
-    try:
-        return WalkerSpace().fit(known)
-    except ValueError:
-        return None
-
-
 def _cloud(
-    space: WalkerSpace | None, known: np.ndarray, points: np.ndarray, shown: np.ndarray
+    space: WalkerSpace | None, X: np.ndarray, points: np.ndarray, selected: np.ndarray
 ) -> dict[str, Any]:
-    """Every walker as a point: its scores in standard deviations of the walkers."""
+    """Return walkers as points: their scores in standard deviations of the walkers."""
     if space is None:
         return {"n": 0, "scores": [], "walker": []}
-    scores = space.transform(known[points]) / np.sqrt(space.explained_variance_)
-    place = {int(row): number for number, row in enumerate(shown)}
+    scores = space.transform(X[points]) / np.sqrt(space.explained_variance_)
+    place = {int(row): number for number, row in enumerate(selected)}
     return {
         "n": len(points),
-        "scores": rounded(scores[:, :N_EIGENWALKERS], 2),
+        "scores": (np.round(scores[:, :N_EIGENWALKERS], 2) + 0.0).tolist(),
         "walker": [place.get(int(point), -1) for point in points],
     }
 
 
 def _walkers(population: Population, rows: np.ndarray, axes: list[dict]) -> list[dict[str, Any]]:
-    two = next((axis["column"] for axis in axes if axis["two_classes"]), None)
-    told = [str(name) for name in population.traits if name != FLAG]
-    finer = -1 if len(rows) == MOST_WALKERS else 0  # pages of many walkers stay small
-    return [
-        {
-            "name": _name(population.traits, row, two),
-            "row": int(row),
-            "vector": rounded_vectors(population.X[row], population.layout, finer=finer),
-            "traits": {name: _plain(population.traits[name].iloc[row]) for name in told},
-        }
-        for row in rows
-    ]
-
-
-def _name(traits: pd.DataFrame, row: int, two: str | None) -> str:
-    """What to call a walker: its file, or its class and its number."""
-    if "file" in traits and (file := str(_plain(traits["file"].iloc[row]) or "")):
-        return file
-    said = "" if two is None else str(_plain(traits[two].iloc[row]) or "")
-    return f"{said or 'walker'} {row}"
+    classes = next((axis["column"] for axis in axes if axis["two_classes"]), "")
+    finer = -1 if len(rows) == MAX_WALKERS else 0  # pages of many walkers stay small
+    walkers = []
+    for row in rows:
+        traits = population.traits
+        values = {str(name): _plain(traits[name].iloc[row]) for name in traits}
+        name = values.get("file") or f"{values.get(classes) or 'walker'} {row}"
+        values.pop(FLAG, None)
+        vector = rounded_vectors(population.X[row], population.layout, finer=finer)
+        walkers.append({"name": str(name), "row": int(row), "vector": vector, "traits": values})
+    return walkers
 
 
 def _plain(value: Any) -> str | float | None:
-    """A trait's value as JSON has it; None where it is missing or not finite."""
+    """Return the value of a trait as JSON has it; None where it is missing or not finite."""
     if pd.isna(value) or (isinstance(value, float) and not np.isfinite(value)):
         return None
     value = value.item() if isinstance(value, np.generic) else value

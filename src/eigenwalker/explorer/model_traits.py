@@ -1,4 +1,4 @@
-"""The traits that a model can change, as the page needs them."""
+"""The traits that a model can change, with numbers rounded as far as page and Python agree."""
 
 from __future__ import annotations
 
@@ -12,140 +12,131 @@ from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.direction import Kind, direction
 from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_space
 from eigenwalker.analysis.walker_space import WalkerSpace
-from eigenwalker.explorer.rounding import rounded_vectors, significant
+from eigenwalker.population.features import FeatureLayout
 from eigenwalker.population.population import Population
 
-MOST_TRAITS = 12
+MAX_TRAITS = 12
 _UNITS = ("years", "kg", "mm", "cm", "m", "Hz", "s")
-_TOGETHER = ("all", "structure", "dynamics")
-
-
-def parts_of(population: Population) -> list[str]:
-    """Return the parts of the features that a trait may be told from (J18, J31).
-
-    Examples
-    --------
-    >>> parts_of(ew.load_population())
-    ['all', 'structure', 'dynamics', 'p1', 'p2', 'p3', 'p4', 'frequency', 'phases']
-
-    """
-    return [*_TOGETHER, *(name for name in population.layout.blocks if name != "p0")]
+_DECIMALS = 7
+"""Of millimetres: the features of a walker add up to within a millionth."""
+_TIMING_DECIMALS = 3
+"""More decimals for hertz and radians, which limbs of hundreds of mm multiply."""
 
 
 def model_traits(
-    population: Population, wanted: Sequence[str] | None = None, *, first: str = ""
+    population: Population, traits: Sequence[str] | None = None, *, first: str = ""
 ) -> list[dict]:
-    """Return each trait that can be an axis: its poles, and a step for each part and kind.
+    """Return each trait with its poles, and a step for each part and kind.
 
-    Parameters
-    ----------
-    population : Population
-    wanted : sequence of str, optional
-        Traits as `contrast` takes them; others are left out. Left out, all columns of the traits
-        that have an axis, up to 12.
-    first : str
-        A trait to begin with, in place of its column: ``"style=feminine:masculine"``.
-
-    Returns
-    -------
-    list of dict
-
-    Raises
-    ------
-    ValueError
-        If a trait that is wanted has no axis.
-
+    Traits are named as `trait_contrast` takes them; left out, all columns that have an axis, up to
+    12, where `first` comes first, in place of its column.
     """
-    spaces = _Spaces(population)
-    if wanted is not None:
-        return [_trait(spaces, name) for name in wanted]
-    found = [_trait(spaces, first)] if first else []
-    begun = {trait["column"] for trait in found}
-    for name in (str(name) for name in population.traits if name not in begun):
+    axes = _Axes(population)
+    if traits is not None:
+        return [_trait(axes, name) for name in traits]
+    models = [_trait(axes, first)] if first else []
+    columns = {trait["column"] for trait in models}
+    for name in (str(name) for name in population.traits if name not in columns):
         try:
-            found.append(_trait(spaces, name))
-        except ValueError:  # no trait of its own, or the same for everybody: no slider
+            models.append(_trait(axes, name))
+        except ValueError:  # a file name, or the same value for all: no slider
             continue
-        if len(found) == MOST_TRAITS:
+        if len(models) == MAX_TRAITS:
             break
-    return found
+    return models
 
 
-class _Spaces:
-    """Axes of traits; traits that are known of the same walkers share a space for each part."""
+class _Axes:
+    """Axes of traits; traits with values for the same walkers share a space for each part."""
 
     def __init__(self, population: Population) -> None:
         self.population = population
-        self._found: dict[tuple[str, bytes], WalkerSpace] = {}
+        self._spaces: dict[tuple[str, bytes], WalkerSpace] = {}
 
-    def axis(self, asked: Contrast, part: str) -> TraitAxis:
+    def axis(self, contrast: Contrast, part: str) -> TraitAxis:
         columns = self.population.layout.columns(part)
-        key = part, asked.rows.tobytes()
-        if key not in self._found:
-            walkers = self.population.X[np.ix_(asked.rows, columns)]
-            self._found[key] = strongest_space(walkers)
-        return axis_within(self._found[key], self.population, asked, columns)
+        key = part, contrast.rows.tobytes()
+        if key not in self._spaces:
+            walkers = self.population.X[np.ix_(contrast.rows, columns)]
+            self._spaces[key] = strongest_space(walkers)
+        return axis_within(self._spaces[key], self.population, contrast, columns)
 
 
-def _trait(spaces: _Spaces, name: str) -> dict[str, Any]:
-    population = spaces.population
-    asked = trait_contrast(population, name)
-    whole = spaces.axis(asked, "all")
-    label, unit = _label_and_unit(asked)
+def _trait(axes: _Axes, name: str) -> dict[str, Any]:
+    population = axes.population
+    contrast = trait_contrast(population, name)
+    label, unit = _label_and_unit(contrast.trait)
     model = {
         "name": name,
-        "column": asked.trait,
+        "column": contrast.trait,
         "label": label,
         "unit": unit,
-        "negative": _pole(population, asked, asked.negative),
-        "positive": _pole(population, asked, asked.positive),
-        "two_classes": asked.two_classes,
-        "n": len(asked.rows),
-        "steps": _steps(spaces, asked),
-        "projection": _projection(whole, population.X.shape[1]),
+        "negative": _pole(population, contrast, contrast.negative),
+        "positive": _pole(population, contrast, contrast.positive),
+        "two_classes": contrast.two_classes,
+        "n": len(contrast.rows),
+        "steps": _steps(axes, contrast),
+        "projection": _projection(axes.axis(contrast, "all"), population.X.shape[1]),
     }
-    if asked.two_classes:
+    if contrast.two_classes:
+        X, layout = population.X, population.layout
         model["means"] = {
-            "negative": _mean(population, asked.rows[asked.y < 0]),
-            "positive": _mean(population, asked.rows[asked.y > 0]),
+            pole: rounded_vectors(X[contrast.rows[sign * contrast.y > 0]].mean(axis=0), layout)
+            for pole, sign in (("negative", -1), ("positive", 1))
         }
     return model
 
 
-def _pole(population: Population, asked: Contrast, pole: str) -> str:
-    """A pole; one that is a number has as many figures as the traits of the page's walkers."""
-    number = asked.two_classes and pd.api.types.is_any_real_numeric_dtype(
-        population.traits[asked.trait]
-    )
+def _pole(population: Population, contrast: Contrast, pole: str) -> str:
+    """Return a pole; one that is a number has as many figures as the traits of the walkers."""
+    column = population.traits[contrast.trait]
+    number = contrast.two_classes and pd.api.types.is_any_real_numeric_dtype(column)
     return f"{float(pole):.6g}" if number else pole
 
 
-def _mean(population: Population, rows: np.ndarray) -> list[float]:
-    return rounded_vectors(population.X[rows].mean(axis=0), population.layout)
+def _label_and_unit(trait: str) -> tuple[str, str]:
+    """Return ``weight`` and ``kg`` of ``weight_kg``."""
+    stem, _, unit = trait.rpartition("_")
+    return (stem, unit) if stem and unit in _UNITS else (trait.replace("_", " "), "")
 
 
-def _label_and_unit(asked: Contrast) -> tuple[str, str]:
-    """What to call a trait, ``weight`` in ``kg`` of ``weight_kg``."""
-    stem, _, unit = asked.trait.rpartition("_")
-    return (stem, unit) if stem and unit in _UNITS else (asked.trait.replace("_", " "), "")
-
-
-def _steps(spaces: _Spaces, asked: Contrast) -> dict[str, dict[str, list]]:
+def _steps(axes: _Axes, contrast: Contrast) -> dict[str, dict[str, list]]:
     steps: dict[str, dict[str, list]] = {kind: {} for kind in get_args(Kind)}
-    layout = spaces.population.layout
-    for part in parts_of(spaces.population):
+    layout = axes.population.layout
+    parts = [name for name in layout.blocks if name != "p0"]
+    for part in ("all", "structure", "dynamics", *parts):
         try:
-            axis = spaces.axis(asked, part)
+            axis = axes.axis(contrast, part)
             for kind in get_args(Kind):
                 step = direction(axis.space, axis.discriminant, kind=kind)
                 steps[kind][part] = rounded_vectors(step, layout, columns=axis.columns, finer=1)
-        except ValueError:  # a part that is the same for everybody, or tells nothing
+        except ValueError:  # a part that is the same for all, or does not depend on the trait
             continue
     return steps
 
 
 def _projection(axis: TraitAxis, n_features: int) -> dict[str, Any]:
-    """Where a walker lies along the axis, as a linear function of its features."""
+    """Return the position along the axis as a linear function of a walker's features."""
     offset = float(axis.positions(np.zeros((1, n_features)))[0])
     gradient = axis.positions(np.eye(n_features)) - offset
     return {"offset": significant(offset), "gradient": [significant(each, 9) for each in gradient]}
+
+
+def rounded_vectors(
+    vectors: np.ndarray, layout: FeatureLayout, columns: np.ndarray | None = None, finer: int = 0
+) -> list:
+    """Return vectors of features (..., feature) as lists, timing with more decimals than postures.
+
+    `columns` are the features that there are, where not all. `finer` adds decimals, for vectors
+    that are multiplied before they are added.
+    """
+    timing = np.isin(np.arange(len(layout)), layout.columns("timing"))
+    timing = timing if columns is None else timing[columns]
+    posture = np.round(vectors, _DECIMALS + finer)
+    fine = np.round(vectors, _DECIMALS + _TIMING_DECIMALS + finer)
+    return (np.where(timing, fine, posture) + 0.0).tolist()
+
+
+def significant(value: float, figures: int = 12) -> float:
+    """Return a number with so many significant figures."""
+    return float(f"{value:.{figures}g}")

@@ -1,4 +1,4 @@
-"""A walker in a notebook that plays, turns, and follows Python as Python follows it."""
+"""A walker in a notebook that plays, turns when dragged, and is linked to Python both ways."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def show(
     population: Population | None = None,
     **options: Any,
 ) -> WalkerWidget:
-    """Return a walker for a notebook: it plays, turns when dragged, and is linked to Python.
+    """Return a widget that shows a walker in a notebook; it plays, and turns when dragged.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def show(
         A population has a slider for each trait, and begins with its average walker. Left out, it
         is the built-in population.
     population : Population, optional
-        Whose traits a `Walker` is to be moved along.
+        Gives sliders for its traits to a `Walker`.
     **options
-        What the widget begins with, as its attributes are called: ``azimuth_deg=90``.
+        Attributes of the widget at the start: ``azimuth_deg=90``.
 
     Returns
     -------
@@ -56,6 +56,10 @@ def show(
         If anywidget is not installed.
     ValueError
         If a walker cannot be compared with the population.
+
+    References
+    ----------
+    Troje (2002), eq. 13 and demonstration 1.
 
     Examples
     --------
@@ -75,8 +79,7 @@ def show(
         return WalkerWidget(_model=walker_model(shown), **options)
     if isinstance(shown, Walker) and population is not None:
         own = population.vector(shown).tolist()
-        given = {"_model": page_model(population), "_own": own, "start": "own"}
-        return WalkerWidget(**given, **options)
+        return WalkerWidget(_model=page_model(population), _own=own, start="own", **options)
     people = population if shown is None else shown
     if not isinstance(people, Population):
         raise ValueError(
@@ -88,36 +91,36 @@ def show(
 class WalkerWidget(anywidget.AnyWidget):
     """A walker on a page of a notebook; made by `show`.
 
-    Every attribute goes both ways: set in Python it changes what is seen, and what is changed by
-    hand can be read in Python, or watched with ``observe``. Values are new ones each time:
-    ``widget.alpha = {**widget.alpha, "sex": 2}``.
+    Every attribute is linked both ways: set in Python it changes what is seen, and what is changed
+    by hand can be read in Python, or watched with ``observe``. Assign new values rather than change
+    old ones: ``widget.alpha = {**widget.alpha, "sex": 2}``.
 
     Attributes
     ----------
     alpha : dict of str to float
-        Standard deviations along each trait (A12), from -6 to 6. (``traits`` is what the
-        widget's own library calls its attributes.)
+        Standard deviations along the axis of each trait, from -6 to 6. (``traits`` are the
+        attributes themselves, in the widget's library.)
     kind, part : str
         As `trait_axis` takes them.
     start : "average", "own" or int
-        Who is changed: the average walker, one's own, or a walker of the population by its number
-        among those that the page holds.
+        The walker that is changed: the average, one's own, or a walker of the population by its
+        number among those that the page holds.
     bias : dict or None
         ``{"trait": "sex", "steps": 1}``: steps of half the difference of two classes, from -3 to 3.
     strengths : list of float
-        Of each component: stride, sway, hop, bounce; 1 is as it is; from -2 to 2.
+        Factors of each component (stride, sway, hop, bounce), from -2 to 2.
     eigenwalkers : list of float
         Standard deviations along each, from -6 to 6.
     tempo : float
-        How many times as fast it is played.
+        Factor of the speed.
     azimuth_deg, elevation_deg, perspective
-        From where it is seen.
+        The view.
     style : {"dots", "sticks", "mannequin"}
     trails, dark, playing, controls : bool
     cycle : float
-        Where in the stride it stands while it does not play, from 0 to 1.
+        Phase of the stride while it does not play, from 0 to 1.
     height_px : int
-        Of the picture.
+        Height of the picture.
 
     """
 
@@ -147,16 +150,16 @@ class WalkerWidget(anywidget.AnyWidget):
     controls = traitlets.Bool(True).tag(sync=True)
     height_px = traitlets.Int(380, min=80, max=2000).tag(sync=True)
 
-    def __init__(self, **given: Any) -> None:
+    def __init__(self, **attributes: Any) -> None:
         self._esm = built(_SCRIPT)
-        unknown = sorted(set(given) - set(self.trait_names()))
+        unknown = sorted(set(attributes) - set(self.trait_names()))
         if unknown:
             raise ValueError(f"A walker in a notebook has no {unknown}; see help(WalkerWidget).")
-        super().__init__(**given)
-        self.on_msg(_send_what_is_wanted)
+        super().__init__(**attributes)
+        self.on_msg(_send_mannequin)
 
     @traitlets.validate("alpha", "bias", "strengths", "eigenwalkers", "part", "kind", "start")
-    def _makes_a_walker(self, proposal: Any) -> Any:
+    def _check_walker(self, proposal: Any) -> Any:
         """Refuse what the model does not have, before it reaches the page."""
         name = proposal["trait"].name
         if self._model is not None:
@@ -181,27 +184,13 @@ class WalkerWidget(anywidget.AnyWidget):
 
     @property
     def vector(self) -> np.ndarray:
-        """The features of the walker now shown: array of shape (feature,).
-
-        Raises
-        ------
-        ValueError
-            If a stimulus is shown.
-
-        """
-        return mixed_vector(self._known_model(), self._state())
+        """The features of the walker now shown: array of shape (feature,)."""
+        return mixed_vector(self._model_or_refuse(), self._state())
 
     @property
     def walker(self) -> Walker:
-        """The walker now shown.
-
-        Raises
-        ------
-        ValueError
-            If a stimulus is shown, or the numbers chosen make nothing that could walk.
-
-        """
-        return mixed_walker(self._known_model(), self._state())
+        """The walker now shown."""
+        return mixed_walker(self._model_or_refuse(), self._state())
 
     @property
     def stimulus(self) -> Stimulus:
@@ -217,13 +206,13 @@ class WalkerWidget(anywidget.AnyWidget):
             background=_DARK if self.dark else _LIGHT,
         )
 
-    def _known_model(self) -> dict[str, Any]:
+    def _model_or_refuse(self) -> dict[str, Any]:
         if self._model is None:
             raise ValueError("A stimulus is shown; its figures are in widget.stimulus.figures.")
         return self._model
 
 
-def _send_what_is_wanted(widget: WalkerWidget, message: Any, _buffers: Any) -> None:
+def _send_mannequin(widget: WalkerWidget, message: Any, _buffers: Any) -> None:
     """Send the module that draws mannequins, half a megabyte, when it is first asked for."""
     if message == {"wants": "mannequin"}:
         widget.send({"mannequin": built(MANNEQUIN)})
