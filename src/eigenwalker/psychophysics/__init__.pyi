@@ -5,7 +5,6 @@ from .choice_prediction import (
 from .conditional_logit import (
     ChoiceFit as ChoiceFit,
     bootstrap_choices as bootstrap_choices,
-    choice_probabilities as choice_probabilities,
     expected_differences as expected_differences,
     fit_choices as fit_choices,
 )

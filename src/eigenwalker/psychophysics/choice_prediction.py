@@ -42,7 +42,7 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     """
     table = np.asarray(X, dtype=float)
     problem = ChoiceProblem.from_trials(table, trials)
-    start = problem.fit(np.ones(len(trials.chosen)))
+    start = problem.fit(np.ones(len(trials.chosen)))[1]
     names = np.array([[*map(str, pair)] for pair in trials.pairs])
     walkers, number = np.unique(names, return_inverse=True)
     number = number.reshape(names.shape)
@@ -55,7 +55,7 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
         neither = ~(in_trial[:, first] | in_trial[:, second])
         both = (trials.shown == pair).any(axis=1)
         if neither.any() and both.any():
-            weights = problem.weights(problem.fit(neither.astype(float), start))
+            weights = problem.fit(neither.astype(float), start)[0]
             shown = trials.shown[both]
             probability = choice_probabilities(table @ weights, shown)
             expected[pair] = 1 - probability[shown == pair].mean()
@@ -98,15 +98,13 @@ def compare_by_choices(
     for name, table in ticked(tables.items(), len(tables), progress):
         X = np.asarray(table, dtype=float).reshape(len(observed), -1)
         problem = ChoiceProblem.from_trials(X, trials)
-        optimum = problem.fit(np.ones(len(trials.chosen)))
-        weights = problem.weights(optimum)
+        weights, _, loss = problem.fit(np.ones(len(trials.chosen)))
         expected = expected_differences(X @ weights, trials)
         left_out = left_out_differences(X, trials)
         known = np.isfinite(left_out) & seen
-        loss = optimum.negative_log_likelihood / len(trials.chosen)
         rows[name] = {
             "n_weights": int((weights > 0).sum()),
-            "bits": (np.log(trials.shown.shape[1]) - loss) / np.log(2),
+            "bits": (np.log(trials.shown.shape[1]) - loss / len(trials.chosen)) / np.log(2),
             "pearson": goodness(observed[seen], expected[seen])["pearson"],
             "cv_pearson": goodness(observed[known], left_out[known])["pearson"],
         }

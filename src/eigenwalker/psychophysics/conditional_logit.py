@@ -23,6 +23,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
 from eigenwalker.core.progress import Progress, ticked
+from eigenwalker.psychophysics.perceptual_metric import relative_weights
 from eigenwalker.psychophysics.reliability import Bootstrap, draw_counts
 from eigenwalker.psychophysics.trials import Trials, share_not_chosen
 
@@ -57,8 +58,7 @@ class ChoiceFit:
     @property
     def relative_weights(self) -> np.ndarray:
         """Weights divided by their sum; all 0 where no group predicts anything."""
-        total = self.weights.sum()
-        return self.weights / total if total > 0 else self.weights
+        return relative_weights(self.weights)
 
     def __repr__(self) -> str:
         nats = -self.log_likelihood / self.n_trials
@@ -125,15 +125,15 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
             f"{times.shape} for {len(trials.chosen)} trials, {times[~(times >= 0)][:5]} among them."
         )
     problem = ChoiceProblem.from_trials(X, trials)
-    optimum = problem.fit(times)
-    if unbounded := problem.unbounded(optimum, times):
+    weights, scaled, loss = problem.fit(times)
+    if unbounded := problem.unbounded(scaled, loss, times):
         warnings.warn(
             f"The choices leave open how large the weights of the columns {unbounded}, counted "
             "from 0, are: much more fits as well, as pairs that differ in them were hardly ever "
             "chosen.",
             stacklevel=2,
         )
-    return ChoiceFit(problem.weights(optimum), -optimum.negative_log_likelihood, float(times.sum()))
+    return ChoiceFit(weights, -loss, float(times.sum()))
 
 
 def bootstrap_choices(
@@ -182,35 +182,17 @@ def bootstrap_choices(
             f"{len(trials.observers)} observer."
         )
     problem = ChoiceProblem.from_trials(X, trials)
-    start = problem.fit(np.ones(len(trials.chosen)))
-    samples = []
+    start = problem.fit(np.ones(len(trials.chosen)))[1]
     draws = draw_counts(np.random.default_rng(random_state), len(trials.observers), n_samples)
-    for times in ticked(draws, n_samples, progress):
-        optimum = problem.fit(times[trials.observer].astype(float), start)
-        samples.append(problem.weights(optimum))
+    samples = [
+        problem.fit(times[trials.observer].astype(float), start)[0]
+        for times in ticked(draws, n_samples, progress)
+    ]
     return Bootstrap(np.array(samples), np.zeros(n_samples))
 
 
 def choice_probabilities(distances: ArrayLike, shown: np.ndarray) -> np.ndarray:
-    """Return the probability that each pair shown is chosen as the most similar.
-
-    Parameters
-    ----------
-    distances : array of shape (pair,)
-        d of each pair.
-    shown : array of int of shape (trial, 6)
-        As in `Trials`.
-
-    Returns
-    -------
-    array of shape (trial, 6)
-
-    Examples
-    --------
-    >>> choice_probabilities([0.0, np.log(2), np.log(4)], np.array([[0, 1, 2]])).round(3)
-    array([[0.571, 0.286, 0.143]])
-
-    """
+    """Return the probability, of shape (trial, 6), that each pair shown is chosen."""
     return _softmax(np.asarray(distances, dtype=float)[shown])[0]
 
 
@@ -242,26 +224,13 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     )
 
 
-class _Optimum(NamedTuple):
-    """Weights of columns of unit spread, and the negative log-likelihood there."""
-
-    scaled: np.ndarray
-    negative_log_likelihood: float
-
-
 class ChoiceProblem(NamedTuple):
-    """How much more each pair shown differs than the chosen one, columns of unit spread.
-
-    Parameters
-    ----------
-    differences : array of shape (trial, 6, group)
-    spread : array of shape (group,)
-        By which the columns were divided; infinite for those that do not vary.
-
-    """
+    """The likelihood of choices as a function of weights of columns of unit spread."""
 
     differences: np.ndarray
+    """How much more each pair shown differs than the chosen one, (trial, 6, group)."""
     spread: np.ndarray
+    """By which the columns were divided, (group,); infinite for those that do not vary."""
 
     @classmethod
     def from_trials(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
@@ -279,16 +248,18 @@ class ChoiceProblem(NamedTuple):
         spread[spread <= _CONSTANT * np.abs(table).max(axis=0)] = np.inf
         return cls(differences / spread, spread)
 
-    def weights(self, optimum: _Optimum) -> np.ndarray:
-        """Return weights per unit of the table's columns."""
-        return optimum.scaled / self.spread
+    def fit(
+        self, times: np.ndarray, start: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """Find the most likely weights, with trials that count so many times.
 
-    def fit(self, times: np.ndarray, start: _Optimum | None = None) -> _Optimum:
-        """Return the most likely weights, with trials that count so many times."""
+        Returns weights per unit of the table's columns, those of columns of unit spread, at which
+        another fit can start, and the negative log-likelihood.
+        """
         counted = times > 0
         differences, times = self.differences[counted], times[counted]
         n_groups = differences.shape[2]
-        weights = np.zeros(n_groups) if start is None else start.scaled
+        weights = np.zeros(n_groups) if start is None else start
         loss, probability = _negative_log_likelihood(differences, times, weights)
         for _ in range(_MAX_STEPS):
             mean = np.einsum("tp,tpk->tk", probability, differences)
@@ -313,20 +284,19 @@ class ChoiceProblem(NamedTuple):
             if tried > loss:  # rounding errors hide any further descent
                 break
             weights, loss = weights + length * step, tried
-        return _Optimum(weights, loss)
+        return weights / self.spread, weights, loss
 
-    def unbounded(self, optimum: _Optimum, times: np.ndarray) -> list[int]:
+    def unbounded(self, scaled: np.ndarray, least: float, times: np.ndarray) -> list[int]:
         """Return groups of which a much larger weight would hardly be less likely."""
-        groups = np.flatnonzero(optimum.scaled).tolist()
+        groups = np.flatnonzero(scaled).tolist()
 
         def is_flat(direction: np.ndarray) -> bool:
-            more = optimum.scaled + MUCH_LARGER * direction / min(direction.max(), 1.0)
-            loss = _negative_log_likelihood(self.differences, times, more)[0]
-            return loss - optimum.negative_log_likelihood < FLAT_NATS
+            more = scaled + MUCH_LARGER * direction / min(direction.max(), 1.0)
+            return _negative_log_likelihood(self.differences, times, more)[0] - least < FLAT_NATS
 
-        if groups and is_flat(optimum.scaled):  # all of them together
+        if groups and is_flat(scaled):  # all of them together
             return groups
-        return [group for group in groups if is_flat(np.diag(optimum.scaled)[group])]
+        return [group for group in groups if is_flat(np.diag(scaled)[group])]
 
 
 def _negative_log_likelihood(

@@ -22,7 +22,7 @@ from eigenwalker.psychophysics.conditional_logit import (
     fit_choices,
 )
 from eigenwalker.psychophysics.cross_validation import compare_metrics, leave_walkers_out
-from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric
+from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric, relative_weights
 from eigenwalker.psychophysics.reliability import (
     Bootstrap,
     Reliability,
@@ -187,7 +187,5 @@ def fit_to_answers(
 
 
 def _with_intervals(X: pd.DataFrame, weights: np.ndarray, samples: Bootstrap) -> pd.DataFrame:
-    total = weights.sum()
-    relative = weights / total if total > 0 else weights
-    table = pd.DataFrame({"weight": weights, "relative": relative}, index=X.columns)
-    return table.join(samples.intervals(X.columns)).rename_axis("group")
+    columns = {"weight": weights, "relative": relative_weights(weights)}
+    return pd.DataFrame(columns, index=X.columns).join(samples.intervals(X.columns))

@@ -51,8 +51,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
 
     References
     ----------
-    Pražák, McDonnell, Kavan & O'Sullivan (2010), A perception based metric for comparing human
-    locomotion, eq. 1 to 3, section 5 and figure 5.
+    Pražák et al. (2010), eq. 1 to 3, section 5 and figure 5.
 
     Examples
     --------
@@ -95,8 +94,8 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
             sample_weight=None if sample_weight is None else _counts(sample_weight, table),
             fit_constant=self.fit_constant,
         )
+        self.relative_weights_ = relative_weights(self.weights_)
         total = self.weights_.sum()
-        self.relative_weights_ = self.weights_ / total if total > 0 else self.weights_
         self.normalisation_ = float(1 / total) if total > 0 else np.inf
         return self
 
@@ -111,6 +110,12 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         if tags.regressor_tags is not None:
             tags.regressor_tags.poor_score = True  # on data that need weights below 0
         return tags
+
+
+def relative_weights(weights: np.ndarray) -> np.ndarray:
+    """Return weights of shape (..., group) divided by their sum; 0 where all are."""
+    total = weights.sum(axis=-1, keepdims=True)
+    return np.divide(weights, total, out=np.zeros_like(weights), where=total > 0)
 
 
 def _is_plain(values: ArrayLike, n_dimensions: int) -> bool:
@@ -153,22 +158,13 @@ def non_negative_fit(
 
     Parameters
     ----------
-    X : array of shape (pair, column)
-        Finite.
-    y : array of shape (pair,)
-        Finite.
-    sample_weight : array of shape (pair,), optional
-        How much each pair counts.
-    fit_constant : bool
-        Whether there is a constant; 0 otherwise.
+    X, y, sample_weight, fit_constant
+        As `PerceptualMetric` takes them, which checks them: finite arrays of shape (pair, column)
+        and (pair,).
 
     Returns
     -------
     Weights
-
-    See Also
-    --------
-    PerceptualMetric : The same as a scikit-learn estimator, with all checks.
 
     Examples
     --------

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit
+from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit, relative_weights
 from eigenwalker.psychophysics.trials import share_not_chosen
 
 MIN_PAIRS = 3
@@ -28,41 +28,22 @@ class Bootstrap(NamedTuple):
     @property
     def relative_weights(self) -> np.ndarray:
         """Weights divided by their sum, of shape (sample, group); 0 where all are."""
-        total = self.weights.sum(axis=1, keepdims=True)
-        return np.divide(self.weights, total, out=np.zeros_like(self.weights), where=total > 0)
+        return relative_weights(self.weights)
 
     def intervals(self, names: ArrayLike, *, level: float = 0.95) -> pd.DataFrame:
         """Return percentile intervals of each group's weight and relative weight.
 
-        An interval of a weight near 0 begins at 0: no weight can be less.
-
-        Parameters
-        ----------
-        names : sequence of str
-            The groups.
-        level : float
-            Share of the samples within the interval.
-
-        Returns
-        -------
-        DataFrame
-            Rows are groups; columns ``low``, ``high``, ``relative_low``, ``relative_high``, and
-            ``share_zero``, the share of samples in which the group weighs nothing.
-
+        Rows are the named groups; columns ``low``, ``high``, ``relative_low``, ``relative_high``
+        of the interval that holds the share `level` of the samples, and ``share_zero``, the share
+        in which the group weighs nothing.
         """
         tails = [(1 - level) / 2, (1 + level) / 2]
         low, high = np.quantile(self.weights, tails, axis=0)
         relative_low, relative_high = np.quantile(self.relative_weights, tails, axis=0)
-        return pd.DataFrame(
-            {
-                "low": low,
-                "high": high,
-                "relative_low": relative_low,
-                "relative_high": relative_high,
-                "share_zero": (self.weights == 0).mean(axis=0),
-            },
-            index=pd.Index(np.asarray(names), name="group"),
-        )
+        columns = {"low": low, "high": high}
+        columns |= {"relative_low": relative_low, "relative_high": relative_high}
+        columns["share_zero"] = (self.weights == 0).mean(axis=0)
+        return pd.DataFrame(columns, index=pd.Index(np.asarray(names), name="group"))
 
 
 def bootstrap_weights(
