@@ -1,4 +1,4 @@
-"""The tables of the main job say what they hold, in words and units."""
+"""The tables of the classification say what they hold, in words and units."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,6 +19,7 @@ from eigenwalker.cli.options import (
 
 if TYPE_CHECKING:
     from eigenwalker.analysis.classification import Classification, Regression
+    from eigenwalker.population.population import Population
 
 INDEX = "index.html"
 BUILT_IN_TITLE = "How people walk"
@@ -36,21 +37,15 @@ def classify(
     with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
-    from eigenwalker.analysis import classification
-    from eigenwalker.analysis.contrast import trait_contrast
-    from eigenwalker.report.classification_report import write_main_job
+    from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
-    classes = trait_contrast(population, trait)
     page = None
     with progress_bar("Classifying") as progress:
-        settings = {"n_permutations": permutations, "progress": progress}
+        result = _classify(population, trait, n_permutations=permutations, progress=progress)
         if output is not None:
-            page, result = write_main_job(output, population, trait, **settings)
-        elif classes.two_classes:
-            result = classification.classify(population, trait, **settings)
-        else:
-            result = classification.regress(population, trait, **settings)
+            page = write_classification_report(result, population, output)
+    classes = result.contrast
     print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
     _print_result(result)
     if page is not None:
@@ -75,17 +70,17 @@ def demo(
     from eigenwalker.explorer.interactive_page import interactive_page
     from eigenwalker.explorer.model import page_model
     from eigenwalker.report.blocks import Link
-    from eigenwalker.report.classification_report import write_main_job
+    from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
     with progress_bar("Classifying and filming") as progress:
-        page, result = write_main_job(
-            output,
+        result = _classify(population, trait, progress=progress)
+        page = write_classification_report(
+            result,
             population,
-            trait,
+            output,
             example=built_in_capture() if people is None else None,
             beside=Link("Play with these walkers", INDEX),
-            progress=progress,
         )
     model = page_model(population, first=trait, **model_names(people))
     index = page.with_name(INDEX)
@@ -101,6 +96,14 @@ def model_names(people: Path | None) -> dict[str, str]:
     if people is None:
         return {"title": BUILT_IN_TITLE, "source": ""}
     return {"title": people.stem, "source": people.name}
+
+
+def _classify(population: Population, trait: str, **settings: Any) -> Classification | Regression:
+    from eigenwalker.analysis.classification import classify, regress
+    from eigenwalker.analysis.contrast import trait_contrast
+
+    predict = classify if trait_contrast(population, trait).two_classes else regress
+    return predict(population, trait, **settings)
 
 
 def _print_result(result: Classification | Regression) -> None:

@@ -11,5 +11,6 @@ from .blocks import (
     Table as Table,
     Text as Text,
 )
+from .classification_report import write_classification_report as write_classification_report
 from .html_report import write_report as write_report
 from .metric_fit_report import write_metric_fit_report as write_metric_fit_report

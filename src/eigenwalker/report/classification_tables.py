@@ -1,4 +1,4 @@
-"""The tables of the main job's report, in words and units."""
+"""Tables and sentences of the classification report, with units."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ _GAIT = {
     "double_support_share": ("both feet stand (% of the stride)", 100, 1),
     "pelvis_vertical_range_mm": ("pelvis, vertical range (mm)", 1, 0),
 }
-"""Words and unit of each gait parameter, what to multiply it with, and decimals. How stride times
-vary is not among them: a walker's are all the same."""
+"""Name and unit of each gait parameter, a factor to multiply it with, and decimals. How stride
+times vary is not among them: a walker's are all the same."""
 
 
-def results_table(found: Classification | Regression) -> Table:
-    """Return how well a trait is told from each input."""
-    out = "persons" if found.contrast.persons is not None else "walkers"
-    words = printed_results(found)
+def results_table(result: Classification | Regression) -> Table:
+    """Return how well a trait is predicted from each input."""
+    units = "persons" if result.contrast.persons is not None else "walkers"
+    printed = printed_results(result)
     return Table(
-        f"Told of {out} left out one at a time",
-        [str(column) for column in words],
-        words.to_numpy(dtype=object).tolist(),
+        f"Predicted of {units} left out one at a time",
+        [str(column) for column in printed],
+        printed.to_numpy(dtype=object).tolist(),
     )
 
 
-def printed_results(found: Classification | Regression) -> pd.DataFrame:
+def printed_results(result: Classification | Regression) -> pd.DataFrame:
     """Return the results as printed: "-" where there is nothing, p with its lower limit."""
-    least = 1 / (1 + found.n_permutations)
+    least = 1 / (1 + result.n_permutations)
 
     def printed_p(p: float) -> str:
-        if not found.n_permutations:
+        if not result.n_permutations:
             return "-"
         return f"<= {least:.2g}" if p <= least else f"{p:.2g}"
 
@@ -59,15 +59,15 @@ def printed_results(found: Classification | Regression) -> pd.DataFrame:
             return "-"
         return f"{value:.3g}" if isinstance(value, float) else str(value)
 
-    table = found.table()
+    table = result.table()
     printed = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
     return printed.assign(p=[printed_p(p) for p in table["p"]])
 
 
-def chance_sentence(found: Classification | Regression) -> str:
+def chance_sentence(result: Classification | Regression) -> str:
     """Return what to hold the errors against: those of always giving the same answer."""
-    contrast = found.contrast
-    if isinstance(found, Regression):
+    contrast = result.contrast
+    if isinstance(result, Regression):
         return f"Always answering the mean has an RMSE of {contrast.y.std():.3g}."
     sizes = [int((contrast.y < 0).sum()), int((contrast.y > 0).sum())]
     errors = "1 error" if min(sizes) == 1 else f"{min(sizes)} errors"
@@ -81,35 +81,31 @@ def chance_sentence(found: Classification | Regression) -> str:
     )
 
 
-def multiple_inputs_sentence(found: Classification | Regression) -> str:
-    """Return what to mind of so many values of p; empty where there is one."""
-    if len(found.results) < 2 or not found.n_permutations:
+def multiple_inputs_sentence(result: Classification | Regression) -> str:
+    """Return a warning about many values of p; empty where there is one."""
+    n_inputs = len(result.results)
+    if n_inputs < 2 or not result.n_permutations:
         return ""
-    n_inputs = len(found.results)
     return f"There are {n_inputs} inputs: a p of 0.05 somewhere is to be expected by chance."
 
 
 def gait_table(walkers: Mapping[str, Walker]) -> Table:
     """Return the gait parameters of walkers, by title, that any of them has."""
-    found = [gait_parameters(walker) for walker in walkers.values()]
+    parameters = [gait_parameters(walker) for walker in walkers.values()]
     rows = []
-    for name, (words, factor, decimals) in _GAIT.items():
-        cells = [_fixed(factor * each[name], decimals) for each in found]
+    for name, (title, factor, decimals) in _GAIT.items():
+        cells = [_fixed(factor * each[name], decimals) for each in parameters]
         if any(cells):
-            rows.append([words, *cells])
+            rows.append([title, *cells])
     return Table("Gait of the walkers shown", ["", *walkers], rows)
 
 
-def plausibility_table(found: Mapping[str, Plausibility]) -> Table:
+def plausibility_table(walkers: Mapping[str, Plausibility]) -> Table:
     """Return how plausible walkers are, by title."""
-    limbs = next(iter(found.values())).limb_change.index
+    limbs = next(iter(walkers.values())).limb_change.index
     rows = [
-        [
-            title,
-            _fixed(each.position.distance, 1),
-            *(_change(change) for change in each.limb_change),
-        ]
-        for title, each in found.items()
+        [title, _fixed(each.position.distance, 1), *map(_change, each.limb_change)]
+        for title, each in walkers.items()
     ]
     return Table(
         "How plausible they are: distance from the average walker, 1 being usual, and how much "
@@ -119,25 +115,60 @@ def plausibility_table(found: Mapping[str, Plausibility]) -> Table:
     )
 
 
-def missed_table(population: Population, found: Classification, most: int = 10) -> Table | None:
-    """Return the walkers that several classifiers miss, named with their class; None if none."""
-    missed = found.often_misclassified().head(most)
-    if missed.empty:
+def missed_table(population: Population, result: Classification, most: int = 10) -> Table | None:
+    """Return the walkers that several classifiers misclassify, with their class; None if none."""
+    counts = result.often_misclassified().head(most)
+    if counts.empty:
         return None
-    classes = dict(zip(found.contrast.rows, found.contrast.labels, strict=True))
+    classes = dict(zip(result.contrast.rows, result.contrast.labels, strict=True))
     names = population.names
     rows = [
         [f"{names[row]} ({classes[row]})", int(count)]
-        for row, count in zip(missed.index.to_numpy(), missed, strict=True)
+        for row, count in zip(counts.index.to_numpy(), counts, strict=True)
     ]
-    n_inputs = len(found.results[:N_PANELS])
+    n_inputs = len(result.results[:N_PANELS])
     return Table(
         "Walkers that several classifiers miss", ["walker", f"missed, of {n_inputs} inputs"], rows
     )
 
 
+def traits_table(population: Population) -> Table | None:
+    """Return what is known of the traits of a population; None if nothing is."""
+    rows = []
+    for name, values in population.traits.drop(columns=["flag", "file"], errors="ignore").items():
+        known = values[values.notna() & (values.astype(str) != "")]
+        if known.empty:
+            continue
+        if pd.api.types.is_numeric_dtype(known):
+            summary = f"{known.mean():.4g} (SD {known.std():.2g})"
+        else:
+            counts = known.astype(str).value_counts()
+            summary = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
+            summary += ", ..." if len(counts) > 8 else ""
+        rows.append([str(name), summary, len(known)])
+    return Table("Traits", ["trait", "values", "known of"], rows) if rows else None
+
+
+def flags_table(population: Population) -> Table | None:
+    """Return the flagged walkers and why they are flagged; None if none is."""
+    if not population.flagged.any():
+        return None
+    flags = population.traits["flag"][population.flagged]
+    rows = [[population.names[row], flag] for row, flag in flags.items()]
+    return Table("Flagged, and left out of all that follows", ["walk", "why"], rows)
+
+
+def correlations_table(correlations: pd.DataFrame) -> Table:
+    """Return how alike the postures of walkers are."""
+    return Table(
+        "How alike postures are: mean correlation over all pairs of walkers",
+        ["posture", *correlations.columns],
+        [[name, *map(float, row)] for name, *row in correlations.itertuples()],
+    )
+
+
 def _fixed(value: float, decimals: int) -> str | None:
-    """A number with so many decimals, without a sign where they are all 0."""
+    """Return a number with so many decimals, without a sign where they are all 0."""
     return None if np.isnan(value) else f"{round(float(value), decimals) + 0.0:.{decimals}f}"
 
 
