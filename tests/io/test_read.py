@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import eigenwalker as ew
 from corpus.sound_files import sound_files
@@ -13,6 +14,7 @@ from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import SUFFIXES, read_mocap
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
+from eigenwalker.io.write import write_mocap
 
 BVH = b"""HIERARCHY
 ROOT Hips
@@ -158,3 +160,17 @@ def test_the_whole_frames_of_a_cut_file_can_be_kept(kind, tmp_path: Path):
     path.write_bytes(content[: (2 * len(content)) // 3 + 150])
     with pytest.raises(UnreadableFile, match='partial="keep"'):
         read_mocap(path)
+
+
+def test_one_of_several_subjects_can_be_taken(text_walk, tmp_path: Path):
+    names = [f"{who}:{name}" for who in ("Anna", "Ben") for name in text_walk.marker.values]
+    both = xr.concat([text_walk, text_walk + 1000], dim="marker", coords="minimal")
+    path = write_mocap(
+        both.assign_coords(marker=names).assign_attrs(units="mm"), tmp_path / "a.csv"
+    )
+    ben = read_mocap(path, subject="Ben")
+    assert ben.marker.values.tolist() == text_walk.marker.values.tolist()
+    np.testing.assert_allclose(ben.values, text_walk.values + 1000, atol=0.01)
+    assert ben.attrs["subject"] == "Ben"
+    with pytest.raises(ValueError, match=r"\['Anna', 'Ben'\]"):
+        read_mocap(path, subject="Cleo")

@@ -10,7 +10,6 @@ from hypothesis import given, settings, strategies as st
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.io.walker_tables import (
-    BML_MARKERS,
     COS_FIRST,
     SIN_FIRST,
     on_the_floor,
@@ -29,7 +28,7 @@ def _table(seed: int, n_markers: int = 15) -> np.ndarray:
 
 def test_columns_are_played_by_their_names():
     table = _table(0)
-    walker = walker_from_table(table, frequency_hz=0.9, markers=BML_MARKERS)
+    walker = walker_from_table(table, frequency_hz=0.9, markers=JOINTS.markers)
     angle = 2 * np.pi * 0.9 * TIME[:, None]
     by_hand = (
         table[:, 0]
@@ -41,7 +40,7 @@ def test_columns_are_played_by_their_names():
     walk = walker.trajectories(TIME)
     assert walker.markers == JOINTS.markers
     assert walker.form == "fourier"
-    for number, name in enumerate(BML_MARKERS):
+    for number, name in enumerate(JOINTS.markers):
         for axis, row in zip("xyz", (number, 15 + number, 30 + number), strict=True):
             np.testing.assert_allclose(walk.sel(marker=name, axis=axis), by_hand[:, row])
 
@@ -87,7 +86,7 @@ def test_mm_matrices_tell_period_and_speed_and_cosines_first(orthogonal_walker):
     walker = walker_from_mm(mm)
     assert walker.frequency_hz == pytest.approx(0.95)
     assert walker.speed_mm_s == pytest.approx(11.3 * 120)
-    left_knee_forward = mm[BML_MARKERS.index("left_knee")]
+    left_knee_forward = mm[JOINTS.markers.index("left_knee")]
     found = walker.trajectories([0.0]).sel(marker="left_knee", axis="x").item()
     assert found == pytest.approx(left_knee_forward[0] + left_knee_forward[1] + mm[10, 3])
     np.testing.assert_allclose(walker_to_mm(walker), mm, atol=1e-9)

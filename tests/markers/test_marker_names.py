@@ -3,7 +3,14 @@ from __future__ import annotations
 import pytest
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.markers.marker_sets import MarkerNames, known_sets, numbered
+from eigenwalker.markers.marker_sets import (
+    MarkerNames,
+    known_sets,
+    numbered,
+    repeated,
+    side_pairs,
+    subjects,
+)
 
 
 @pytest.mark.parametrize(
@@ -74,3 +81,21 @@ SKIN = ("front_waist", "knee", "ankle", "shoulder", "elbow")
 
 def test_numbers_tell_same_names_apart():
     assert numbered(["a", "a", "a_2", "a"]) == ["a", "a_2", "a_2_2", "a_3"]
+
+
+def test_names_tell_subjects_sides_and_repetitions():
+    assert subjects(["Anna:LKNE", "Ben:LKNE", "floor"]) == ["Anna", "Ben"]
+    assert repeated(["head", "hand", "hand"]) == ["hand"]
+    names = ["LASI", "RASI", "C7", "Knee_R", "Knee_L", "left_hip", "right_hip"]
+    pairs = [("LASI", "RASI"), ("Knee_L", "Knee_R"), ("left_hip", "right_hip")]
+    assert side_pairs(names) == pairs
+
+
+def test_stand_ins_and_midpoints_are_told_apart():
+    names = MarkerNames(["mixamorig:LeftUpLeg", "thigh.R", "Anna:LWRA", "Anna:LWRB"])
+    hit = names.find("{right}UpLeg | ~ {right}Thigh")
+    assert hit is not None
+    assert (hit.markers, hit.stand_in) == (("thigh.R",), True)
+    hit = names.find("{left}WRA + {left}WRB")
+    assert hit is not None
+    assert hit.markers == ("Anna:LWRA", "Anna:LWRB")

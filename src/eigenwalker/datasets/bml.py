@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
 from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.walker_tables import (
-    BML_MARKERS,
     BML_RATE_HZ,
     SIN_FIRST,
     on_the_floor,
@@ -27,7 +27,7 @@ POSITIVE_POLES = {"sex": "male", "weight": "heavy", "nervous": "nervous", "happy
 
 _KEYS = {"sex": "gender", "weight": "weight", "nervous": "nervous", "happy": "happy"}
 _MEAN_KEY = "walker"
-_N_ROWS = 3 * len(BML_MARKERS) + 1
+_N_ROWS = 3 * len(JOINTS.markers) + 1
 _N_NUMBERS = _N_ROWS * len(SIN_FIRST)
 _MOST_BYTES = 10**7
 _MOST_MM = 1e5

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.mat import read_mat_arrays
 from eigenwalker.io.walker_tables import (
-    BML_MARKERS,
     BML_RATE_HZ,
     SIN_FIRST,
     on_the_floor,
@@ -109,7 +109,7 @@ def _plausible(arrays: dict[str, np.ndarray], name: str, path: Path) -> np.ndarr
 def read_mm(
     path: str | os.PathLike[str],
     *,
-    markers: Sequence[str] = BML_MARKERS,
+    markers: Sequence[str] = JOINTS.markers,
     rate_hz: float = BML_RATE_HZ,
 ) -> dict[str, Walker]:
     """Return all walkers that a MATLAB file holds in the BML's mm format.

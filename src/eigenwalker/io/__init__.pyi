@@ -10,9 +10,12 @@ from .read import is_capture as is_capture, read_mocap as read_mocap
 from .readers.mat import read_mat as read_mat
 from .up_axis_and_unit import UnitGuessed as UnitGuessed
 from .walker_tables import (
+    COS_FIRST as COS_FIRST,
+    SIN_FIRST as SIN_FIRST,
     walker_from_mm as walker_from_mm,
     walker_from_table as walker_from_table,
     walker_to_mm as walker_to_mm,
     walker_to_table as walker_to_table,
 )
 from .write import write_mocap as write_mocap
+from .writers.bvh import constant_bones as constant_bones

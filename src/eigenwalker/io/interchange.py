@@ -1,6 +1,6 @@
 """Trajectories to and from other packages that keep them in xarray: ``movement`` and ``pyomeca``.
 
-Neither needs to be installed: their layouts are what xarray holds.
+Neither needs to be installed, as both use plain xarray objects.
 """
 
 from __future__ import annotations
@@ -25,21 +25,25 @@ _INDIVIDUALS = ("individuals", "individual")
 _MARKERS = ("axis", "channel", "time")
 
 
-def to_movement(walk: xr.DataArray, *, individual: str = "walker") -> xr.Dataset:
+def to_movement(trajectories: xr.DataArray, *, individual: str = "walker") -> xr.Dataset:
     """Return trajectories as a poses dataset of the package ``movement``.
 
     Parameters
     ----------
-    walk : DataArray of shape (time, marker, axis)
-        Trajectories in millimetres. A coordinate ``confidence`` (time, marker) is handed on.
+    trajectories : DataArray of shape (time, marker, axis)
+        Trajectories in millimetres. Their coordinate ``confidence`` (time, marker) is kept.
     individual : str
-        What to call the walker.
+        Name of the walker.
 
     Returns
     -------
     Dataset
         ``position`` (time, space, keypoints, individuals), still in millimetres, z up, which
         ``position.attrs["units"]`` says; ``confidence``, NaN where not known.
+
+    See Also
+    --------
+    from_movement, to_pyomeca
 
     Examples
     --------
@@ -49,7 +53,7 @@ def to_movement(walk: xr.DataArray, *, individual: str = "walker") -> xr.Dataset
     ({'time': 3, 'space': 3, 'keypoints': 2, 'individuals': 1}, 50.0)
 
     """
-    walk = check_trajectories(walk)
+    walk = check_trajectories(trajectories)
     confidence = np.full(walk.shape[:2], np.nan)
     if "confidence" in walk.coords:
         confidence = walk.coords["confidence"].transpose("time", "marker").values
@@ -91,7 +95,7 @@ def from_movement(
     poses : Dataset
         With ``position`` (time, space, keypoints, individuals) in three dimensions.
     individual : str, optional
-        Whom to take, if there are several.
+        The individual to take, if there are several.
     unit : {"um", "mm", "cm", "dm", "m", "in", "ft"}, optional
         Unit of the positions, unless ``position.attrs["units"]`` names it.
     up : {"x", "y", "z", "-x", "-y", "-z"}
@@ -107,7 +111,11 @@ def from_movement(
     Raises
     ------
     TypeError, ValueError
-        If it is anything else, or leaves person, unit or rate open.
+        If it is anything else, or person, unit or rate are unknown.
+
+    See Also
+    --------
+    to_movement, from_pyomeca
 
     Examples
     --------
@@ -142,12 +150,12 @@ def from_movement(
     return walk
 
 
-def to_pyomeca(walk: xr.DataArray) -> xr.DataArray:
+def to_pyomeca(trajectories: xr.DataArray) -> xr.DataArray:
     """Return trajectories as ``pyomeca.Markers``.
 
     Parameters
     ----------
-    walk : DataArray of shape (time, marker, axis)
+    trajectories : DataArray of shape (time, marker, axis)
         Trajectories in millimetres.
 
     Returns
@@ -155,6 +163,10 @@ def to_pyomeca(walk: xr.DataArray) -> xr.DataArray:
     DataArray of shape (axis, channel, time)
         Homogeneous coordinates (x, y, z, ones), in millimetres, z up; attributes ``rate``,
         ``units``, ``first_frame`` and ``last_frame``, counted from 0.
+
+    See Also
+    --------
+    from_pyomeca, to_movement
 
     Examples
     --------
@@ -164,7 +176,7 @@ def to_pyomeca(walk: xr.DataArray) -> xr.DataArray:
     (('axis', 'channel', 'time'), (4, 2, 3), 50.0)
 
     """
-    walk = check_trajectories(walk)
+    walk = check_trajectories(trajectories)
     rate_hz = round(sampling_rate(walk), 9)
     first = round(float(walk.time.values[0]) * rate_hz)
     positions = walk.values.transpose(2, 1, 0)
@@ -214,7 +226,11 @@ def from_pyomeca(
     Raises
     ------
     TypeError, ValueError
-        If it is anything else, or leaves unit or rate open.
+        If it is anything else, or unit or rate are unknown.
+
+    See Also
+    --------
+    to_pyomeca, from_movement
 
     Examples
     --------

@@ -31,6 +31,7 @@ from eigenwalker.io.readers.unmarked_table import (
 )
 from eigenwalker.io.readers.vicon_csv import looks_like_vicon_csv, read_vicon_csv
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
+from eigenwalker.markers.marker_sets import subjects
 
 BEGINNING = 100_000
 """Bytes of a file from which it is decided whether it is meant as a capture."""
@@ -94,6 +95,7 @@ def read_mocap(
     default_unit: str | None = None,
     default_rate_hz: float | None = None,
     partial: Literal["refuse", "keep"] = "refuse",
+    subject: str | None = None,
 ) -> xr.DataArray:
     """Return what a file of motion capture holds as trajectories, as captured.
 
@@ -118,6 +120,8 @@ def read_mocap(
         What to do with a file that declares more frames than it has (BVH, C3D, TRC, STO, Qualisys
         TSV, tables with a number of frames in the first line): refuse it, or take its whole frames.
         ``attrs["n_frames_cut"]`` is then the number of frames that are missing at the end.
+    subject : str, optional
+        The person to take from a capture of several (``"Anna"`` for ``Anna:LKNE``).
 
     Returns
     -------
@@ -164,8 +168,23 @@ def read_mocap(
     )
     for reader in READERS:
         if reader.looks_like(content):
-            return reader.read(file)
+            trajectories = reader.read(file)
+            return trajectories if subject is None else _of_subject(trajectories, subject)
     raise _unknown_file(file)
+
+
+def _of_subject(trajectories: xr.DataArray, subject: str) -> xr.DataArray:
+    """Return the markers of one subject, without its name before theirs."""
+    if trajectories.attrs.get("subject") == subject:
+        return trajectories
+    names = [str(name) for name in trajectories.marker.values]
+    own = [i for i, name in enumerate(names) if name.rpartition(":")[0] == subject]
+    if not own:
+        known = subjects(names) or [trajectories.attrs.get("subject", "")]
+        raise ValueError(f"subject={subject!r} is not in the capture; give one of {known}.")
+    markers = [names[i].rpartition(":")[2] for i in own]
+    chosen = trajectories.isel(marker=own).assign_coords(marker=markers)
+    return chosen.assign_attrs(subject=subject)
 
 
 def _checked_unit(argument: str, unit: str | None) -> Unit | None:

@@ -1,8 +1,8 @@
-"""Walkers as tables of Fourier coefficients, in the layouts of other programs (A3, A25).
+"""Walkers as tables of Fourier coefficients, in the layouts of other programs.
 
 A table has a row for each coordinate of each marker and a column for the mean posture and for each
-sine and cosine. Programs differ in which of sine and cosine comes first. To take one for the other
-is not harmless: it plays each harmonic backwards, and shifts them differently.
+sine and cosine. Programs differ in which of sine and cosine comes first. The wrong
+order plays each harmonic backwards, and shifts each differently.
 """
 
 from __future__ import annotations
@@ -24,17 +24,7 @@ SIN_FIRST = ("mean", "sin1", "cos1", "sin2", "cos2")
 COS_FIRST = ("mean", "cos1", "sin1", "cos2", "sin2")
 """The order of the BML's mm format (PsychBench), and of the text of Moler's article."""
 BML_RATE_HZ = 120.0
-"""Frames a second in which periods and speeds of the BML are told."""
-BML_MARKERS = (
-    "head",
-    "sternum",
-    *("left_shoulder", "left_elbow", "left_wrist"),
-    *("right_shoulder", "right_elbow", "right_wrist"),
-    "pelvis",
-    *("left_hip", "left_knee", "left_ankle"),
-    *("right_hip", "right_knee", "right_ankle"),
-)
-"""The 15 points of the BML, in its order; it calls some of them neck, hand and foot."""
+"""Frames a second that are the unit of periods and speeds of the BML."""
 
 
 def walker_from_table(
@@ -74,6 +64,14 @@ def walker_from_table(
     ------
     ValueError
         If shape, names and directions do not fit each other.
+
+    See Also
+    --------
+    walker_to_table, walker_from_mm
+
+    References
+    ----------
+    Moler (2016), walker.m: five columns, mean, sine and cosine of two harmonics.
 
     Examples
     --------
@@ -141,6 +139,10 @@ def walker_to_table(
     ValueError
         If the table has no place for a harmonic of the walker, or a marker is not there.
 
+    See Also
+    --------
+    walker_from_table, walker_to_mm
+
     Examples
     --------
     >>> walker = Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
@@ -169,7 +171,7 @@ def walker_to_table(
 def walker_from_mm(
     matrix: ArrayLike,
     *,
-    markers: Sequence[str] = BML_MARKERS,
+    markers: Sequence[str] = JOINTS.markers,
     rate_hz: float = BML_RATE_HZ,
 ) -> Walker:
     """Return the walker of a matrix in the BML's mm ("motion model") format, as PsychBench has it.
@@ -189,6 +191,10 @@ def walker_from_mm(
     -------
     Walker
 
+    See Also
+    --------
+    walker_to_mm, walker_from_table
+
     Examples
     --------
     >>> swing = np.array([[0, 0, 200], [0, 0, 0], [50, 0, 0], [120, 1, 10]])
@@ -206,14 +212,11 @@ def walker_from_mm(
     period, _, speed = values[-1, :3]
     if not 0.01 < period < np.inf:
         raise ValueError(f"Expected the period in frames in the last row, got {period:g}.")
-    columns = ["mean"] + [f"{of}{h + 1}" for h in range(values.shape[1] // 2) for of in _COS_SIN]
+    columns = _columns(values.shape[1] // 2, ("cos", "sin"))
     walker = walker_from_table(
         values[:-1], frequency_hz=rate_hz / period, markers=markers, columns=columns
     )
     return replace(walker, speed_mm_s=speed * rate_hz)
-
-
-_COS_SIN = ("cos", "sin")
 
 
 def walker_to_mm(
@@ -228,24 +231,28 @@ def walker_to_mm(
     markers : sequence of str, optional
         Order of the markers; for the 15 joints that of the BML if left out, else the walker's.
     rate_hz : float
-        Frames a second in which period and speed are told.
+        Frames a second that are the unit of period and speed.
 
     Returns
     -------
     array of shape (3 * marker + 1, 1 + 2 * harmonic)
 
+    See Also
+    --------
+    walker_from_mm, walker_to_table
+
     """
-    if markers is None and set(walker.markers) == set(BML_MARKERS):
-        markers = BML_MARKERS
+    if markers is None and set(walker.markers) == set(JOINTS.markers):
+        markers = JOINTS.markers
     n_harmonics = int(walker.harmonics.max(initial=1))
-    columns = ["mean"] + [f"{of}{h + 1}" for h in range(n_harmonics) for of in _COS_SIN]
+    columns = _columns(n_harmonics, ("cos", "sin"))
     last = np.zeros(len(columns))
     last[:3] = rate_hz / walker.frequency_hz, 1, np.nan_to_num(walker.speed_mm_s) / rate_hz
     return np.vstack([walker_to_table(walker, markers=markers, columns=columns), last])
 
 
 def on_the_floor(walker: Walker) -> Walker:
-    """Return a walker moved so that the origin is on the floor below its pelvis (A15).
+    """Return a walker moved so that the origin is on the floor below its pelvis.
 
     Its speed is that of its feet on the ground, if it is not known.
     """
@@ -257,13 +264,17 @@ def on_the_floor(walker: Walker) -> Walker:
 def _column_places(columns: Sequence[str]) -> dict[str, int]:
     """Return where the columns are, in the order mean, sin1, cos1, sin2 ..."""
     n_harmonics = len(columns) // 2
-    names = ["mean"] + [f"{of}{h + 1}" for h in range(n_harmonics) for of in ("sin", "cos")]
+    names = _columns(n_harmonics, ("sin", "cos"))
     if sorted(columns) != sorted(names) or not n_harmonics:
         raise ValueError(
             f"columns={tuple(columns)} are no Fourier series; give 'mean' and 'sin1', 'cos1', "
             "'sin2' ..., both of each harmonic, in the order of the table."
         )
     return {name: list(columns).index(name) for name in names}
+
+
+def _columns(n_harmonics: int, order: tuple[str, str]) -> list[str]:
+    return ["mean"] + [f"{part}{h + 1}" for h in range(n_harmonics) for part in order]
 
 
 def _joints_in_order(walker: Walker) -> Walker:

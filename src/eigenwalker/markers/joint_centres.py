@@ -17,27 +17,16 @@ MARKER_RADIUS_MM = 7.0
 
 @dataclass(frozen=True)
 class Pelvis:
-    """Axes and size of the pelvis in each frame.
-
-    Parameters
-    ----------
-    origin : array of shape (time, 3)
-        Midpoint of the front iliac spines.
-    axes : array of shape (time, 3, 3)
-        Rows forward, left and up.
-    width_mm, depth_mm : float
-        Distance of the front iliac spines, and of their midpoint to that of the back ones.
-    """
+    """Axes and size of the pelvis in each frame."""
 
     origin: np.ndarray
+    """Midpoint of the front iliac spines, shape (time, 3)."""
     axes: np.ndarray
+    """Directions forward, left and up in rows, shape (time, 3, 3)."""
     width_mm: float
+    """Distance of the front iliac spines."""
     depth_mm: float
-
-    @property
-    def left(self) -> np.ndarray:
-        """Direction to the left, array of shape (time, 3)."""
-        return self.axes[:, 1]
+    """Distance of their midpoint to that of the back ones."""
 
     def place(self, forward: float, left: float, up: float) -> np.ndarray:
         """Return a point that is fixed in the pelvis, array of shape (time, 3)."""
@@ -47,20 +36,7 @@ class Pelvis:
 def pelvis_from_spines(left: np.ndarray, right: np.ndarray, back: np.ndarray) -> Pelvis:
     """Return the pelvis from its front iliac spines and the midpoint of the back ones (or sacrum).
 
-    Parameters
-    ----------
-    left, right, back : array of shape (time, 3)
-        Millimetres; NaN where missing.
-
-    Examples
-    --------
-    >>> point = lambda *xyz: np.array([xyz], dtype=float)
-    >>> pelvis = pelvis_from_spines(point(0, 120, 1000), point(0, -120, 1000), point(-150, 0, 1000))
-    >>> pelvis.width_mm, pelvis.depth_mm
-    (240.0, 150.0)
-    >>> pelvis.place(-50, 80, -90).tolist()
-    [[-50.0, 80.0, 910.0]]
-
+    Arrays of shape (time, 3), in mm; NaN where missing.
     """
     origin = (left + right) / 2
     leftward = unit(left - right)
@@ -72,10 +48,7 @@ def pelvis_from_spines(left: np.ndarray, right: np.ndarray, back: np.ndarray) ->
 def harrington(pelvis: Pelvis, _leg_length_mm: float) -> tuple[float, float, float]:
     """Return the hip centre by Harrington et al. (2007), J Biomech 40:595, table 4.
 
-    Returns
-    -------
-    tuple of three floats
-        Millimetres forward of, outwards from and above the midpoint of the front iliac spines.
+    Millimetres forward of, outwards from and above the midpoint of the front iliac spines.
     """
     return (
         -0.24 * pelvis.depth_mm - 9.9,
@@ -116,25 +89,6 @@ def chord(
     It lies `offset_mm` from the marker on the skin, in the plane of the proximal joint, the marker
     and the direction `outward`, inwards of the marker, so that the segment stands at a right angle
     on the line from centre to marker.
-
-    Parameters
-    ----------
-    proximal : array of shape (time, 3)
-        Centre of the joint above.
-    marker : array of shape (time, 3)
-        Marker at the side of the joint.
-    outward : array of shape (time, 3)
-        A direction towards the side on which the marker sits.
-    offset_mm : float
-        Half the width of the joint and the radius of the marker.
-
-    Examples
-    --------
-    >>> at = lambda *xyz: np.array([xyz], dtype=float)
-    >>> knee = chord(at(0, 0, 400), at(0, 50, 0), at(0, 1, 0), 50)
-    >>> np.abs(knee.round(9)).tolist()
-    [[0.0, 0.0, 0.0]]
-
     """
     segment = marker - proximal
     length = np.linalg.norm(segment, axis=1, keepdims=True)
@@ -158,14 +112,7 @@ def across(vectors: np.ndarray, axes: np.ndarray) -> np.ndarray:
 
 
 def bridged(vectors: np.ndarray) -> np.ndarray:
-    """Return slowly changing vectors with missing frames interpolated, and held at the ends.
-
-    Examples
-    --------
-    >>> bridged(np.array([[0, 0, 1.0], [np.nan] * 3, [0, 0, 3.0]]))[1].tolist()
-    [0.0, 0.0, 2.0]
-
-    """
+    """Return slowly changing vectors with missing frames interpolated, and held at the ends."""
     missing = np.isnan(vectors)
     if not missing.any():
         return vectors

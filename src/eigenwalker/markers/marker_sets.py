@@ -1,4 +1,4 @@
-"""What markers are called: the sets that are known, and how their names are found in a capture."""
+"""Names of markers: the known marker sets, and how their markers are found in a capture."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from importlib.resources import files
 from typing import NamedTuple
 
 SIDES = ("left", "right")
-COMMON = 0.6
-"""Share of the names that must begin alike for the beginning to be the name of a subject."""
-MOST_STARTS = 20
-"""So many beginnings are taken off, as in ``Study_03_Anna_LKNE``."""
-LONGEST = 200
-"""Letters of a name that count."""
+MIN_COMMON = 0.6
+"""Share of the names that must begin alike for their prefix to be the name of a subject."""
+MAX_PREFIXES = 20
+"""Prefixes that are taken off a name, as in ``Study_03_Anna_LKNE``."""
+MAX_LENGTH = 200
+"""Letters of a name that are used."""
 
 _SIDE_AND_PART = (
     re.compile(r"(?P<side>left|right)[ _.-]*(?P<part>.+)", re.IGNORECASE),
@@ -32,7 +32,11 @@ _SIDE_AND_PART = (
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """A marker set or skeleton: which markers give each landmark, joint and extra point."""
+    """A marker set or skeleton: which markers give each landmark, joint and extra point.
+
+    An entry names markers in the spelling of ``marker_sets.toml``: ``{left}KNEE | {left}KNE`` are
+    alternatives, ``{left}WRA + {left}WRB`` are two whose midpoint is meant, ``~`` marks a stand-in.
+    """
 
     name: str
     landmarks: Mapping[str, str]
@@ -40,19 +44,19 @@ class MarkerSet:
     extras: Mapping[str, str]
 
     def share_found(self, names: MarkerNames) -> float:
-        """Return for which share of what the set asks for the capture has markers.
+        """Return the share of the points of the set for which the capture has markers.
 
-        Of a set on the skin, inner markers and joint centres are left out, as most captures do
-        without them, and a sacrum where the back of the pelvis has markers of its own.
+        Of a set on the skin, inner markers and joint centres do not count, as most captures lack
+        them, nor does a sacrum where the back of the pelvis has markers of its own.
         """
-        asked = {**self.joints, **self.landmarks, **self.extras}
-        found = {name for name, entry in asked.items() if names.find(entry)}
-        wanted = {name for name in asked if not name.endswith("_inner")}
+        entries = {**self.joints, **self.landmarks, **self.extras}
+        present = {name for name, entry in entries.items() if names.find(entry)}
+        expected = {name for name in entries if not name.endswith("_inner")}
         if self.landmarks:
-            wanted -= set(self.joints) - {"head", "left_wrist", "right_wrist"} - set(self.landmarks)
+            expected -= set(self.joints) - {"head", "left_wrist", "right_wrist", *self.landmarks}
         backs = {f"{side}_back_waist" for side in SIDES}
-        wanted -= {"sacrum"} if backs <= found else backs if "sacrum" in found else set()
-        return len(wanted & found) / len(wanted)
+        expected -= {"sacrum"} if backs <= present else backs if "sacrum" in present else set()
+        return len(expected & present) / len(expected)
 
 
 @cache
@@ -60,12 +64,6 @@ def known_sets() -> tuple[MarkerSet, ...]:
     """Return the marker sets of ``marker_sets.toml``, in the order in which they are tried.
 
     The last is made of all sets on the skin, for captures that mix them.
-
-    Examples
-    --------
-    >>> known_sets()[1].landmarks["right_thigh"]
-    '{right}THI | {right}THIGH | {right}THL'
-
     """
     text = files("eigenwalker.markers").joinpath("marker_sets.toml").read_text(encoding="utf-8")
     sets = [
@@ -107,11 +105,10 @@ def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
     return expanded
 
 
-class Found(NamedTuple):
-    """Markers of a capture whose midpoint is what was asked for, and whether as a stand-in.
+class MarkerMatch(NamedTuple):
+    """Markers of a capture whose midpoint a point of a set is, and whether it is a stand-in.
 
-    ``lacking`` are markers that the capture would need to have it in a better way, for which it
-    has others already.
+    `lacking` are the markers of a better alternative that the capture has only in part.
     """
 
     markers: tuple[str, ...]
@@ -120,39 +117,22 @@ class Found(NamedTuple):
 
 
 class MarkerNames:
-    """The marker names of a capture, to be asked in the spelling of a marker set.
-
-    Parameters
-    ----------
-    names : sequence of str
-        As they stand in the capture.
-
-    Examples
-    --------
-    >>> names = MarkerNames(["Anna:LKNE", "Anna:LWRA", "Anna:LWRB"])
-    >>> names.find("{left}KNEE | {left}KNE").markers
-    ('Anna:LKNE',)
-    >>> names.find("{left}WRA + {left}WRB").markers
-    ('Anna:LWRA', 'Anna:LWRB')
-    >>> MarkerNames(["mixamorig:LeftUpLeg", "thigh.R"]).find("{right}UpLeg | ~ {right}Thigh")
-    Found(markers=('thigh.R',), stand_in=True, lacking=())
-
-    """
+    """The marker names of a capture, searched by the entries of a marker set."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._known: dict[str, str] = {}
-        for name, own in zip(names, _without_common_start(names), strict=True):
+        for name, own in zip(names, _without_common_prefix(names), strict=True):
             for key in (_plain(own), *_side_first(own), *_of_midline(own)):
                 self._known.setdefault(key, name)
-        self._found: dict[str, Found | None] = {}
+        self._matches: dict[str, MarkerMatch | None] = {}
 
-    def find(self, entry: str) -> Found | None:
+    def find(self, entry: str) -> MarkerMatch | None:
         """Return the markers of the first alternative of an entry that the capture has in full."""
-        if entry not in self._found:
-            self._found[entry] = self._looked_for(entry)
-        return self._found[entry]
+        if entry not in self._matches:
+            self._matches[entry] = self._search(entry)
+        return self._matches[entry]
 
-    def _looked_for(self, entry: str) -> Found | None:
+    def _search(self, entry: str) -> MarkerMatch | None:
         lacking: tuple[str, ...] = ()
         for alternative in entry.split("|"):
             words = [word.strip() for word in alternative.strip().removeprefix("~").split("+")]
@@ -160,7 +140,7 @@ class MarkerNames:
             markers = tuple(hit for hit in hits if hit)
             if len(markers) == len(words):
                 stand_in = alternative.strip().startswith("~")
-                return Found(markers, stand_in, lacking)
+                return MarkerMatch(markers, stand_in, lacking)
             if markers and not lacking:
                 lacking = tuple(
                     _spelled(word) for word, hit in zip(words, hits, strict=True) if not hit
@@ -180,88 +160,60 @@ class MarkerNames:
 
 @lru_cache(maxsize=8)
 def marker_names(names: tuple[str, ...]) -> MarkerNames:
-    """Return the names of a capture, to be asked; captures of one study share what was found."""
+    """Return the searchable names of a capture; captures of one study share the cache."""
     return MarkerNames(names)
 
 
 def _spelled(word: str) -> str:
-    """Return a word of a marker set as captures spell it: ``LKNE`` for ``{left}KNE``."""
+    """Return a word of a marker set in the spelling of captures: ``LKNE`` for ``{left}KNE``."""
     for side in SIDES:
         word = word.replace(f"{{{side}}}", side[0].upper())
     return word
 
 
 def subjects(names: Sequence[str]) -> list[str]:
-    """Return the subjects that stand before the names, as in ``Anna:LKNE``.
-
-    Examples
-    --------
-    >>> subjects(["Anna:LKNE", "Ben:LKNE", "floor"])
-    ['Anna', 'Ben']
-
-    """
+    """Return the subjects before the names, such as Anna in ``Anna:LKNE``, sorted."""
     return sorted({name.rpartition(":")[0] for name in names} - {""})
 
 
 def side_pairs(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the markers that are called alike but for their side, the left one first.
-
-    Examples
-    --------
-    >>> side_pairs(["LASI", "RASI", "C7", "Knee_R", "Knee_L", "left_hip", "right_hip"])
-    [('LASI', 'RASI'), ('Knee_L', 'Knee_R'), ('left_hip', 'right_hip')]
-
-    """
+    """Return the pairs of markers whose names differ only in their side, the left one first."""
     return list(_side_pairs(tuple(names)))
 
 
 @lru_cache(maxsize=8)
 def _side_pairs(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
     sides: dict[str, dict[str, str]] = {}
-    for name, own in zip(names, _without_common_start(names), strict=True):
+    for name, own in zip(names, _without_common_prefix(names), strict=True):
         keys = _side_first(own)
         if own[:1] in ("l", "r"):
             keys.append(f"{'left' if own[0] == 'l' else 'right'}|{_plain(own[1:])}")
         for side, _, part in (key.partition("|") for key in keys):
             sides.setdefault(part, {}).setdefault(side, name)
-    pairs = [(found["left"], found["right"]) for found in sides.values() if len(found) == 2]
+    pairs = [(pair["left"], pair["right"]) for pair in sides.values() if len(pair) == 2]
     return tuple(dict.fromkeys(pairs))
 
 
 def numbered(names: Sequence[str]) -> list[str]:
-    """Return the names, numbered from the second of the same name on.
+    """Return the names, numbered from the second of the same name on: ``hand``, ``hand_2``.
 
-    Of names that no person gave, the first `LONGEST` letters stay: arrays of names take for each
-    the room of the longest.
-
-    Examples
-    --------
-    >>> numbered(["head", "hand", "hand"])
-    ['head', 'hand', 'hand_2']
-
+    Names are cut to `MAX_LENGTH` letters, as arrays of names take for each the room of the longest.
     """
     taken: dict[str, int] = {}
-    unlike: list[str] = []
+    different: list[str] = []
     for whole in names:
-        new = name = whole[:LONGEST]
+        new = name = whole[:MAX_LENGTH]
         while new in taken:
             taken[name] += 1
             new = f"{name}_{taken[name]}"
         taken[new] = 1
-        unlike.append(new)
-    return unlike
+        different.append(new)
+    return different
 
 
 def repeated(names: Sequence[str]) -> list[str]:
-    """Return the names that come more than once.
-
-    Examples
-    --------
-    >>> repeated(["head", "hand", "hand"])
-    ['hand']
-
-    """
-    return [name[:LONGEST] for name, count in Counter(names).items() if count > 1]
+    """Return the names that occur more than once."""
+    return [name[:MAX_LENGTH] for name, count in Counter(names).items() if count > 1]
 
 
 def _plain(name: str) -> str:
@@ -281,14 +233,14 @@ def _of_midline(name: str) -> list[str]:
     return [_plain(hit[1])] if hit else []
 
 
-def _without_common_start(names: Sequence[str]) -> list[str]:
-    """Return the names without the subject or character that stands before most of them."""
+def _without_common_prefix(names: Sequence[str]) -> list[str]:
+    """Return the names without the subject or character before most of them."""
     sides = {"l", "r", *SIDES}
-    names = [re.split(r"[:|]", name)[-1].strip()[-LONGEST:] for name in names]
-    for _ in range(MOST_STARTS):
+    names = [re.split(r"[:|]", name)[-1].strip()[-MAX_LENGTH:] for name in names]
+    for _ in range(MAX_PREFIXES):
         hits = (re.match(r"[^ _.-]+[ _.-]+(?=.)", name) for name in names)
         start, count = next(iter(Counter(hit[0] for hit in hits if hit).most_common(1)), ("", 0))
-        if count < COMMON * len(names) or start.rstrip(" _.-").lower() in sides or not start:
+        if count < MIN_COMMON * len(names) or start.rstrip(" _.-").lower() in sides or not start:
             break
         names = [name.removeprefix(start) for name in names]
     return names

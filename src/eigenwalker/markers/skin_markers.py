@@ -25,7 +25,7 @@ Points = dict[str, np.ndarray]
 """Points by name, each an array of shape (time, 3) in millimetres."""
 
 WIDTH_OF_LEG = {"knee": 0.112, "ankle": 0.080, "elbow": 0.076}
-"""Widths of joints as shares of the leg, where nobody measured them (after ANSUR II, 2014)."""
+"""Widths of joints as shares of the leg, where they were not measured (after ANSUR II, 2014)."""
 SHOULDER_OF_LEG = (0.043, 0.027)
 """How far the shoulder centre is below and inwards of the acromion, as shares of the leg."""
 SHOULDERS_TO_STERNUM = 0.15
@@ -43,14 +43,9 @@ LEG_MM = 880.0
 
 @dataclass(frozen=True)
 class Measures:
-    """What is known of the person: a hip regression to trust, and measured lengths.
+    """The hip regression to use, and lengths that were measured on the person.
 
-    Parameters
-    ----------
-    hip_regression : str
-        A key of `HIP_REGRESSIONS`.
-    lengths_mm : mapping of str to float
-        ``"left_knee_width"``, ``"left_leg_length"`` and so on.
+    Lengths have names such as ``"left_knee_width"`` or ``"left_leg_length"``.
     """
 
     hip_regression: str
@@ -58,32 +53,18 @@ class Measures:
 
 
 def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str], list[str]]:
-    """Return the joints that markers on the skin give, and how sure they are.
+    """Return the joints that markers on the skin give, which are approximate, and what is rebuilt.
 
-    Parameters
-    ----------
-    skin : mapping of str to array of shape (time, 3)
-        Landmarks by the names of ``marker_sets.toml``, and joints that are known otherwise
-        (wrists).
-    measures : Measures
-        What is known of the person.
-
-    Returns
-    -------
-    joints : dict of str to array of shape (time, 3)
-        Only those for which there are markers.
-    approximate : set of str
-        Those that rest on a regression, an assumed width or a stand-in.
-    rebuilt : list of str
-        What stands for markers that were never seen, in words.
-
+    `skin` has landmarks by the names of ``marker_sets.toml``, and joints that are known otherwise
+    (wrists). Approximate are joints that rest on a regression, an assumed width or a stand-in.
+    Rebuilt is what stands for markers that were never seen, in words.
     """
     body = _Body(dict(skin), measures)
     pelvis = body.pelvis()
     if pelvis is not None:
         body.trunk()
         body.hips(pelvis)
-        for side, outward in (("left", pelvis.left), ("right", -pelvis.left)):
+        for side, outward in (("left", pelvis.axes[:, 1]), ("right", -pelvis.axes[:, 1])):
             body.leg(side, outward)
             body.arm(side, outward)
     return body.joints, body.approximate, body.rebuilt
@@ -274,14 +255,6 @@ def midpoint(points: Sequence[np.ndarray]) -> np.ndarray:
 
     Of two, a missing one stands to the other as before and after; of more, it is put where the
     others say.
-
-    Examples
-    --------
-    >>> inner = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]])
-    >>> outer = np.array([[0, 100.0, 0], [np.nan] * 3, [2, 100, 0]])
-    >>> midpoint([inner, outer])[1].tolist()
-    [1.0, 50.0, 0.0]
-
     """
     if not any(np.isnan(point).any() for point in points):
         return sum(points[1:], points[0]) / len(points)
@@ -300,17 +273,6 @@ def filled_cluster(points: Sequence[np.ndarray]) -> list[np.ndarray]:
 
     Each frame is compared with the nearest one in which all are seen. Two markers are enough if
     they are far apart; the part is then turned as little as they allow.
-
-    Parameters
-    ----------
-    points : sequence of arrays of shape (time, 3)
-        Three or more; NaN where missing.
-
-    Returns
-    -------
-    list of arrays of shape (time, 3)
-        Unchanged where too few markers are seen.
-
     """
     if len(points) < 3 or not any(np.isnan(point).any() for point in points):
         return list(points)
