@@ -7,11 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eigenwalker.analysis.classification import INPUTS, N_PANELS, classify, regress
-from eigenwalker.analysis.jackknife import jackknife_curves
-from eigenwalker.analysis.validation import nested_regression, regression_permutation_test
-from eigenwalker.population.population import Population
-from eigenwalker.simulation.people import simulate_population
+from eigenwalker.analysis import (
+    INPUTS,
+    N_PANELS,
+    classify,
+    jackknife_curves,
+    nested_regression,
+    regress,
+    regression_permutation_test,
+)
+from eigenwalker.population import Population
+from eigenwalker.simulation import simulate_population
 
 
 def planted(part: str, shift: float, seed: int = 0) -> Population:

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.analysis.contrast import trait_contrast
+from eigenwalker.analysis import trait_contrast
 from eigenwalker.population.population import FLAG, Population
-from eigenwalker.simulation.people import simulate_population
+from eigenwalker.simulation import simulate_population
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.analysis.direction import direction, position_in_space
-from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis import (
+    DiscriminantClassifier,
+    DiscriminantRegressor,
+    WalkerSpace,
+    direction,
+    position_in_space,
+)
 
 N_MEN = 14
 SEX = np.repeat(["female", "male"], [40 - N_MEN, N_MEN])
@@ -36,14 +40,14 @@ def class_sums() -> np.ndarray:
 
 @pytest.mark.parametrize("kind", ["discriminant", "mean_difference"])
 def test_one_step_is_one_standard_deviation_of_the_walkers(kind):
-    step = direction(SPACE, SEXES, kind)
+    step = direction(SPACE, SEXES, kind=kind)
     moved = sums(SPACE.average_walker_ + 6 * step) - sums(SPACE.average_walker_)
     assert moved[0] == pytest.approx(6 * sums(WALKERS).std(ddof=1))
 
 
 @pytest.mark.parametrize("kind", ["discriminant", "mean_difference"])
 def test_a_step_makes_any_walker_more_male_by_as_much(kind):
-    step = direction(SPACE, SEXES, kind)
+    step = direction(SPACE, SEXES, kind=kind)
     np.testing.assert_allclose(
         sums(WALKERS + 2 * step) - sums(WALKERS), 2 * SEXES.spread_, rtol=1e-9
     )
@@ -51,7 +55,7 @@ def test_a_step_makes_any_walker_more_male_by_as_much(kind):
 
 @pytest.mark.parametrize("kind", ["discriminant", "mean_difference"])
 def test_two_steps_of_class_means_lead_from_one_class_to_the_other(kind):
-    step = direction(SPACE, SEXES, kind, units="classmean")
+    step = direction(SPACE, SEXES, kind=kind, units="classmean")
     moved = sums(SPACE.average_walker_ + 2 * step) - sums(SPACE.average_walker_)
     assert moved[0] == pytest.approx(np.diff(class_sums())[0])
 
@@ -77,10 +81,14 @@ def test_the_pattern_is_the_difference_of_class_means(n_components):
     within_kept = difference[kept] @ SPACE.eigenwalkers_[kept]
     factor = 2 * N_MEN * (40 - N_MEN) / (40 * 39)
     np.testing.assert_allclose(
-        direction(SPACE, sexes, "mean_difference", units="raw"), factor * within_kept, atol=1e-9
+        direction(SPACE, sexes, kind="mean_difference", units="raw"),
+        factor * within_kept,
+        atol=1e-9,
     )
     np.testing.assert_allclose(
-        direction(SPACE, sexes, "mean_difference", units="classmean"), within_kept / 2, atol=1e-9
+        direction(SPACE, sexes, kind="mean_difference", units="classmean"),
+        within_kept / 2,
+        atol=1e-9,
     )
 
 
@@ -88,7 +96,7 @@ def test_with_all_components_the_pattern_leads_from_the_mean_woman_to_the_mean_m
     """Moler's (M - F) / 2."""
     sexes = DiscriminantClassifier().fit(SCORES, SEX)
     men, women = (WALKERS[sex == SEX].mean(axis=0) for sex in ("male", "female"))
-    step = direction(SPACE, sexes, "mean_difference", units="classmean")
+    step = direction(SPACE, sexes, kind="mean_difference", units="classmean")
     np.testing.assert_allclose(step, (men - women) / 2, atol=1e-9)
 
 
@@ -101,7 +109,7 @@ def test_a_planted_difference_shows_in_the_pattern_rather_than_in_the_filter():
         walkers = latent + 0.2 * rng.normal(size=(4000, 50)) + 0.8 * r[:, None] * SHIFT
         space = WalkerSpace(scale=None).fit(walkers)
         sexes = DiscriminantClassifier().fit(space.transform(walkers), r)
-        step = direction(space, sexes, kind)
+        step = direction(space, sexes, kind=kind)
         return step @ SHIFT / np.linalg.norm(step) / np.linalg.norm(SHIFT)
 
     assert likeness("mean_difference") > 0.99
@@ -119,7 +127,7 @@ def test_swapping_the_classes_turns_the_direction_round():
 def test_a_continuous_trait_has_a_direction_too(kind):
     weight = 70 + WALKERS @ np.linspace(-1, 1, 50)
     heavy = DiscriminantRegressor(n_components=5).fit(SCORES, weight)
-    step = direction(SPACE, heavy, kind)
+    step = direction(SPACE, heavy, kind=kind)
     heavier = heavy.predict(SPACE.transform((SPACE.average_walker_ + 3 * step)[None]))[0]
     assert heavier - weight.mean() == pytest.approx(3 * heavy.predict(SCORES).std(ddof=1))
 
@@ -128,7 +136,7 @@ def test_what_gives_no_direction_is_refused_with_the_reason():
     with pytest.raises(ValueError, match="has 39 eigenwalkers"):
         direction(SPACE, DiscriminantClassifier().fit(SCORES[:, :5], SEX))
     with pytest.raises(ValueError, match="kind='normal' is unknown"):
-        direction(SPACE, SEXES, "normal")
+        direction(SPACE, SEXES, kind="normal")
     with pytest.raises(ValueError, match="a continuous trait has none"):
         direction(SPACE, DiscriminantRegressor().fit(SCORES, R), units="classmean")
     with pytest.raises(ValueError, match="same for all walkers"):

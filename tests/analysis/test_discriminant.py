@@ -8,9 +8,12 @@ from sklearn.model_selection import LeaveOneOut, cross_val_predict
 from sklearn.pipeline import make_pipeline
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
-from eigenwalker.analysis.jackknife import jackknife_curves
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis import (
+    DiscriminantClassifier,
+    DiscriminantRegressor,
+    WalkerSpace,
+    jackknife_curves,
+)
 
 SEX = np.array(["female", "male"])[np.arange(40) % 2]
 R = np.where(SEX == "male", 1.0, -1.0)

@@ -6,9 +6,13 @@ from hypothesis import given, settings, strategies as st
 from sklearn.model_selection import LeaveOneGroupOut, LeaveOneOut, cross_val_predict
 from sklearn.pipeline import make_pipeline
 
-from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
-from eigenwalker.analysis.jackknife import jackknife_curves, regression_curves
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis import (
+    DiscriminantClassifier,
+    DiscriminantRegressor,
+    WalkerSpace,
+    jackknife_curves,
+    regression_curves,
+)
 
 
 def population(n_walkers=20, n_features=50, effect=0.5, seed=0):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eigenwalker.analysis import trait_axis
 from eigenwalker.analysis.plausibility import LIMBS, plausibility
-from eigenwalker.analysis.trait_axis import trait_axis
-from eigenwalker.population.population import Population
-from eigenwalker.simulation.people import simulate_population
+from eigenwalker.population import Population
+from eigenwalker.simulation import simulate_population
 
 
 @pytest.fixture(scope="module")

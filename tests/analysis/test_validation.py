@@ -3,11 +3,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.analysis.jackknife import jackknife_curves, regression_curves
-from eigenwalker.analysis.validation import (
+from eigenwalker.analysis import (
+    jackknife_curves,
     nested_leave_one_out,
     nested_regression,
     permutation_test,
+    regression_curves,
     regression_permutation_test,
 )
 

@@ -7,7 +7,7 @@ from sklearn.decomposition import PCA
 from sklearn.preprocessing import StandardScaler
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis import WalkerSpace
 
 
 def walkers(n_walkers: int = 12, n_features: int = 20, seed: int = 0) -> np.ndarray:

@@ -10,9 +10,7 @@ import xarray as xr
 from hypothesis import given, settings, strategies as st
 from sklearn.decomposition import PCA
 
-from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.core.walker import Walker
+from eigenwalker.core import JOINTS, Walker, label_trajectories
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
 
 WHOLE_STRIDES = np.arange(1500) / 120

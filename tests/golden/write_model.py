@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eigenwalker.analysis.direction import position_in_space
+from eigenwalker.analysis import position_in_space
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.explorer.mixing import mixed_vector, model_layout
 from eigenwalker.explorer.model import page_model

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from xarray import DataArray
 
-from eigenwalker.core.walker import Walker
+from eigenwalker.core import Walker
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.population.correspondence import (
     MIN_SIMILARITY,

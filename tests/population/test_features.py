@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core import JOINTS
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
 

@@ -13,10 +13,10 @@ from scipy.io import netcdf_file
 
 import eigenwalker as ew
 from eigenwalker.decomposition import decompose_fourier, decompose_pca
-from eigenwalker.gait.in_place import in_place
+from eigenwalker.gait import in_place
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.population.population import FLAG, Population
-from eigenwalker.simulation.people import simulate_captures
+from eigenwalker.simulation import simulate_captures
 
 
 @pytest.fixture(scope="module")

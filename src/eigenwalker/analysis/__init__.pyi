@@ -20,7 +20,12 @@ from .jackknife import (
     jackknife_curves as jackknife_curves,
     regression_curves as regression_curves,
 )
-from .plausibility import Plausibility as Plausibility, plausibility as plausibility
+from .plausibility import (
+    Plausibility as Plausibility,
+    SpacePosition as SpacePosition,
+    plausibility as plausibility,
+    position_in_space as position_in_space,
+)
 from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
 from .validation import (
     NestedErrors as NestedErrors,

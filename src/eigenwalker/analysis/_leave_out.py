@@ -28,16 +28,10 @@ within 1e-8 of those by SVD."""
 class FoldComponents:
     """Components of the training walkers of a fold, and the scores of the walkers left out.
 
-    Parameters
-    ----------
-    singular_values : array of shape (component,)
-        Of the standardised training walkers, from the largest to the smallest; their scores have
-        the standard deviations ``singular_values / sqrt(n - 1)``.
-    c : array of shape (component, trait)
-        The discriminant of each trait (Troje 2002, eq. 10).
-    scores : array of shape (component, walker)
-        Of the walkers left out.
-
+    Singular values of the standardised training walkers, (component,), from the largest to the
+    smallest: their scores have the standard deviations ``singular_values / sqrt(n - 1)``. The
+    discriminant c of each trait, (component, trait), Troje (2002), eq. 10. Scores of the walkers
+    left out, (component, walker).
     """
 
     singular_values: np.ndarray
@@ -59,18 +53,8 @@ def discriminant_sums(
 ) -> np.ndarray:
     """Return the sum of Troje (2002), eq. 11, over 1, 2, ... components.
 
-    Parameters
-    ----------
-    singular_values, c, scores : arrays of shape (component, ...)
-        As in `FoldComponents`; shapes broadcast. A component of which all three are 0 comes last
-        and adds nothing.
-    order : {"standardised", "raw", "variance"}
-        Which components come first, as in `DiscriminantClassifier`.
-
-    Returns
-    -------
-    array of shape (component, ...)
-
+    Arguments are as in `FoldComponents`; shapes (component, ...) broadcast. A component of which
+    all three are 0 comes last and adds nothing.
     """
     ranked = order_of_components(c, singular_values, order)
     return np.take_along_axis(c * scores, ranked, axis=0).cumsum(axis=0)
@@ -80,21 +64,11 @@ def discriminant_sums(
 class LeaveOutSVD:
     """The singular value decomposition of walkers without a few of them, for many folds.
 
-    Parameters
-    ----------
-    Y : array of shape (walker, feature)
-        Walkers about their mean, divided by the scale of all; only features that vary.
-    R : array of shape (walker, trait)
-        Targets of the discriminants.
-    rescaled : bool
-        Whether a fold is divided by the standard deviations of its own training walkers.
-    rounding : array of shape (feature,)
-        Range, in units of Y, below which a feature does not vary.
-    squares, cross_products : arrays of shape (feature,) and (feature, trait)
-        Sums over all walkers of Y^2 and Y'R.
-    gram : array of shape (feature, feature) or None
-        Y'Y, where folds have more walkers than features.
-
+    Y (walker, feature): walkers about their mean, divided by the scale of all, only features that
+    vary. R (walker, trait): targets of the discriminants. If rescaled, a fold is divided by the
+    standard deviations of its own training walkers; a feature whose range is below `rounding` does
+    not vary. Sums over all walkers: `squares` of Y^2, `cross_products` of Y'R, and `gram` of Y'Y
+    where folds have more walkers than features.
     """
 
     Y: np.ndarray

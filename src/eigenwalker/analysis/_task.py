@@ -15,22 +15,13 @@ from eigenwalker.analysis.walker_space import Scale, constant_features
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Walkers, the trait to predict for each, the rows that each fold leaves out, and the scoring.
+    """Walkers, the trait to predict for each, the rows of each fold, and the scoring.
 
-    Parameters
-    ----------
-    X : array of shape (walker, feature)
-    y : array of shape (walker,)
-        -1 and +1 for two classes, else the trait.
-    offset : float
-        Taken off the trait before the discriminant is solved for, and added to predictions.
-    folds : list of array of int
-    losses : callable
-        ``losses(sums, r, training_mean)``: loss of each sum of eq. 11, of shape (component, ...),
-        given ``r = y - offset`` and its mean over the walkers trained on.
-    error : callable
-        ``error(losses, R)``: error of the sum of losses over all walkers, for each column of R.
-
+    `y` is -1 and +1 for two classes, else the trait; `offset` is taken off it before the
+    discriminant is solved for, and added to predictions. ``losses(sums, r, training_mean)`` is the
+    loss of sums of eq. 11, of shape (component, ...), for ``r = y - offset`` and its mean over the
+    walkers trained on; ``error(losses, R)`` the error of losses summed over all walkers, for each
+    column of R.
     """
 
     X: np.ndarray

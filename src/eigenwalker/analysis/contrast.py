@@ -1,4 +1,4 @@
-"""What a trait asks of a population: which walkers take part, and what they should come out as."""
+"""A trait as a target: the walkers that have it, and their classes or values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pandas as pd
 from eigenwalker.population.population import FLAG, Population
 
 PERSON = "person"
-"""Column of the traits that says whose trial a walk is."""
+"""Column of the traits that names the person of each walk."""
 _POLES = {
     "age": ("young", "old"),
     "weight": ("light", "heavy"),
@@ -23,21 +23,21 @@ _NO_TRAITS = (FLAG, PERSON, "file")
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """A trait, as a classifier or a regression is asked to tell it.
+    """A trait as a classifier or a regression has to predict it.
 
     Parameters
     ----------
     trait : str
         Its column in the traits.
     rows : array of int of shape (walker,)
-        The walkers that take part: unflagged, and with a value of the trait.
+        The walkers: unflagged, and with a value of the trait.
     y : array of float of shape (walker,)
-        -1 and +1 for a trait of two classes (the row vector r of eq. 10), else its values.
+        -1 and +1 for two classes, the row vector r of Troje (2002), eq. 10; else the values.
     negative, positive : str
-        Names of the two poles (A39).
+        Names of the two poles.
     two_classes : bool
     persons : array of shape (walker,), or None
-        Whose trial each walk is, where some person has several.
+        The person of each walk, where some person has several.
 
     """
 
@@ -51,22 +51,22 @@ class Contrast:
 
     @property
     def labels(self) -> np.ndarray:
-        """What to fit a discriminant to: names of the poles, or the values of the trait."""
+        """Targets for a discriminant: names of the poles, or the values of the trait."""
         if not self.two_classes:
             return self.y
         return np.where(self.y > 0, self.positive, self.negative)
 
 
 def trait_contrast(population: Population, trait: str) -> Contrast:
-    """Return which walkers a trait is known of, and what it is for each.
+    """Return the walkers with a known trait, and its class or value for each.
 
     Parameters
     ----------
     population : Population
     trait : str
         A column of the traits, in full (``"weight_kg"``) or without its unit (``"weight"``).
-        ``"style=feminine:masculine"`` picks two of the values a trait in words may have; the second
-        is the positive pole. Of a trait of two values the second in sorted order is ("male").
+        ``"style=feminine:masculine"`` selects two of the values of a trait; the second is the
+        positive pole. Of a trait of two values, the second in sorted order is ("male").
 
     Returns
     -------
@@ -75,7 +75,7 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     Raises
     ------
     ValueError
-        If there is no such trait, or it does not tell walkers apart.
+        If there is no such trait, or it is the same for all walkers.
 
     Examples
     --------
@@ -95,79 +95,72 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
             f"{population.traits[FLAG][0]} To use them all the same, take "
             "population.without_flags(), or --with-flagged on the command line."
         )
-    known = values.notna() & (_words(values) != "") & ~population.flagged
+    known = values.notna() & (_as_text(values) != "") & ~population.flagged
     if pair:
         negative, positive = _two_poles(pair, column, values[known])
-        known &= _words(values).isin([negative, positive])
+        known &= _as_text(values).isin([negative, positive])
     elif _is_continuous(values[known]):
         return _continuous(population, column, np.flatnonzero(known))
     else:
         negative, positive = _both_values(column, values[known])
     rows = np.flatnonzero(known)
-    y = np.where(_words(values.iloc[rows]) == positive, 1.0, -1.0)
+    y = np.where(_as_text(values.iloc[rows]) == positive, 1.0, -1.0)
     return Contrast(column, rows, y, negative, positive, True, _persons(population, rows))
 
 
-def _words(values: pd.Series) -> pd.Series:
-    """Values as they are typed: 1 for 1.0, nothing for what is missing."""
+def _as_text(values: pd.Series) -> pd.Series:
+    """Values as a user types them: 1 for 1.0, and nothing for a missing one."""
     if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):
         return values.fillna("").astype(str)
     return values.map(lambda value: "" if pd.isna(value) else f"{value:.15g}")
 
 
 def _sorted(values: pd.Series) -> list[str]:
-    """Each value once, in words; numbers in the order of numbers."""
-    return _words(values.drop_duplicates().sort_values()).tolist()
+    """Each value once, as text; numbers in the order of numbers."""
+    return _as_text(values.drop_duplicates().sort_values()).tolist()
 
 
 def trait_column(traits: pd.DataFrame, name: str) -> str:
-    """Return the column of a trait, given in full or without its unit.
-
-    Raises
-    ------
-    ValueError
-        If there is none or more than one.
-
-    """
+    """Return the column of a trait, given in full or without its unit; raise if there is none."""
     columns = [str(column) for column in traits if column not in _NO_TRAITS]
     if name in columns:
         return name
-    found = [column for column in columns if column.startswith(f"{name}_")]
-    if len(found) == 1:
-        return found[0]
+    with_unit = [column for column in columns if column.startswith(f"{name}_")]
+    if len(with_unit) == 1:
+        return with_unit[0]
     raise ValueError(f"There is no trait {name!r}; the population has {columns}.")
 
 
 def _two_poles(pair: str, column: str, values: pd.Series) -> tuple[str, str]:
-    there = _sorted(values)
-    negative, positive = _split(pair, there)
-    if negative == positive or not {negative, positive} <= set(there):
+    known = _sorted(values)
+    negative, positive = _split(pair, known)
+    if negative == positive or not {negative, positive} <= set(known):
         raise ValueError(
-            f"{pair!r} does not name two values of {column}; it has {there}. "
-            f"Write, for instance, {column}={there[0]}:{there[-1]}."
+            f"{pair!r} does not name two values of {column}; it has {known}. "
+            f"Write, for instance, {column}={known[0]}:{known[-1]}."
         )
     return negative, positive
 
 
-def _split(pair: str, there: list[str]) -> tuple[str, str]:
+def _split(pair: str, known: list[str]) -> tuple[str, str]:
     """The two values of ``negative:positive``, which may themselves hold a colon."""
     parts = pair.split(":")
-    ways = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
-    return next((way for way in ways if set(way) <= set(there)), (pair, pair))
+    splits = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
+    return next((each for each in splits if set(each) <= set(known)), (pair, pair))
 
 
 def _both_values(column: str, values: pd.Series) -> tuple[str, str]:
-    there = _sorted(values)
-    if len(there) == 2:
-        return there[0], there[1]
-    if len(there) < 2:
+    known = _sorted(values)
+    if len(known) == 2:
+        return known[0], known[1]
+    if len(known) < 2:
         raise ValueError(
-            f"The trait {column} is the same, {there}, for all walkers that may be used, so there "
+            f"The trait {column} is the same, {known}, for all walkers that may be used, so there "
             "is nothing to tell apart."
         )
     raise ValueError(
-        f"The trait {column} has {len(there)} values, {there}; choose two, for instance "
-        f"{column}={there[0]}:{there[1]}."
+        f"The trait {column} has {len(known)} values, {known}; choose two, for instance "
+        f"{column}={known[0]}:{known[1]}."
     )
 
 
@@ -189,6 +182,6 @@ def _persons(population: Population, rows: np.ndarray) -> np.ndarray | None:
         return None
     persons = population.traits[PERSON].iloc[rows]
     named = persons.notna() & (persons.astype(str) != "")
-    # Walks of unnamed people are taken for one person's each.
+    # Each walk of an unnamed person counts as a person of its own.
     persons = persons.astype(str).where(named, [f"\0{row}" for row in rows])
     return persons.to_numpy(dtype=str) if persons.duplicated().any() else None

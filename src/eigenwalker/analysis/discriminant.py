@@ -1,43 +1,37 @@
-"""What tells walkers apart: the linear discriminant ``c K = r`` (Troje 2002, eq. 10 and 11)."""
+"""The linear discriminant ``c K = r`` of two classes, or of a trait that is a number."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Literal, Self, get_args
+from typing import Literal, Self, get_args
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 from sklearn.base import BaseEstimator, ClassifierMixin, RegressorMixin
-from sklearn.utils import Tags, validation
+from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
-from sklearn.utils.validation import check_is_fitted
+from sklearn.utils.validation import check_is_fitted, validate_data
 
 Order = Literal["standardised", "raw", "variance"]
 
-_validated: Callable[..., Any] = validation.validate_data
-"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
-
 
 class _Discriminant(BaseEstimator):
-    """What a discriminant of two classes and one of a continuous trait have in common."""
-
     n_components: int | None
     order: Order
 
     def _fit_traits(self, K: np.ndarray, r: np.ndarray, *, centred: bool) -> None:
-        """Solve ``c K = r`` by least squares and keep the components that contribute most."""
+        """Solve ``c K = r`` by least squares and use the components that contribute most."""
         middle = K.mean(axis=0) if centred else np.zeros(K.shape[1])
         level = r.mean() if centred else 0.0
         c = np.linalg.lstsq(K - middle, r - level, rcond=None)[0]
         self.order_ = order_of_components(c, K.std(axis=0, ddof=1), self.order)
-        kept = self.order_[: self._n_kept(K.shape[1])]
+        used = self.order_[: self._n_used(K.shape[1])]
         self.coef_ = np.zeros_like(c)
-        self.coef_[kept] = c[kept]
+        self.coef_[used] = c[used]
         self.intercept_ = float(level - middle @ self.coef_)
-        self._describe_walkers(K, kept)
+        self._describe_walkers(K, used)
 
-    def _n_kept(self, n_columns: int) -> int:
+    def _n_used(self, n_columns: int) -> int:
         if self.n_components is None:
             return n_columns
         if not 1 <= self.n_components <= n_columns:
@@ -47,48 +41,50 @@ class _Discriminant(BaseEstimator):
             )
         return self.n_components
 
-    def _describe_walkers(self, K: np.ndarray, kept: np.ndarray) -> None:
+    def _describe_walkers(self, K: np.ndarray, used: np.ndarray) -> None:
         projections = K @ self.coef_
         self.spread_ = float(projections.std(ddof=1))
         deviations = projections - projections.mean()
         self.pattern_ = np.zeros_like(self.coef_)
-        self.pattern_[kept] = K[:, kept].T @ deviations / (len(K) - 1)
+        self.pattern_[used] = K[:, used].T @ deviations / (len(K) - 1)
 
     def _projections(self, X: ArrayLike) -> np.ndarray:
         check_is_fitted(self)
-        K = _validated(self, X, dtype=np.float64, reset=False)
+        K = validate_data(self, X, dtype=np.float64, reset=False)
         return K @ self.coef_ + self.intercept_
 
 
 class DiscriminantClassifier(ClassifierMixin, _Discriminant):
-    """Tells two classes of walkers apart by a weighted sum of their scores.
+    r"""Tells two classes of walkers apart by a weighted sum of their scores.
 
-    The discriminant c solves ``c K = r`` by least squares, r being -1 and +1 (Troje 2002, eq. 10).
-    Components are re-ordered by their contribution to it, the first n are kept, and a walker
-    belongs to the class that the sign of its sum tells (eq. 11). Put a `WalkerSpace` before it:
-    ``make_pipeline(WalkerSpace(), DiscriminantClassifier(n_components=4))``.
+    .. math:: c K = r, \quad r_j = \pm 1
 
-    Scores of a `WalkerSpace` are orthogonal, so leaving components out equals fitting again
-    without them. On other columns c is the solution of least norm, and is cut short as it is.
+    The discriminant c is the least-squares solution. Components are sorted by their contribution to
+    it, the first n are used, and the sign of a walker's sum is its class. Put a `WalkerSpace`
+    first: ``make_pipeline(WalkerSpace(), DiscriminantClassifier(n_components=4))``.
+
+    Scores of a `WalkerSpace` are orthogonal, so leaving components out equals fitting again without
+    them. On other columns c is the solution of least norm, and components are left out of it.
 
     Parameters
     ----------
     n_components : int, optional
-        Components to keep, those that contribute most first; all if not given.
+        Components to use, those that contribute most first; all if not given.
     order : {"standardised", "raw", "variance"}
-        What counts as contribution (A9): ``|c_i| sd(k_i)``, which goes with the correlation of
-        score and class; ``|c_i|`` as it is, which favours components that hardly vary; or the
-        variance of the scores, which leaves the order of the eigenwalkers as it is.
+        Contribution: ``|c_i| sd(k_i)``, which goes with the correlation of score and class;
+        ``|c_i|``, which favours components that hardly vary; or the variance of the scores, which
+        leaves the order of the eigenwalkers.
     fit_intercept : bool
-        Whether to fit a constant too (A10). The paper has none; with one, leaving a walker out
-        tilts the constant towards the other class, so that chance looks worse than it is.
+        Whether to fit a constant too. The paper has none; with one, leaving a walker out tilts the
+        constant towards the other class, and walkers without any effect are misclassified more
+        often than by chance.
 
     Attributes
     ----------
     classes_ : array of shape (2,)
         The classes in sorted order: r is -1 for the first and +1 for the second.
     positive_pole_, negative_pole_ : str
-        Names of the two ends of the discriminant.
+        Names of the two ends of the discriminant: the second class, and the first.
     coef_ : array of shape (column,)
         The discriminant c, 0 where a component is left out.
     intercept_ : float
@@ -100,7 +96,16 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
     class_means_ : array of shape (2, column)
         Mean scores of either class.
     pattern_ : array of shape (column,)
-        cov(K) c within the components kept: what goes along with c, rather than what filters it.
+        cov(K) c within the components used: what varies along with c.
+
+    See Also
+    --------
+    DiscriminantRegressor : For a trait that is a number.
+    jackknife_curves : Errors for every number of components.
+
+    References
+    ----------
+    Troje (2002), Decomposing biological motion, eq. 10, 11 and 14.
 
     Examples
     --------
@@ -124,7 +129,7 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
         self.fit_intercept = fit_intercept
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
-        """Find the discriminant.
+        """Fit the discriminant.
 
         Parameters
         ----------
@@ -141,7 +146,7 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
 
         """
         refuse_missing(y)
-        K, traits = _validated(self, X, y, dtype=np.float64, ensure_min_samples=2)
+        K, traits = validate_data(self, X, y, dtype=np.float64, ensure_min_samples=2)
         check_classification_targets(traits)
         self.classes_, which = two_classes(traits)
         self.negative_pole_, self.positive_pole_ = (str(name) for name in self.classes_)
@@ -150,10 +155,7 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
         return self
 
     def decision_function(self, X: ArrayLike) -> np.ndarray:
-        """Return how far each walker lies towards the positive pole: the sum of eq. 11.
-
-        Times r it is the confidence z of eq. 14.
-        """
+        """Return the sum of eq. 11 of each walker; times r it is the confidence z of eq. 14."""
         return self._projections(X)
 
     def predict(self, X: ArrayLike) -> np.ndarray:
@@ -168,17 +170,16 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
 
 
 class DiscriminantRegressor(RegressorMixin, _Discriminant):
-    """Tells a continuous trait of walkers (age, weight, a rating) from a weighted sum of scores.
+    """Predicts a trait that is a number (age, weight, a rating) by a weighted sum of scores.
 
-    As `DiscriminantClassifier`, with r the trait about its mean (Troje 2002, WDP2002); the mean is
-    given back in the prediction.
+    As `DiscriminantClassifier`, with r the trait about its mean; predictions have the mean added.
 
     Parameters
     ----------
     n_components : int, optional
-        Components to keep, those that contribute most first; all if not given.
+        As in `DiscriminantClassifier`.
     order : {"standardised", "raw", "variance"}
-        What counts as contribution, as in `DiscriminantClassifier`.
+        As in `DiscriminantClassifier`.
 
     Attributes
     ----------
@@ -186,6 +187,10 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
         "more" and "less" of the trait, with its name where y is a named pandas Series.
     coef_, intercept_, order_, spread_, pattern_
         As in `DiscriminantClassifier`; c is in units of the trait.
+
+    References
+    ----------
+    Troje (2002), The little difference.
 
     Examples
     --------
@@ -201,14 +206,14 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
         self.order = order
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> Self:
-        """Find the discriminant.
+        """Fit the discriminant.
 
         Parameters
         ----------
         X : array of shape (walker, column)
             Scores of a `WalkerSpace`.
         y : array of shape (walker,)
-            The trait, a number a walker.
+            The trait.
 
         Raises
         ------
@@ -218,7 +223,7 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
         """
         refuse_missing(y)
         trait = getattr(y, "name", None)
-        K, r = _validated(self, X, y, dtype=np.float64, ensure_min_samples=2, y_numeric=True)
+        K, r = validate_data(self, X, y, dtype=np.float64, ensure_min_samples=2, y_numeric=True)
         self.positive_pole_, self.negative_pole_ = (
             more if trait is None else f"{more} {trait}" for more in ("more", "less")
         )
@@ -231,22 +236,10 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
 
 
 def order_of_components(c: np.ndarray, spread: np.ndarray, order: Order) -> np.ndarray:
-    """Return components from the highest contribution to the discriminant to the lowest (J21).
+    """Return components from the highest contribution to the discriminant to the lowest.
 
-    Parameters
-    ----------
-    c : array of shape (component, ...)
-        Weights of the discriminant, or of several.
-    spread : array that broadcasts against `c`
-        Standard deviations of the scores.
-    order : {"standardised", "raw", "variance"}
-        What counts as contribution, as in `DiscriminantClassifier`.
-
-    Returns
-    -------
-    array of int of the shape of `c`
-        Contributions within 1e-12 of the highest are ties, and stay in the order they came in.
-
+    Weights c have the shape (component, ...); the standard deviations of the scores, `spread`,
+    broadcast against it. Contributions within 1e-12 of the highest are ties, and keep their order.
     """
     if order not in get_args(Order):
         raise ValueError(f"order={order!r} is unknown; choose from {', '.join(get_args(Order))}.")
@@ -260,14 +253,7 @@ def order_of_components(c: np.ndarray, spread: np.ndarray, order: Order) -> np.n
 
 
 def two_classes(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the two classes in sorted order, and 0 or 1 for each walker: 1 is the positive pole.
-
-    Raises
-    ------
-    ValueError
-        If there are not two.
-
-    """
+    """Return the two classes in sorted order, and 0 or 1, the positive pole, for each walker."""
     classes, which = np.unique(y, return_inverse=True)
     if len(classes) > 2:
         named = ", ".join(str(name) for name in classes[:5]) + (", ..." if len(classes) > 5 else "")

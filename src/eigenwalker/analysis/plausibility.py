@@ -1,4 +1,4 @@
-"""How far a made-up walker is from anyone who was captured: extrapolation has limits (J30)."""
+"""How far a synthetic walker is from the walkers that were captured."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 import xarray as xr
+from numpy.typing import ArrayLike
 
-from eigenwalker.analysis.direction import SpacePosition, position_in_space
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.population.population import Population
@@ -28,10 +28,10 @@ class Plausibility:
     Parameters
     ----------
     position : SpacePosition
-        Its distance from the average walker beside theirs, and what lies outside their space.
+        Its distance from the average walker relative to theirs, and the share outside their space.
     limb_change : Series
-        How much longer each limb is than the average walker's: 0.1 is a tenth longer, left and
-        right together.
+        How much longer each limb is than the average walker's, mean of left and right: 0.1 is a
+        tenth longer.
     limb_stretch : Series
         Standard deviation of each limb's length over the stride as a share of its mean: bones are
         rigid, sums of walkers not quite.
@@ -44,7 +44,7 @@ class Plausibility:
 
 
 def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
-    """Return how plausible a walker is who belongs to no one.
+    """Return how plausible a synthetic walker is.
 
     Parameters
     ----------
@@ -57,6 +57,10 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     -------
     Plausibility
 
+    References
+    ----------
+    Troje (2002), Decomposing biological motion: walkers up to 6 standard deviations along eq. 13.
+
     Examples
     --------
     >>> people = ew.load_population()
@@ -64,12 +68,12 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     True
 
     """
-    known = population.X[~population.flagged] if not population.flagged.all() else population.X
-    space = WalkerSpace().fit(known)
-    own, usual = (_limb_lengths(population, each) for each in (vector, population.average))
+    walkers = population.X[population.in_average]
+    space = WalkerSpace().fit(walkers)
+    own, average = (_limb_lengths(population, each) for each in (vector, population.average))
     return Plausibility(
-        position=position_in_space(space, vector, walkers=known),
-        limb_change=own.mean() / usual.mean() - 1,
+        position=position_in_space(space, vector, walkers=walkers),
+        limb_change=own.mean() / average.mean() - 1,
         limb_stretch=own.std() / own.mean(),
     )
 
@@ -78,20 +82,106 @@ def _limb_lengths(population: Population, vector: np.ndarray) -> pd.DataFrame:
     """Length of each limb over a stride in mm, sides averaged: a table (time, limb)."""
     walker = population.walker(vector)
     stride = walker.trajectories(np.linspace(0, walker.period_s, 100, endpoint=False))
-    there = set(walker.markers) & set(JOINTS.markers)
+    joints = set(walker.markers) & set(JOINTS.markers)
     lengths = {}
     for limb, (upper, lower) in LIMBS.items():
         sides = [
-            segment_length(stride, f"{side}_{upper}", f"{side}_{lower}")
+            _distance(stride, f"{side}_{upper}", f"{side}_{lower}")
             for side in ("left", "right")
-            if {f"{side}_{upper}", f"{side}_{lower}"} <= there
+            if {f"{side}_{upper}", f"{side}_{lower}"} <= joints
         ]
         if sides:
             lengths[limb] = np.mean(sides, axis=0)
     return pd.DataFrame(lengths)
 
 
-def segment_length(walk: xr.DataArray, one: str, other: str) -> np.ndarray:
-    """Return the distance of two markers over time in mm: array of shape (time,)."""
+def _distance(walk: xr.DataArray, one: str, other: str) -> np.ndarray:
     between = walk.sel(marker=one).values - walk.sel(marker=other).values
     return np.linalg.norm(between, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class SpacePosition:
+    """How far a walker lies from those a space was made from.
+
+    Parameters
+    ----------
+    distance : float
+        Distance from the average walker in standardised features, over its root mean square for
+        the walkers of the space: 1 is typical, 3 is three times as far from the average.
+    mahalanobis : float
+        The root of the sum of squared `z_scores`. Where a space has nearly as many eigenwalkers as
+        walkers, it is the same for all of them.
+    z_scores : array of shape (component,)
+        Score on each eigenwalker in standard deviations of the walkers.
+    outside : float
+        Share of the walker's squared distance that no eigenwalker accounts for: 0 within the
+        space, 1 for a difference that no walker of the space has.
+    percentile : float
+        Percentage of the given walkers that are closer to the average; NaN if none is given.
+
+    """
+
+    distance: float
+    mahalanobis: float
+    z_scores: np.ndarray
+    outside: float
+    percentile: float
+
+
+def position_in_space(
+    space: WalkerSpace, vector: ArrayLike, *, walkers: ArrayLike | None = None
+) -> SpacePosition:
+    """Return how far a walker lies from those a space was made from.
+
+    Parameters
+    ----------
+    space : WalkerSpace
+        Fitted on walkers.
+    vector : array of shape (feature,)
+        The walker in question, such as a caricature.
+    walkers : array of shape (walker, feature), optional
+        Walkers to rank it among, usually those of the space.
+
+    Returns
+    -------
+    SpacePosition
+
+    Examples
+    --------
+    >>> walkers = np.array([[1.0, 5], [2, 4], [6, 4], [7, 5]])
+    >>> space = WalkerSpace(n_components=1).fit(walkers)
+    >>> report = position_in_space(space, [14, 4.5], walkers=walkers)
+    >>> report.z_scores.round(2).tolist(), report.percentile
+    ([3.4], 100.0)
+
+    """
+    vector = np.asarray(vector, dtype=float)
+    if vector.shape != space.average_walker_.shape:
+        raise ValueError(
+            f"A walker in this space is a vector of {len(space.average_walker_)} features; got an "
+            f"array of shape {vector.shape}."
+        )
+    scores = space.transform(vector[None])
+    z_scores = scores[0] / np.sqrt(space.explained_variance_)
+    squared, percentile = _squared_distances(space, vector[None])[0], float("nan")
+    if walkers is not None:
+        nearer = _squared_distances(space, np.asarray(walkers, dtype=float)) < squared
+        percentile = 100 * float(nearer.mean())
+    total_variance = space.explained_variance_[0] / space.explained_variance_ratio_[0]
+    residual = _squared_distances(space, vector - space.inverse_transform(scores), about_mean=False)
+    return SpacePosition(
+        distance=float(np.sqrt(squared / total_variance)),
+        mahalanobis=float(np.linalg.norm(z_scores)),
+        z_scores=z_scores,
+        outside=float(residual[0] / squared) if squared > 0 else 0.0,
+        percentile=percentile,
+    )
+
+
+def _squared_distances(
+    space: WalkerSpace, walkers: np.ndarray, *, about_mean: bool = True
+) -> np.ndarray:
+    """Squared lengths in standardised features, of deviations from the average walker."""
+    deviations = walkers - space.average_walker_ if about_mean else walkers
+    return ((deviations / space.scale_) ** 2).sum(axis=1)

@@ -1,4 +1,4 @@
-"""The line through the space of walkers along which a trait changes (J30, W6 to W8)."""
+"""The line through the space of walkers along which a trait changes."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.population.population import Population
 
 N_EIGENWALKERS = 10
-"""Eigenwalkers that the paper's synthesiser uses (J30)."""
+"""Eigenwalkers that the synthesiser of Troje (2002) uses."""
 
 
 @dataclass(frozen=True, eq=False)
 class TraitAxis:
-    """A step that makes any walker more of a trait.
+    """The step along which a trait changes in any walker.
 
     Parameters
     ----------
     contrast : Contrast
-        The trait, its poles and the walkers that show it.
+        The trait, its poles and its walkers.
     step : array of shape (feature,)
-        Add alpha times this to a walker; it leads towards ``contrast.positive``. Zero outside the
-        part of the features that the classifier knows.
+        Add alpha times this to a walker; it leads towards ``contrast.positive``. Zero outside
+        `columns`.
     space : WalkerSpace
-        Fitted on that part of the walkers' features.
+        Fitted on these columns of the walkers.
     discriminant : DiscriminantClassifier or DiscriminantRegressor
         Fitted on their scores.
     columns : array of int
-        The features that are this part.
+        Features that the discriminant uses.
 
     """
 
@@ -43,26 +43,16 @@ class TraitAxis:
     columns: np.ndarray
 
     def __repr__(self) -> str:
-        asked = self.contrast
-        return f"TraitAxis({asked.trait}: {asked.negative} to {asked.positive})"
+        contrast = self.contrast
+        return f"TraitAxis({contrast.trait}: {contrast.negative} to {contrast.positive})"
 
     def positions(self, vectors: np.ndarray) -> np.ndarray:
-        """Return where walkers lie along the axis, in steps from the average of its walkers.
+        """Return where walkers (walker, feature) lie along the axis, in steps from the average."""
+        average = self._projections(self.space.average_walker_)
+        one_step = self._projections(self.space.average_walker_ + self.step[self.columns])
+        return (self._projections(vectors[:, self.columns]) - average) / (one_step - average)
 
-        Parameters
-        ----------
-        vectors : array of shape (walker, feature)
-
-        Returns
-        -------
-        array of shape (walker,)
-
-        """
-        per_step = self._told(self.space.average_walker_ + self.step[self.columns])
-        middle = self._told(self.space.average_walker_)
-        return (self._told(vectors[:, self.columns]) - middle) / (per_step - middle)
-
-    def _told(self, walkers: np.ndarray) -> np.ndarray:
+    def _projections(self, walkers: np.ndarray) -> np.ndarray:
         return self.space.transform(np.atleast_2d(walkers)) @ self.discriminant.coef_
 
 
@@ -75,30 +65,41 @@ def trait_axis(
     kind: Kind = "discriminant",
     units: Units = "sd",
 ) -> TraitAxis:
-    """Return the axis of a trait in a population.
+    r"""Return the axis of a trait in a population.
 
-    Eq. 13 of Troje (2002), ``w = w_0 + alpha V c'``: V holds the first few eigenwalkers, those of
-    most variance, so that a step leads where walkers differ (J30).
+    .. math:: w = w_0 + \alpha V c'
+
+    V holds the first few eigenwalkers, those of most variance, so that a step leads where walkers
+    differ.
 
     Parameters
     ----------
     population : Population
         Its flagged walkers are left out.
     trait : str
-        As `contrast` takes it: ``"sex"``, ``"weight"``, ``"style=feminine:masculine"``.
+        As `trait_contrast` takes it: ``"sex"``, ``"weight"``, ``"style=feminine:masculine"``.
     part : str
-        What the classifier knows: ``"all"``, ``"structure"``, ``"dynamics"``, ``"p1+p2"`` (J31).
+        What the discriminant uses: ``"all"``, ``"structure"``, ``"dynamics"``, ``"p1+p2"``.
     n_components : int
         Eigenwalkers to span the space with; fewer where the walkers span fewer.
     kind : {"discriminant", "mean_difference"}
-        What tells the trait best, or what shows it best (A13).
+        What predicts the trait best, or what varies with it; see `direction`.
     units : {"sd", "raw", "classmean"}
-        What alpha = 1 is: one standard deviation of the walkers along the axis (A12), eq. 13 as
-        printed, or half the distance of the classes' means.
+        What alpha = 1 is: one standard deviation of the walkers along the axis, eq. 13 as printed,
+        or half the distance of the class means.
 
     Returns
     -------
     TraitAxis
+
+    See Also
+    --------
+    direction : The step of a fitted space and discriminant.
+    plausibility : How far a walker along the axis is from those captured.
+
+    References
+    ----------
+    Troje (2002), Decomposing biological motion, eq. 13. Troje (2002), The little difference, eq. 6.
 
     Examples
     --------
@@ -107,10 +108,10 @@ def trait_axis(
     >>> caricature = people.walker(people.average + 6 * sex.step)  # very much a man
 
     """
-    asked = trait_contrast(population, trait)
+    contrast = trait_contrast(population, trait)
     columns = population.layout.columns(part)
-    space = strongest_space(population.X[np.ix_(asked.rows, columns)], n_components)
-    return axis_within(space, population, asked, columns, kind=kind, units=units)
+    space = strongest_space(population.X[np.ix_(contrast.rows, columns)], n_components)
+    return axis_within(space, population, contrast, columns, kind=kind, units=units)
 
 
 def strongest_space(walkers: np.ndarray, n_components: int = N_EIGENWALKERS) -> WalkerSpace:
@@ -122,29 +123,16 @@ def strongest_space(walkers: np.ndarray, n_components: int = N_EIGENWALKERS) -> 
 def axis_within(
     space: WalkerSpace,
     population: Population,
-    asked: Contrast,
+    contrast: Contrast,
     columns: np.ndarray,
     *,
     kind: Kind = "discriminant",
     units: Units = "sd",
 ) -> TraitAxis:
-    """Return the axis of a trait within a space that its walkers span already.
-
-    Parameters
-    ----------
-    space : WalkerSpace
-        Fitted on these columns of the walkers that the contrast asks for.
-    population, asked, columns, kind, units
-        As in `TraitAxis` and `trait_axis`.
-
-    Returns
-    -------
-    TraitAxis
-
-    """
-    scores = space.transform(population.X[np.ix_(asked.rows, columns)])
-    discriminant = DiscriminantClassifier() if asked.two_classes else DiscriminantRegressor()
-    discriminant.fit(scores, asked.y)
+    """Return the axis of a trait within a space fitted on these columns of the contrast's rows."""
+    scores = space.transform(population.X[np.ix_(contrast.rows, columns)])
+    discriminant = DiscriminantClassifier() if contrast.two_classes else DiscriminantRegressor()
+    discriminant.fit(scores, contrast.y)
     step = np.zeros(population.X.shape[1])
     step[columns] = direction(space, discriminant, kind=kind, units=units)
-    return TraitAxis(asked, step, space, discriminant, columns)
+    return TraitAxis(contrast, step, space, discriminant, columns)

@@ -1,37 +1,33 @@
-"""What varies between walkers: standardised principal components (Troje 2002, eq. 4 to 8)."""
+"""The space that walkers span: standardised principal components."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
-from sklearn.utils import validation
-from sklearn.utils.validation import check_is_fitted
+from sklearn.utils.validation import check_is_fitted, validate_data
 
 Scale = str | None | ArrayLike
 
-_validated: Callable[..., Any] = validation.validate_data
-"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
-
 
 class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):
-    """The space that walkers span: an average walker and eigenwalkers to add to it.
+    r"""The space that walkers span: an average walker and eigenwalkers to add to it.
 
-    Walkers are standardised, since their features are millimetres, hertz and radians, and then
-    decomposed: ``W = W_0 + V K`` with ``V = diag(u) V'`` and V' the unit eigenvectors of the
-    covariance of the standardised walkers (Troje 2002, eq. 4 to 8). `transform` gives the scores
-    K, `inverse_transform` the walkers they stand for.
+    .. math:: W = W_0 + V K, \quad V = \mathrm{diag}(u) V'
+
+    Walkers are standardised by u, since their features are millimetres, hertz and radians, and then
+    decomposed: V' are the unit eigenvectors of the covariance of the standardised walkers.
+    `transform` returns the scores K, `inverse_transform` the walkers.
 
     Parameters
     ----------
     n_components : int, optional
-        Eigenwalkers to keep, those of most variance first; all that the walkers span if not given.
+        Eigenwalkers to use, those of most variance first; all that the walkers span if not given.
     scale : {"sd"}, None, or array of shape (feature,)
         What each feature is divided by before the decomposition: its standard deviation over the
-        walkers (J), nothing (W), or divisors of one's own, say one for each block of features (A7).
+        walkers (Decomposing biological motion), nothing (The little difference), or given divisors.
 
     Attributes
     ----------
@@ -48,9 +44,17 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
     explained_variance_ratio_ : array of shape (component,)
         The same as a share of the variance of all standardised features.
 
+    See Also
+    --------
+    DiscriminantClassifier, DiscriminantRegressor : Predict a trait from the scores.
+
+    References
+    ----------
+    Troje (2002), Decomposing biological motion, eq. 4 to 8. Troje (2002), The little difference.
+
     Examples
     --------
-    Walkers who differ in one way only, being larger or smaller in both features together:
+    Walkers that differ in one way only, larger or smaller in both features together:
 
     >>> walkers = np.array([[9, 90], [10, 100], [11, 110]])
     >>> space = WalkerSpace().fit(walkers)
@@ -68,7 +72,7 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         self.scale = scale
 
     def fit(self, X: ArrayLike, y: object = None) -> Self:
-        """Find the average walker and the eigenwalkers.
+        """Fit the average walker and the eigenwalkers.
 
         Parameters
         ----------
@@ -84,24 +88,24 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
             `scale` is none of the above.
 
         """
-        W: np.ndarray = _validated(self, X, dtype=np.float64, ensure_min_samples=2)
+        W: np.ndarray = validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
         self.average_walker_ = W.mean(axis=0)
         self.scale_ = divisors(W, self.scale)
         standardised = (W - self.average_walker_) / self.scale_
         constant = constant_features(W)
         standardised[:, constant] = 0
-        # Once more, as the mean of a feature far from 0 is rounded: else that looks like variance.
+        # Once more, since the rounded mean of a feature far from 0 would look like variance.
         standardised -= standardised.mean(axis=0)
         singular_values, axes = _principal_axes(standardised)
         axes[:, constant] = 0
-        kept = self._kept(len(axes), W.shape)
+        n_used = self._n_used(len(axes), W.shape)
         variances = singular_values**2 / (len(W) - 1)
-        self.eigenwalkers_ = axes[:kept] * self.scale_  # eq. 7
-        self.explained_variance_ = variances[:kept]
-        self.explained_variance_ratio_ = variances[:kept] / variances.sum()
+        self.eigenwalkers_ = axes[:n_used] * self.scale_  # eq. 7
+        self.explained_variance_ = variances[:n_used]
+        self.explained_variance_ratio_ = variances[:n_used] / variances.sum()
         return self
 
-    def _kept(self, n_spanned: int, shape: tuple[int, int]) -> int:
+    def _n_used(self, n_spanned: int, shape: tuple[int, int]) -> int:
         if n_spanned == 0:
             raise ValueError(
                 f"All {shape[0]} walkers are the same in all {shape[1]} features; "
@@ -117,34 +121,14 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         return self.n_components
 
     def transform(self, X: ArrayLike) -> np.ndarray:
-        """Return the scores K of walkers (eq. 8).
-
-        Parameters
-        ----------
-        X : array of shape (walker, feature)
-
-        Returns
-        -------
-        array of shape (walker, component)
-
-        """
+        """Return the scores K (walker, component) of walkers (walker, feature): eq. 8."""
         check_is_fitted(self)
-        W = _validated(self, X, dtype=np.float64, reset=False)
+        W = validate_data(self, X, dtype=np.float64, reset=False)
         axes = self.eigenwalkers_ / self.scale_
         return ((W - self.average_walker_) / self.scale_) @ axes.T
 
     def inverse_transform(self, K: ArrayLike) -> np.ndarray:
-        """Return the walkers that scores stand for (eq. 6).
-
-        Parameters
-        ----------
-        K : array of shape (walker, component)
-
-        Returns
-        -------
-        array of shape (walker, feature)
-
-        """
+        """Return the walkers (walker, feature) of scores (walker, component): eq. 6."""
         check_is_fitted(self)
         K = np.asarray(K, dtype=float)
         if K.ndim != 2 or K.shape[1] != len(self.eigenwalkers_):
@@ -165,19 +149,9 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
 
 
 def divisors(X: np.ndarray, scale: Scale) -> np.ndarray:
-    """Return what each feature is divided by before PCA: u of eq. 4.
+    """Return what each feature is divided by before PCA: u of Troje (2002), eq. 4.
 
-    Parameters
-    ----------
-    X : array of shape (walker, feature)
-    scale : {"sd"}, None, or array of shape (feature,)
-        As in `WalkerSpace`.
-
-    Returns
-    -------
-    array of shape (feature,)
-        Above 0 everywhere; 1 for a feature that does not vary.
-
+    Above 0 everywhere; 1 for a feature that does not vary.
     """
     n_features = X.shape[1]
     if scale is None:
@@ -200,8 +174,8 @@ def divisors(X: np.ndarray, scale: Scale) -> np.ndarray:
 def constant_features(X: np.ndarray) -> np.ndarray:
     """Return which features do not vary, up to rounding of the largest number in the table.
 
-    A feature held at zero by construction, as the mean place of the pelvis is, comes out of
-    floating point as some 1e-14 mm; standardising would blow that up to a unit.
+    A feature that is zero by construction, such as the mean position of the pelvis, is some 1e-14
+    mm in floating point; standardising would enlarge that to a unit.
     """
     rounding = 10 * np.finfo(float).eps * np.abs(X).max(initial=0)
     return np.ptp(X, axis=0) <= rounding
@@ -221,19 +195,8 @@ def _principal_axes(standardised: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def spanned_dimensions(singular_values: np.ndarray, shape: tuple[int, ...]) -> int:
     """Return how many dimensions walkers span about their mean.
 
-    Parameters
-    ----------
-    singular_values : array of shape (dimension,)
-        Of the centred walkers, from the largest to the smallest.
-    shape : tuple of int
-        Number of walkers and of features.
-
-    Returns
-    -------
-    int
-        Singular values above rounding (as `numpy.linalg.matrix_rank` has it), one less than there
-        are walkers at most.
-
+    Singular values of the centred walkers above rounding, as in `numpy.linalg.matrix_rank`, and one
+    less than there are walkers at most; `shape` holds the numbers of walkers and features.
     """
     rounding = singular_values.max(initial=0) * max(shape) * np.finfo(float).eps
     return min(int((singular_values > rounding).sum()), shape[0] - 1)

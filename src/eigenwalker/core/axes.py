@@ -1,4 +1,4 @@
-"""Where axes point, in words, and in which order tables write coordinates (A25)."""
+"""Directions of axes in words, and the order in which tables write coordinates."""
 
 from __future__ import annotations
 
@@ -24,23 +24,10 @@ _AXES = {
 
 
 def axes_matrix(axes: Sequence[str]) -> np.ndarray:
-    """Return the matrix that turns positions along these axes into forward, left and up.
+    """Return the 3 x 3 matrix that turns positions along these axes into forward, left and up.
 
-    Parameters
-    ----------
-    axes : sequence of str
-        Where three axes point: ``"forward"``, ``"left"``, ``"up"``, or the opposite of one.
-
-    Returns
-    -------
-    array of shape (3, 3)
-        Positions (..., axis) are multiplied by it from the right; its transpose turns them back.
-
-    Examples
-    --------
-    >>> ([10, 20, 30] @ axes_matrix(["right", "forward", "up"])).tolist()
-    [20.0, -10.0, 30.0]
-
+    Axes are named by where they point: ``"forward"``, ``"left"``, ``"up"``, or the opposite of one.
+    Positions (..., axis) are multiplied by it from the right; its transpose turns them back.
     """
     if len(axes) != 3 or not set(axes) <= set(_AXES) or len({_AXES[axis][0] for axis in axes}) < 3:
         raise ValueError(
@@ -54,28 +41,14 @@ def axes_matrix(axes: Sequence[str]) -> np.ndarray:
 
 
 def from_rows(table: np.ndarray, layout: Layout) -> np.ndarray:
-    """Return coordinates (..., 3 * marker) as positions (..., marker, axis).
-
-    Examples
-    --------
-    >>> from_rows(np.array([1, 2, 10, 20, 100, 200]), "planar").tolist()
-    [[1, 10, 100], [2, 20, 200]]
-
-    """
+    """Return coordinates (..., 3 * marker) as positions (..., marker, axis)."""
     if _known(layout) == "planar":
         return table.reshape(*table.shape[:-1], 3, -1).swapaxes(-1, -2)
     return table.reshape(*table.shape[:-1], -1, 3)
 
 
 def to_rows(positions: np.ndarray, layout: Layout) -> np.ndarray:
-    """Return positions (..., marker, axis) as coordinates (..., 3 * marker).
-
-    Examples
-    --------
-    >>> to_rows(np.array([[1, 10, 100], [2, 20, 200]]), "planar").tolist()
-    [1, 2, 10, 20, 100, 200]
-
-    """
+    """Return positions (..., marker, axis) as coordinates (..., 3 * marker)."""
     ordered = positions.swapaxes(-1, -2) if _known(layout) == "planar" else positions
     return ordered.reshape(*positions.shape[:-2], -1)
 

@@ -25,10 +25,6 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     -------
     array of shape (time, 1 + 2 * harmonic)
 
-    See Also
-    --------
-    centred_harmonics : The same for evenly spaced frames, and faster.
-
     References
     ----------
     Troje (2002), eq. 15. Troje (2002), The little difference, eq. 1.
@@ -47,26 +43,9 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
 
 
 def centred_harmonics(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
-    """Return the harmonic basis of evenly spaced frames, as rows, time 0 in their middle.
+    """Return the harmonic basis of evenly spaced frames, as rows, with time 0 in their middle.
 
-    Parameters
-    ----------
-    n_frames : int
-        Number of frames.
-    cycles_per_frame : float
-        Stride frequency over frame rate.
-    n_harmonics : int
-        Number of harmonics.
-
-    Returns
-    -------
-    array of shape (1 + 2 * harmonic, frame)
-
-    Examples
-    --------
-    >>> centred_harmonics(3, 0.25, 1).round(9).tolist()
-    [[1.0, 1.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]
-
+    The shape is (1 + 2 * harmonic, frame). It is `harmonic_basis`, faster.
     """
     turn = unit_phasors(2 * np.pi * cycles_per_frame, n_frames)
     rows = np.ones((1 + 2 * n_harmonics, n_frames))
@@ -98,28 +77,10 @@ def fit_basis(basis: np.ndarray, values: np.ndarray) -> np.ndarray:
 def fit_harmonics(
     postures: np.ndarray, cycles_per_frame: float, n_harmonics: int = 2
 ) -> tuple[np.ndarray, float]:
-    """Return postures as a Fourier series of a known frequency, by least squares.
+    """Return postures (time, feature) as a Fourier series of a known frequency, by least squares.
 
-    Parameters
-    ----------
-    postures : array of shape (time, feature)
-        Evenly sampled.
-    cycles_per_frame : float
-        Stride frequency over frame rate.
-    n_harmonics : int
-        Number of harmonics.
-
-    Returns
-    -------
-    coefficients : array of shape (1 + 2 * harmonic, feature)
-        Of 1, sin 1, cos 1, sin 2, cos 2 ..., time counting from the middle of the postures.
-    residual : float
-        Sum of squares that is left.
-
-    References
-    ----------
-    Troje (2002), The little difference, eq. 1. Moler (2016).
-
+    Coefficients of 1, sin 1, cos 1 ... of shape (1 + 2 * harmonic, feature), time counting from the
+    middle of the postures; and the sum of squares that is left.
     """
     shifted = postures - postures[0]
     rows = centred_harmonics(len(postures), cycles_per_frame, n_harmonics)

@@ -1,4 +1,4 @@
-"""Jointed bodies: where joints are when bones turn."""
+"""Jointed bodies: the places of joints when bones turn."""
 
 from __future__ import annotations
 
@@ -13,36 +13,10 @@ def forward_kinematics(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and orientations in the room of all joints of a tree of bones.
 
-    Parameters
-    ----------
-    parents : sequence of int
-        For each joint the index of its parent, which must come before it; -1 for a root.
-    offsets : array of shape (joint, 3) or (time, joint, 3)
-        Place of each joint in the frame of its parent (of the room, for a root), constant for rigid
-        bones.
-    rotations : array of shape (time, joint, 4)
-        Rotation of each joint relative to its parent, unit quaternions (x, y, z, w).
-
-    Returns
-    -------
-    positions : array of shape (time, joint, 3)
-        In the unit of `offsets`.
-    orientations : array of shape (time, joint, 4)
-        Quaternions (x, y, z, w) that turn each joint's own frame into the room's.
-
-    Examples
-    --------
-    A forearm bent by 90 degrees at the elbow:
-
-    >>> bend = Rotation.from_euler("y", [[0], [-90]], degrees=True).as_quat()[None]
-    >>> positions, _ = forward_kinematics(
-    ...     [-1, 0, 1],
-    ...     np.array([[0, 0, 0], [0, 0, -300], [0, 0, -250.0]]),
-    ...     np.concatenate([bend, bend[:, :1]], axis=1),
-    ... )
-    >>> positions[0, 2].round().tolist()
-    [250.0, 0.0, -300.0]
-
+    For each joint: the index of its parent, which comes before it, -1 for a root; its offset in the
+    frame of the parent, (joint, 3) or (time, joint, 3); its rotation relative to the parent, unit
+    quaternions (x, y, z, w) of shape (time, joint, 4). Positions have the shape (time, joint, 3),
+    orientations (time, joint, 4).
     """
     n_frames, n_joints, _ = rotations.shape
     offsets = np.array(np.broadcast_to(offsets, (n_frames, n_joints, 3)))
@@ -62,41 +36,17 @@ def forward_kinematics(
 
 
 def bone_rotations(parents: Sequence[int], rest: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return how the joints of a body with constant bones turn to lie over given positions.
+    """Return the rotations of a rigid body's joints that bring it nearest to seen positions.
 
     From the root outwards, each joint turns its bones towards where the next joints were seen from
-    where it has come to be itself, so that a bone of another length than the captured one costs its
-    difference once and no joint further out pays for it again. A joint that carries one bone turns
-    it the shortest way; one that carries several turns them together, as a rigid part, by least
-    squares. About the axis of a single bone nothing is known, and nothing turns.
+    the place it has been given itself. So a bone of another length than the captured one costs its
+    difference once, and no joint further out pays for it again. A joint that carries one bone turns
+    it the shortest way; one that carries several turns them together by least squares. About the
+    axis of a single bone nothing is known, and nothing turns.
 
-    Parameters
-    ----------
-    parents : sequence of int
-        For each joint the index of its parent, which must come before it; -1 for the root.
-    rest : array of shape (joint, 3)
-        Place of each joint in the frame of its parent when nothing is turned. Where it is zero, the
-        joint is at its parent's place, and its parent turns it with what it carries itself.
-    positions : array of shape (time, joint, 3)
-        Where the joints were seen, in the unit of `rest`; none missing.
-
-    Returns
-    -------
-    array of shape (time, joint, 4)
-        Rotation of each joint relative to its parent, unit quaternions (x, y, z, w), as
-        `forward_kinematics` takes them.
-
-    Examples
-    --------
-    An arm that hung down is seen held forward:
-
-    >>> rest = np.array([[0, 0, 0], [0, 0, -300.0]])
-    >>> seen = np.array([[[0, 0, 1400], [310, 0, 1400.0]]])
-    >>> turns = bone_rotations([-1, 0], rest, seen)
-    >>> held, _ = forward_kinematics([-1, 0], rest, turns)
-    >>> held[0, 1].round(6).tolist()
-    [300.0, 0.0, 0.0]
-
+    `rest` (joint, 3) holds the offset of each joint in the frame of its parent. Where it is zero,
+    the joint is at its parent's place, and its parent turns it with what it carries itself.
+    Positions are (time, joint, 3), complete; the result is as `forward_kinematics` takes it.
     """
     bones = [_bones_from(joint, parents, rest) for joint in range(len(parents))]
     turns = np.zeros((*positions.shape[:2], 4))
@@ -119,7 +69,7 @@ def bone_rotations(parents: Sequence[int], rest: np.ndarray, positions: np.ndarr
 
 
 def _bones_from(joint: int, parents: Sequence[int], rest: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the bones that begin at the place of a joint and are carried by it, by their end."""
+    """Return the bones that start at a joint's place and turn with it, by their end."""
     bones: dict[int, np.ndarray] = {}
     for child, parent in enumerate(parents):
         if parent == joint:
@@ -131,7 +81,7 @@ def _bones_from(joint: int, parents: Sequence[int], rest: np.ndarray) -> dict[in
 def _turn_bones(
     bones: dict[int, np.ndarray], seen: dict[int, np.ndarray], n_frames: int
 ) -> Rotation:
-    """Return the turn in each frame that takes bones at rest to where they were seen."""
+    """Return the rotation in each frame that turns bones at rest to where they were seen."""
     if not bones:
         return Rotation.identity(n_frames)
     if len(bones) == 1:
@@ -144,26 +94,9 @@ def _turn_bones(
 
 
 def shortest_turn(start: np.ndarray, end: np.ndarray) -> Rotation:
-    """Return the smallest rotations that bring one direction into others.
+    """Return the smallest rotations that bring one direction, (3,), into others, (time, 3).
 
-    Parameters
-    ----------
-    start : array of shape (3,)
-        Any length above 0.
-    end : array of shape (time, 3)
-        Of zero length where there is nothing to turn to; then nothing turns.
-
-    Returns
-    -------
-    Rotation
-        One a row of `end`.
-
-    Examples
-    --------
-    >>> turn = shortest_turn(np.array([0, 0, 2.0]), np.array([[5.0, 0, 0], [0, 0, -1]]))
-    >>> turn.magnitude().round(6).tolist()
-    [1.570796, 3.141593]
-
+    Nothing turns where the other has no length.
     """
     start = start / np.linalg.norm(start)
     length = np.linalg.norm(end, axis=1, keepdims=True)
@@ -178,27 +111,8 @@ def shortest_turn(start: np.ndarray, end: np.ndarray) -> Rotation:
 def rigid_turn(still: np.ndarray, moving: np.ndarray) -> Rotation:
     """Return the rotations about the origin that bring points over moving ones by least squares.
 
-    Kabsch (1976), for all frames at once.
-
-    Parameters
-    ----------
-    still : array of shape (point, 3)
-        Two or more.
-    moving : array of shape (time, point, 3)
-        The same points, frame by frame.
-
-    Returns
-    -------
-    Rotation
-        One a frame.
-
-    Examples
-    --------
-    >>> still = np.array([[100.0, 0, 0], [0, 50, 0]])
-    >>> turn = rigid_turn(still, np.array([[[0, 100.0, 0], [-50, 0, 0]]]))
-    >>> turn.as_rotvec(degrees=True).round(6).tolist()
-    [[0.0, 0.0, 90.0]]
-
+    Two or more still points (point, 3), and the same (time, point, 3); all frames at once, after
+    Kabsch (1976).
     """
     covariance = np.einsum("tpi,pj->tij", moving, still)
     left, _, right = np.linalg.svd(covariance)
@@ -208,24 +122,9 @@ def rigid_turn(still: np.ndarray, moving: np.ndarray) -> Rotation:
 
 
 def rotate_z(positions: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
-    """Return positions turned about the vertical, counter-clockwise as seen from above.
+    """Return positions (time, marker, axis) turned about the vertical.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        x, y and z.
-    angle : float or array of shape (time,)
-        Radians, one for all frames or one a frame.
-
-    Returns
-    -------
-    array of shape (time, marker, axis)
-
-    Examples
-    --------
-    >>> rotate_z(np.array([[[1.0, 0, 5]]]), np.pi / 2).round(9).tolist()
-    [[[0.0, 1.0, 5.0]]]
-
+    By an angle in radians, one or one a frame, counter-clockwise as seen from above.
     """
     angle = np.reshape(angle, (-1, 1))
     cos, sin = np.cos(angle), np.sin(angle)

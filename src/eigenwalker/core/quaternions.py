@@ -9,30 +9,13 @@ from scipy.spatial.transform import Rotation
 def quaternions_at(vectors: np.ndarray, moments: np.ndarray, *, wraps: bool = False) -> np.ndarray:
     """Return rotations at moments between frames, by the shorter way.
 
-    Parameters
-    ----------
-    vectors : array of shape (time, marker, 3)
-        Rotation vectors of each frame; NaN where a marker has none.
-    moments : array of shape (moment,)
-        In frames, 0 or more.
-    wraps : bool
-        Whether the first frame follows the last; otherwise the last stands still.
-
-    Returns
-    -------
-    array of shape (moment, marker, 4)
-        Unit quaternions.
-
-    Examples
-    --------
-    >>> quarter = np.array([[[0, 0, 0]], [[0, 0, np.pi / 2]]])
-    >>> vectors_of(quaternions_at(quarter, np.array([0.5])))[0, 0].round(6).tolist()
-    [0.0, 0.0, 0.785398]
-
+    Rotation vectors have the shape (time, marker, 3), NaN where a marker has none; moments count in
+    frames; the result are unit quaternions (moment, marker, 4). If it wraps, the first frame
+    follows the last; otherwise the last is held.
     """
     quaternions = np.full((*vectors.shape[:2], 4), np.nan)
-    seen = np.isfinite(vectors).all(axis=2)
-    quaternions[seen] = Rotation.from_rotvec(vectors[seen]).as_quat()
+    known = np.isfinite(vectors).all(axis=2)
+    quaternions[known] = Rotation.from_rotvec(vectors[known]).as_quat()
     n_frames = len(vectors)
     before = moments.astype(int)
     share = (moments - before)[:, None]
@@ -47,11 +30,7 @@ def quaternions_at(vectors: np.ndarray, moments: np.ndarray, *, wraps: bool = Fa
 def between(start: np.ndarray, stop: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Return quaternions of shape (time, marker, 4) a share of the shorter way from start to stop.
 
-    Parameters
-    ----------
-    start, stop : array of shape (time, marker, 4)
-    share : array that broadcasts to (time, marker)
-
+    The share broadcasts to (time, marker).
     """
     dot = np.einsum("tmq,tmq->tm", start, stop)
     stop = np.where(dot[..., None] < 0, -stop, stop)

@@ -6,13 +6,6 @@ import numpy as np
 
 
 def runs_of_true(flags: np.ndarray) -> list[tuple[int, int]]:
-    """Return where each run of True starts, and where it stops (not included).
-
-    Examples
-    --------
-    >>> runs_of_true(np.array([True, False, True, True]))
-    [(0, 1), (2, 4)]
-
-    """
+    """Return where each run of True starts, and where it stops (not included)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
     return [(int(start), int(stop)) for start, stop in zip(edges[::2], edges[1::2], strict=True)]

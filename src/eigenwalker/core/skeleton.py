@@ -1,4 +1,4 @@
-"""Who is joined to whom: marker names, segments, left-right pairs and groups."""
+"""The markers of a body: their names, segments, left-right pairs and groups."""
 
 from __future__ import annotations
 
@@ -77,15 +77,15 @@ class Skeleton:
         (('left_knee', 'left_ankle'),)
 
         """
-        kept = tuple(markers)
+        names = tuple(markers)
 
         def among(links: tuple[Segment, ...]) -> tuple[Segment, ...]:
-            return tuple(link for link in links if set(link) <= set(kept))
+            return tuple(link for link in links if set(link) <= set(names))
 
         groups = {
-            name: tuple(m for m in members if m in kept) for name, members in self.groups.items()
+            name: tuple(m for m in members if m in names) for name, members in self.groups.items()
         }
-        return Skeleton(kept, among(self.segments), among(self.pairs), groups)
+        return Skeleton(names, among(self.segments), among(self.pairs), groups)
 
 
 def _both_sides(*parts: str) -> tuple[str, ...]:
@@ -125,7 +125,7 @@ JOINTS = Skeleton(
         "lower_body": ("pelvis", *_both_sides("hip", "knee", "ankle")),
     },
 )
-"""The 15 joints of Troje (2002, fig. 1), J3 and J4, in the project's order."""
+"""The 15 joints of Troje (2002, fig. 1), in the order of this package."""
 
 _DRAWN_PARTS = ("heel", "toe", "hand")
 LINKS = Skeleton(

@@ -1,4 +1,4 @@
-"""Extrema between samples, and running means."""
+"""Extrema between samples."""
 
 from __future__ import annotations
 
@@ -7,25 +7,9 @@ from scipy.ndimage import uniform_filter1d
 
 
 def parabola_vertex(before: float, here: float, after: float) -> tuple[float, float]:
-    """Return the vertex of the parabola through three equally spaced samples.
+    """Return where the parabola through an extreme sample and its neighbours has its vertex.
 
-    Parameters
-    ----------
-    before, here, after : float
-        An extreme sample and its two neighbours.
-
-    Returns
-    -------
-    shift : float
-        Where the vertex is, in samples from the middle one.
-    height : float
-        The value there. On a straight line both are those of the middle sample.
-
-    Examples
-    --------
-    >>> parabola_vertex(0.0, 3.0, 2.0)
-    (0.25, 3.125)
-
+    In samples from the middle one, and its value; those of the middle sample on a straight line.
     """
     curvature = before - 2 * here + after
     if curvature == 0:

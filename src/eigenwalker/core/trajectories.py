@@ -1,4 +1,4 @@
-"""Marker positions over time: a labelled array, and what makes one.
+"""Marker positions over time as a labelled array.
 
 Trajectories are a plain `xarray.DataArray` with dims ``(time, marker, axis)`` in millimetres and
 seconds; x points forward, y to the walker's left, z up. Missing samples are NaN.
@@ -23,7 +23,7 @@ MILLIMETRES = {
     "in": 25.4,
     "ft": 304.8,
 }
-"""How many millimetres each unit that a capture may come in has."""
+"""Millimetres in each unit of a capture."""
 
 
 def label_trajectories(
@@ -78,47 +78,27 @@ def label_trajectories(
 
 
 def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) -> xr.DataArray:
-    """Return positions in millimetres, sampled at the given times, as trajectories.
-
-    Parameters
-    ----------
-    time : array of shape (time,)
-        Seconds, of any spacing.
-    values : array of shape (time, marker, axis)
-        Positions in millimetres.
-    markers : sequence of str
-        One name a marker.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-
-    Examples
-    --------
-    >>> trajectories_at([0.0, 0.5], np.ones((2, 1, 3)), ["head"]).sizes["time"]
-    2
-
-    """
+    """Return positions (time, marker, axis) in mm, at times in seconds, as trajectories."""
     time = np.asarray(time, dtype=float)
     values = np.asarray(values, dtype=float)
     names = [str(marker) for marker in markers]
-    amiss = []
+    problems = []
     if values.shape != (len(time), len(names), 3):
-        amiss.append(
+        problems.append(
             f"values have shape {values.shape}, where {len(time)} times and {len(names)} markers "
             f"ask for {(len(time), len(names), 3)}, that is (time, marker, axis)"
         )
     if len(set(names)) < len(names):
         twice = sorted({name for name in names if names.count(name) > 1})
-        amiss.append(f"marker names must differ from each other, and these come twice: {twice}")
+        problems.append(f"marker names must differ from each other, and these come twice: {twice}")
     if not all(names):
-        amiss.append("a marker has an empty name")
+        problems.append("a marker has an empty name")
     if np.isinf(values).any():
-        amiss.append("some values are infinite; mark missing samples by NaN")
+        problems.append("some values are infinite; mark missing samples by NaN")
     if not np.isfinite(time).all():
-        amiss.append("some times are not finite")
-    if amiss:
-        raise ValueError("These are no trajectories: " + "; ".join(amiss) + ".")
+        problems.append("some times are not finite")
+    if problems:
+        raise ValueError("These are no trajectories: " + "; ".join(problems) + ".")
     return xr.DataArray(
         values,
         dims=DIMS,
@@ -129,24 +109,9 @@ def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) 
 
 
 def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.DataArray:
-    """Return `walk` if it is what this package calls trajectories, in the usual order of dims.
+    """Return `walk` with its dims in the usual order if it is trajectories; raise if it is not.
 
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        What a caller handed in.
-    complete : bool
-        Whether missing samples are refused too.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is anything else, saying what and what to do.
-
+    If they are to be complete, missing samples are refused too.
     """
     if not isinstance(walk, xr.DataArray):
         raise TypeError(
@@ -181,15 +146,7 @@ def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.Data
 
 
 def sampling_rate(walk: xr.DataArray) -> float:
-    """Return the frames a second of evenly sampled trajectories.
-
-    Examples
-    --------
-    >>> walk = label_trajectories(np.zeros((5, 1, 3)), markers=["head"], rate_hz=120)
-    >>> round(sampling_rate(walk), 6)
-    120.0
-
-    """
+    """Return the frames a second of evenly sampled trajectories."""
     time = walk.time.values
     if len(time) < 2:
         raise ValueError(f"A rate needs two frames or more, got {len(time)}.")

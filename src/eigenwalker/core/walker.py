@@ -1,4 +1,4 @@
-"""One walker: a mean posture and postures that ride on sines (Troje 2002, eq. 3)."""
+"""One walker: a mean posture and postures that ride on sines."""
 
 from __future__ import annotations
 
@@ -21,8 +21,6 @@ Form = Literal["eigenposture", "fourier"]
 class CaptureFit:
     """What the decomposition of a capture found, and how well the walker explains it.
 
-    The papers quote shares of different things, so each has a name of its own (A24).
-
     Parameters
     ----------
     r2 : float
@@ -30,22 +28,26 @@ class CaptureFit:
     fourier_r2 : float
         The same share for `fourier`, which a walker in correspondence plays.
     residual_power : float
-        Power of the residual over power of the input, the mean posture left in (WDP2002).
+        Power of the residual over power of the input, mean posture included.
     relative_rms : float
         Root mean square of the residual over that of the movement, sqrt(1 - r2).
     variance_share : array of shape (component,)
-        Share of variance of the first principal components, before any sine (J fig. 2).
+        Share of variance of the first principal components, before any sine.
     sine_r2 : array of shape (component,)
-        Coefficient of determination of the sine fitted to each eigenposture's scores (J8).
+        Coefficient of determination of the sine fitted to each eigenposture's scores.
     fourier : array of shape (2 * harmonic, marker, axis)
         Regression of the capture on sin 1, cos 1, sin 2, cos 2 ... on the walker's clock, in
         millimetres: the planes that correspondence rests on.
     eigenpostures : array of shape (component, marker, axis)
-        As found by the first decomposition, before correspondence changed sign, order or axes.
+        Of the decomposition, before correspondence changes sign, order or axes.
     harmonics, phases : array of shape (component,)
-        As found, beside `eigenpostures`.
+        Those of `eigenpostures`.
     n_strides : float
-        Strides the capture holds.
+        Number of strides in the capture.
+
+    References
+    ----------
+    Troje (2002), figs. 2 and 3. Troje (2002), The little difference.
 
     """
 
@@ -64,10 +66,12 @@ class CaptureFit:
 
 @dataclass(frozen=True, eq=False)
 class Walker:
-    """A walk as a mean posture and postures that ride on sines.
+    r"""A walk as a mean posture and postures that ride on sines.
 
-    ``p(t) = p0 + sum_i p_i sin(h_i w (t - origin) + phi_i)``, eq. 3 of Troje (2002) with harmonics
-    h = (1, 1, 2, 2), and eq. 1 of WDP2002 where phases are fixed at (0, pi/2, 0, pi/2).
+    .. math:: p(t) = p_0 + \sum_i p_i \sin(h_i \omega (t - t_0) + \phi_i)
+
+    Harmonics h are (1, 1, 2, 2) for two harmonics. In the eigenposture form phases are free; in the
+    Fourier form they are fixed at (0, pi/2, 0, pi/2).
 
     Parameters
     ----------
@@ -76,7 +80,7 @@ class Walker:
     p0 : array of shape (marker, axis)
         Mean posture in millimetres.
     p : array of shape (component, marker, axis)
-        Eigenpostures in millimetres, their amplitudes multiplied in (J9).
+        Eigenpostures in millimetres, multiplied by their amplitudes.
     harmonics : array of int of shape (component,)
         The multiple of the stride frequency on which each posture rides.
     phases : array of shape (component,)
@@ -84,7 +88,7 @@ class Walker:
     frequency_hz : float
         Strides, two steps each, a second.
     form : {"eigenposture", "fourier"}
-        Whether phases are free (J) or fixed (W): what counts as a feature.
+        Whether phases are free or fixed: what counts as a feature.
     speed_mm_s : float
         Forward speed that was taken out of the walk; NaN where it is not known.
     time_origin_s : float
@@ -96,6 +100,14 @@ class Walker:
     ------
     ValueError
         If shapes do not fit each other or a number is not finite.
+
+    See Also
+    --------
+    decompose_pca, decompose_fourier : Make a walker of a walk.
+
+    References
+    ----------
+    Troje (2002), Decomposing biological motion, eq. 3. Troje (2002), The little difference, eq. 1.
 
     Examples
     --------
@@ -119,16 +131,16 @@ class Walker:
     fit: CaptureFit | None = None
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "markers", tuple(str(marker) for marker in self.markers))
+        set_field = object.__setattr__
+        set_field(self, "markers", tuple(str(marker) for marker in self.markers))
         for name, kind in (("p0", float), ("p", float), ("harmonics", int), ("phases", float)):
             values = np.array(getattr(self, name), dtype=kind)
             values.flags.writeable = False
-            put(self, name, values)
+            set_field(self, name, values)
         for name in ("frequency_hz", "speed_mm_s", "time_origin_s"):
-            put(self, name, float(getattr(self, name)))
-        if amiss := self._amiss():
-            raise ValueError("This cannot walk: " + "; ".join(amiss) + ".")
+            set_field(self, name, float(getattr(self, name)))
+        if problems := self._problems():
+            raise ValueError("This cannot walk: " + "; ".join(problems) + ".")
 
     def __repr__(self) -> str:
         explained = f", r2 {self.fit.r2:.3f}" if self.fit is not None else ""
@@ -138,7 +150,7 @@ class Walker:
         )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the walker, walking, and the numbers that tell how."""
+        """A drawing that walks, and a table of facts, for notebooks."""
         facts = {
             "strides a second": f"{self.frequency_hz:.3f} Hz, {self.period_s:.2f} s each",
             "markers": str(len(self.markers)),
@@ -149,22 +161,11 @@ class Walker:
             facts["speed"] = f"{self.speed_mm_s / 1000:.2f} m/s"
         if self.fit is not None:
             facts["R\N{SUPERSCRIPT TWO} of its capture"] = f"{self.fit.r2:.3f}"
-        rows = [[escape(name), escape(said)] for name, said in facts.items()]
+        rows = [[escape(name), escape(value)] for name, value in facts.items()]
         return beside(self.moving_svg(), html_table(rows, title="Walker"))
 
     def moving_svg(self, *, height_px: int = 200) -> str:
-        """Return one stride as a small drawing that plays for ever.
-
-        Parameters
-        ----------
-        height_px : int
-
-        Returns
-        -------
-        str
-            SVG, in the colour of the text around it.
-
-        """
+        """Return one stride as SVG that plays for ever, in the colour of the text around it."""
         body = JOINTS.restricted_to(self.markers)
         time = self.time_origin_s + np.arange(N_FRAMES) * self.period_s / N_FRAMES
         return stride_svg(
@@ -175,38 +176,38 @@ class Walker:
             label=f"A walker of {len(self.markers)} points at {self.frequency_hz:.2f} Hz",
         )
 
-    def _amiss(self) -> list[str]:
+    def _problems(self) -> list[str]:
         n_markers, n_components = len(self.markers), len(self.harmonics)
-        amiss = []
+        problems = []
         if len(set(self.markers)) < n_markers:
-            amiss.append("marker names come more than once")
+            problems.append("marker names come more than once")
         if not n_markers:
-            amiss.append("it has no markers")
+            problems.append("it has no markers")
         if self.p0.shape != (n_markers, 3):
-            amiss.append(
+            problems.append(
                 f"the mean posture has shape {self.p0.shape}, not (marker, axis) = {n_markers, 3}"
             )
         if self.p.shape != (n_components, n_markers, 3):
-            amiss.append(
+            problems.append(
                 f"the eigenpostures have shape {self.p.shape}, not (component, marker, axis) = "
                 f"{n_components, n_markers, 3}"
             )
         if self.phases.shape != (n_components,):
-            amiss.append(f"there are {self.phases.size} phases for {n_components} postures")
+            problems.append(f"there are {self.phases.size} phases for {n_components} postures")
         if (self.harmonics < 1).any():
-            amiss.append(f"harmonics must be 1 or more, got {self.harmonics.tolist()}")
+            problems.append(f"harmonics must be 1 or more, got {self.harmonics.tolist()}")
         numbers = (self.p0, self.p, self.phases, [self.frequency_hz, self.time_origin_s])
         if not all(np.isfinite(values).all() for values in numbers):
-            amiss.append("some of its numbers are not finite")
+            problems.append("some of its numbers are not finite")
         elif self.frequency_hz <= 0:
-            amiss.append(f"its frequency is {self.frequency_hz:.4g} Hz, which must be above 0")
+            problems.append(f"its frequency is {self.frequency_hz:.4g} Hz, which must be above 0")
         if self.form not in ("eigenposture", "fourier"):
-            amiss.append(f"form={self.form!r} is neither 'eigenposture' nor 'fourier'")
-        return amiss
+            problems.append(f"form={self.form!r} is neither 'eigenposture' nor 'fourier'")
+        return problems
 
     @property
     def mean_posture(self) -> xr.DataArray:
-        """The mean posture p0: DataArray of shape (marker, axis), millimetres."""
+        """The mean posture p0 in millimetres: DataArray of shape (marker, axis)."""
         return xr.DataArray(
             self.p0,
             dims=("marker", "axis"),
@@ -217,7 +218,7 @@ class Walker:
 
     @property
     def eigenpostures(self) -> xr.DataArray:
-        """The postures that ride on sines: DataArray of shape (component, marker, axis), mm."""
+        """The postures p in millimetres: DataArray of shape (component, marker, axis)."""
         return xr.DataArray(
             self.p,
             dims=("component", "marker", "axis"),
@@ -238,7 +239,7 @@ class Walker:
         return 1 / self.frequency_hz
 
     def trajectories(self, time: ArrayLike | xr.DataArray) -> xr.DataArray:
-        """Return the walk at the given times (eq. 3).
+        """Return the walk at the given times: Troje (2002), eq. 3.
 
         Parameters
         ----------
@@ -262,9 +263,9 @@ class Walker:
 
 
 def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
-    """Return the walker's movement as coefficients of sin 1, cos 1, sin 2, cos 2 ...
+    """Return a walker's movement as coefficients of sin 1, cos 1, sin 2, cos 2 ...
 
-    Expands ``p sin(h w t + phi) = p cos(phi) sin(h w t) + p sin(phi) cos(h w t)`` and adds up the
+    Expands ``p sin(h w t + phi) = p cos(phi) sin(h w t) + p sin(phi) cos(h w t)`` and sums the
     postures of each harmonic.
 
     Parameters
@@ -272,7 +273,7 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
     walker : Walker
         Of any form.
     n_harmonics : int
-        Harmonics wanted; those that the walker lacks are 0.
+        Number of harmonics; those that the walker lacks are 0.
 
     Returns
     -------

@@ -25,32 +25,9 @@ def stride_svg(
 ) -> str:
     """Return positions over one period as SVG that plays them for ever, dots over pale sticks.
 
-    It has the colour of the text around it, and no ground of its own.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, 3)
-        Millimetres: x forward, y left, z up; evenly over one period, whose end is left out.
-    period_s : float
-        How long it takes.
-    segments : sequence of pairs of int
-        Which markers are joined.
-    height_px : int
-        Of the drawing.
-    label : str
-        What it is, for those who cannot see it.
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> hop = np.array([[[0, 0, 0]], [[0, 0, 40]]])
-    >>> svg = stride_svg(hop, period_s=1.0, label="a <b>")
-    >>> svg.startswith("<svg"), "a &lt;b&gt;" in svg
-    (True, True)
-
+    Positions (time, marker, 3) are in millimetres, evenly over one period, whose end is left out;
+    segments are pairs of markers that are joined. It has the colour of the text around it, and no
+    background.
     """
     places, width = _places_px(np.asarray(positions, dtype=float), height_px)
     sticks = [_path(frame, segments) for frame in places]
@@ -104,6 +81,6 @@ def html_table(rows: Sequence[Sequence[str]], *, title: str) -> str:
 
 
 def beside(drawing: str, words: str) -> str:
-    """Return a drawing and what is told of it side by side, for a notebook."""
+    """Return a drawing and words side by side, for a notebook."""
     style = "display:flex;gap:20px;align-items:center;flex-wrap:wrap"
     return f'<div style="{style}"><div>{drawing}</div><div>{words}</div></div>'

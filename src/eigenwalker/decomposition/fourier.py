@@ -87,21 +87,9 @@ def origin_angle(
     markers: Sequence[str],
     phase_ref: tuple[str, str] = PHASE_REFERENCE,
 ) -> float:
-    """Return the angle of the stride at which the phase reference rises through zero.
+    """Return the angle of the stride, in radians, at which the phase reference rises through zero.
 
-    Parameters
-    ----------
-    coefficients : array of shape (2 * harmonic, marker, axis)
-        Of sin 1, cos 1, sin 2, cos 2 ...
-    markers : sequence of str
-    phase_ref : pair of str
-        As in `decompose_fourier`.
-
-    Returns
-    -------
-    float
-        Radians of the fundamental.
-
+    From coefficients of sin 1, cos 1, ... of shape (2 * harmonic, marker, axis).
     """
     if set(phase_ref) <= set(markers):
         first, second = (list(markers).index(name) for name in phase_ref)

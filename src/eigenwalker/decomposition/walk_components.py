@@ -158,19 +158,11 @@ def _fit_sines(
 
 @dataclass(frozen=True, eq=False)
 class WalkComponents:
-    """A walk with its eigenpostures and its Fourier series: what a walker of either form is of.
+    """A walk with its eigenpostures and its Fourier series: the source of a walker of either form.
 
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-    postures : array of shape (time, feature)
-        The same, each posture as a row.
-    eigenpostures : Eigenpostures
-    fourier : array of shape (1 + 2 * harmonic, feature)
-        Coefficients of 1, sin 1, cos 1 ..., time counting from the middle of the walk.
-    fourier_residual : float
-        Sum of squares that the series leaves.
-
+    Each posture is also a row of `postures` (time, feature). `fourier` holds the coefficients of 1,
+    sin 1, cos 1 ..., of shape (1 + 2 * harmonic, feature), time counting from the middle of the
+    walk; `fourier_residual` is the sum of squares that they leave.
     """
 
     walk: xr.DataArray

@@ -1,18 +1,17 @@
-"""Many walkers made comparable: sign, order, axes and phase of their eigenpostures (A4 to A6).
+"""Correspondence: sign, order, axes and phase of the eigenpostures of many walkers.
 
-The principal components of one walk are settled up to sign, and where two of them explain nearly
+The principal components of one walk are determined up to sign, and where two of them explain nearly
 the same variance, up to any rotation; in real walks components 2 and 3 change places. Averages over
-walkers make sense only once eigenposture i of each shows the same thing. The papers are silent on
-how; here
+walkers make sense only once eigenposture i of each means the same. The papers do not say how; here
 
 1. each walk gives the plane in which its postures move at each harmonic, by regression on the sine
    and cosine of that harmonic, whatever the order of its components;
 2. the plane of the average walker has its own principal axes: its eigenpostures;
-3. each walker's axes are turned within its plane as near as can be to those (orthogonal
-   Procrustes), which also settles signs; phases follow from the axes;
+3. each walker's axes are rotated within its plane as near as possible to those (orthogonal
+   Procrustes), which also determines signs; phases follow from the axes;
 4. the first phase is set to 0, where the left ankle is ahead of the right.
 
-A walker whose eigenpostures still do not resemble the average's is flagged and left out of it.
+A walker whose eigenpostures still do not resemble the average's is flagged, and left out of it.
 """
 
 from __future__ import annotations
@@ -24,38 +23,27 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.core.fourier import shift_origin
-from eigenwalker.core.walker import Walker, fourier_coefficients
+from eigenwalker.core.walker import Form, Walker, fourier_coefficients
 from eigenwalker.decomposition.fourier import origin_angle
 from eigenwalker.decomposition.pca import is_negative
 from eigenwalker.population.features import FeatureLayout, wrap_phase
 
 _MAX_ROUNDS = 50
-_SETTLED = 1e-10
+_CONVERGED = 1e-10
 MIN_SIMILARITY = 0.3
-"""Least cosine between an eigenposture and the average walker's that counts as the same thing."""
+"""Least cosine between an eigenposture and the average walker's that counts as the same."""
 MIN_SHARE = 0.002
-"""Share of a walker's movement below which a posture may mean anything: the fourth of a usual
+"""Share of a walker's movement below which a posture is not compared: the fourth of a typical
 walker has 0.01."""
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
-    """What walkers are brought into correspondence with.
-
-    Parameters
-    ----------
-    axes : array of shape (harmonic, 2, marker * axis)
-        Unit eigenpostures of the average walker.
-    average : array of shape (2 * harmonic, marker * axis)
-        Its movement as coefficients of sin 1, cos 1, sin 2, cos 2 ..., in millimetres.
-    form : {"eigenposture", "fourier"}
-    markers : tuple of str
-
-    """
+class ReferenceWalker:
+    """What walkers are brought into correspondence with."""
 
     axes: np.ndarray
     average: np.ndarray
-    form: str
+    form: Form
     markers: tuple[str, ...]
 
 
@@ -65,8 +53,7 @@ class Correspondence:
 
     Parameters
     ----------
-    reference : Reference
-        The average walker's axes.
+    reference : ReferenceWalker
     similarity : array of shape (walker, component)
         Cosine between each eigenposture and the average walker's.
     flags : tuple of str
@@ -74,7 +61,7 @@ class Correspondence:
 
     """
 
-    reference: Reference
+    reference: ReferenceWalker
     similarity: np.ndarray
     flags: tuple[str, ...]
 
@@ -90,14 +77,14 @@ class _Aligned(NamedTuple):
 def correspond(
     walkers: Sequence[Walker], *, leave_out: Sequence[bool] | None = None
 ) -> tuple[tuple[Walker, ...], Correspondence]:
-    """Return walkers whose eigenpostures mean the same, and how far that holds.
+    """Return walkers in correspondence, and how far correspondence holds.
 
     Parameters
     ----------
     walkers : sequence of Walker
         All of the same markers, form and number of harmonics.
     leave_out : sequence of bool, optional
-        Walkers that must not shape the average, though they are brought into correspondence too.
+        Walkers that must not shape the average; they are brought into correspondence too.
 
     Returns
     -------
@@ -107,32 +94,37 @@ def correspond(
     Raises
     ------
     ValueError
-        If the walkers cannot be compared at all.
+        If they differ in markers, form or number of harmonics.
+
+    See Also
+    --------
+    correspond_to : One walker in correspondence with others.
 
     """
-    _check_alike(walkers)
+    _check_comparable(walkers)
     trusted = np.ones(len(walkers), dtype=bool)
     if leave_out is not None and not np.all(leave_out):
         trusted = ~np.asarray(leave_out, dtype=bool)
     coefficients, clocks = _canonical(walkers, _n_harmonics(walkers[0]))
     reference = _average_axes(coefficients[trusted], walkers[0])
     for _ in range(_MAX_ROUNDS):
-        aligned, later = _align(coefficients, reference)
-        coefficients = _on_later_clocks(coefficients, later)
-        clocks = clocks + later
+        aligned, shifts = _align(coefficients, reference)
+        coefficients = _shift_origins(coefficients, shifts)
+        clocks = clocks + shifts
         flags = _flags(aligned, reference)
-        still = trusted & np.array([not flag for flag in flags])
-        trusted = still if still.any() else trusted
+        unflagged = trusted & np.array([not flag for flag in flags])
+        trusted = unflagged if unflagged.any() else trusted
         previous, reference = reference, _average_axes(coefficients[trusted], walkers[0])
-        if np.abs(reference.axes - previous.axes).max() < _SETTLED:
+        if np.abs(reference.axes - previous.axes).max() < _CONVERGED:
             break
-    together = tuple(
-        _replaced(walker, aligned, number, clocks[number]) for number, walker in enumerate(walkers)
+    aligned_walkers = tuple(
+        _with_postures(walker, aligned, number, clocks[number])
+        for number, walker in enumerate(walkers)
     )
-    return together, Correspondence(previous, aligned.similarity, flags)
+    return aligned_walkers, Correspondence(previous, aligned.similarity, flags)
 
 
-def correspond_to(walker: Walker, reference: Reference) -> tuple[Walker, np.ndarray, str]:
+def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, np.ndarray, str]:
     """Return one walker in correspondence with a population.
 
     Returns
@@ -151,13 +143,13 @@ def correspond_to(walker: Walker, reference: Reference) -> tuple[Walker, np.ndar
             "the same way, from the same joints."
         )
     coefficients, clocks = _canonical([walker], len(reference.axes))
-    aligned, later = _align(coefficients, reference)
+    aligned, shifts = _align(coefficients, reference)
     (flag,) = _flags(aligned, reference)
-    return _replaced(walker, aligned, 0, clocks[0] + later[0]), aligned.similarity[0], flag
+    return _with_postures(walker, aligned, 0, clocks[0] + shifts[0]), aligned.similarity[0], flag
 
 
 def posture_correlations(postures: np.ndarray) -> np.ndarray:
-    """Return how alike postures are over all pairs of walkers (J12).
+    """Return how similar postures are over all pairs of walkers.
 
     Parameters
     ----------
@@ -168,6 +160,10 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     -------
     array of shape (component,)
         Mean Pearson correlation over all pairs of walkers.
+
+    References
+    ----------
+    Troje (2002), Decomposing biological motion.
 
     Examples
     --------
@@ -183,16 +179,19 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(centred, axis=-1, keepdims=True)
     unit = centred / np.where(length > 0, length, 1)
     # The sum over all pairs is the square of the sum less the pairs of each with itself.
-    together = (unit.sum(axis=0) ** 2).sum(axis=-1) - (unit**2).sum(axis=(0, 2))
-    return together / (n_walkers * (n_walkers - 1))
+    of_pairs = (unit.sum(axis=0) ** 2).sum(axis=-1) - (unit**2).sum(axis=(0, 2))
+    return of_pairs / (n_walkers * (n_walkers - 1))
 
 
 def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
-    """Return the eigenpostures as first found, with only sign and order made to agree.
+    """Return the eigenpostures of the decomposition, with only sign and order made to agree.
 
-    The paper's own reading of correspondence (J12): components sorted by their harmonic, then by
-    variance; signs turned to those of the first walker, then to those of the mean, until none
-    changes.
+    The correspondence that the paper implies: components are sorted by harmonic, then by variance;
+    signs are those of the first walker, then those of the mean, until none changes.
+
+    Parameters
+    ----------
+    walkers : sequence of Walker
 
     Returns
     -------
@@ -201,9 +200,9 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     """
     postures = []
     for walker in walkers:
-        found = walker.fit if walker.fit is not None else None
-        p = found.eigenpostures if found is not None else walker.p
-        harmonics = found.harmonics if found is not None else walker.harmonics
+        p, harmonics = walker.p, walker.harmonics
+        if walker.fit is not None:
+            p, harmonics = walker.fit.eigenpostures, walker.fit.harmonics
         postures.append(p[np.argsort(harmonics, kind="stable")])
     stacked = np.stack(postures)
     towards = stacked[0]
@@ -216,7 +215,7 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     return stacked
 
 
-def _check_alike(walkers: Sequence[Walker]) -> None:
+def _check_comparable(walkers: Sequence[Walker]) -> None:
     if not walkers:
         raise ValueError("A population needs one walker or more, got none.")
     first = FeatureLayout.of(walkers[0])
@@ -235,7 +234,7 @@ def _n_harmonics(walker: Walker) -> int:
 
 
 def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray, np.ndarray]:
-    """Fourier coefficients on a clock that all share, and how far each clock was moved (A4).
+    """Fourier coefficients on a clock that all share, and how far each clock was shifted.
 
     Returns arrays of shape (walker, 2 * harmonic, feature) and (walker,), the latter in radians.
     """
@@ -251,8 +250,8 @@ def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray,
 def _movement(walker: Walker, n_harmonics: int) -> np.ndarray:
     """Fourier coefficients of a walker on its own clock.
 
-    For a walker as it was decomposed they are regressed on its capture, which holds whole planes
-    even where components mix harmonics (A5); for any other they are what it plays.
+    Of a walker as it was decomposed, those of the regression on its capture, which hold whole
+    planes even where components mix harmonics; of any other, those of what it plays.
     """
     fit = walker.fit
     as_decomposed = fit is not None and np.array_equal(walker.p, fit.eigenpostures)
@@ -261,17 +260,15 @@ def _movement(walker: Walker, n_harmonics: int) -> np.ndarray:
     return fourier_coefficients(walker, n_harmonics)
 
 
-def _on_later_clocks(coefficients: np.ndarray, later: np.ndarray) -> np.ndarray:
-    return np.stack(
-        [shift_origin(each, angle) for each, angle in zip(coefficients, later, strict=True)]
-    )
+def _shift_origins(coefficients: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    return np.stack([shift_origin(*each) for each in zip(coefficients, angles, strict=True)])
 
 
-def _average_axes(coefficients: np.ndarray, walker: Walker) -> Reference:
+def _average_axes(coefficients: np.ndarray, walker: Walker) -> ReferenceWalker:
     """Principal axes of the average walker at each harmonic.
 
-    The second of each pair leads the first by a quarter cycle, as phi_2 and phi_4 - phi_3 do in the
-    paper (J43).
+    The second of each pair leads the first by a quarter cycle, as phi_2 and phi_4 - phi_3 do in
+    Troje (2002).
     """
     average = coefficients.mean(axis=0)
     axes = []
@@ -280,37 +277,37 @@ def _average_axes(coefficients: np.ndarray, walker: Walker) -> Reference:
         anatomy = walker.markers if harmonic == 0 else ()
         turn = -1 if is_negative(unit[0].reshape(-1, 3), anatomy) else 1
         axes.append(np.stack([turn * unit[0], turn * np.linalg.det(scores) * unit[1]]))
-    return Reference(np.stack(axes), average, walker.form, walker.markers)
+    return ReferenceWalker(np.stack(axes), average, walker.form, walker.markers)
 
 
-def _align(coefficients: np.ndarray, reference: Reference) -> tuple[_Aligned, np.ndarray]:
-    """Postures of all walkers turned towards the average's, and the later clocks they ask for."""
+def _align(coefficients: np.ndarray, reference: ReferenceWalker) -> tuple[_Aligned, np.ndarray]:
+    """Postures of all walkers rotated towards the average's, and by which angle clocks shift."""
     if reference.form == "fourier":
-        towards = reference.average[:2]
-        later = np.where(np.einsum("whf,hf->w", coefficients[:, :2], towards) < 0, np.pi, 0.0)
-        postures = _on_later_clocks(coefficients, later)
+        fundamental = reference.average[:2]
+        shifts = np.where(np.einsum("whf,hf->w", coefficients[:, :2], fundamental) < 0, np.pi, 0.0)
+        postures = _shift_origins(coefficients, shifts)
         phases = np.tile([0.0, np.pi / 2], (len(postures), len(reference.axes)))
-        return _Aligned(postures, phases, _cosines(postures, reference.average)), later
-    unit, scores = _turn_axes(coefficients, reference.axes)
+        return _Aligned(postures, phases, _cosines(postures, reference.average)), shifts
+    unit, scores = _rotate_axes(coefficients, reference.axes)
     amplitudes = np.linalg.norm(scores, axis=-2).reshape(len(coefficients), -1)
     phases = np.arctan2(scores[..., 1, :], scores[..., 0, :]).reshape(len(coefficients), -1)
     postures = amplitudes[..., None] * unit.reshape(len(coefficients), -1, unit.shape[-1])
-    later = -phases[:, 0]
+    shifts = -phases[:, 0]
     harmonics = np.repeat(np.arange(1, len(reference.axes) + 1), 2)
-    phases = wrap_phase(phases + harmonics * later[:, None])
+    phases = wrap_phase(phases + harmonics * shifts[:, None])
     similarity = _cosines(postures, reference.axes.reshape(-1, unit.shape[-1]))
-    return _Aligned(postures, phases, similarity), later
+    return _Aligned(postures, phases, similarity), shifts
 
 
-def _turn_axes(coefficients: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Each walker's unit eigenpostures, turned within their planes towards the average's.
+def _rotate_axes(coefficients: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Each walker's unit eigenpostures, rotated within their planes towards the average's.
 
     Returns arrays of shape (walker, harmonic, 2, feature) and, the scores that go with them,
     (walker, harmonic, 2 of sin and cos, 2).
     """
     pairs = coefficients.reshape(len(coefficients), -1, 2, coefficients.shape[-1])
     scores, amplitude, unit = np.linalg.svd(pairs, full_matrices=False)
-    # Orthogonal Procrustes: the turn of the axes that brings them nearest to the average's.
+    # Orthogonal Procrustes: the rotation of the axes that brings them nearest to the average's.
     left, _, right = np.linalg.svd(unit @ np.swapaxes(axes, -1, -2))
     turn = np.swapaxes(left @ right, -1, -2)
     return turn @ unit, (scores * amplitude[..., None, :]) @ np.swapaxes(turn, -1, -2)
@@ -322,7 +319,7 @@ def _cosines(postures: np.ndarray, others: np.ndarray) -> np.ndarray:
     return products / np.where(lengths > 0, lengths, np.inf)
 
 
-def _flags(aligned: _Aligned, reference: Reference) -> tuple[str, ...]:
+def _flags(aligned: _Aligned, reference: ReferenceWalker) -> tuple[str, ...]:
     """Why correspondence does not hold for each walker; empty where it does."""
     power = (aligned.postures**2).sum(axis=-1)
     counts = power > MIN_SHARE * power.sum(axis=1, keepdims=True)
@@ -337,8 +334,8 @@ def _flags(aligned: _Aligned, reference: Reference) -> tuple[str, ...]:
     )
 
 
-def _replaced(walker: Walker, aligned: _Aligned, number: int, clock: float) -> Walker:
-    """Return the walker with its postures in correspondence, its clock moved by an angle."""
+def _with_postures(walker: Walker, aligned: _Aligned, number: int, clock: float) -> Walker:
+    """Return the walker with its postures in correspondence, its clock shifted by an angle."""
     n_components = aligned.postures.shape[1]
     later_s = wrap_phase(np.array(clock)) / (2 * np.pi * walker.frequency_hz)
     fit = walker.fit

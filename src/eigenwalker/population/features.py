@@ -1,4 +1,4 @@
-"""A walker as a vector of named features, and back (J11, A2).
+"""A walker as a vector of named features, and back.
 
 The layout follows from what is free in a walker: with 15 markers and two harmonics the eigenposture
 form has 5 * 45 + 4 = 229 numbers (postures, frequency, three phases), the Fourier form
@@ -19,15 +19,15 @@ NAMED_PARTS = {
     "all": "every feature (229 in the eigenposture form)",
     "structure": "p0, the mean posture",
     "dynamics": "p1, p2, ..., the phases and the frequency",
-    "postures": "p0, p1, p2, ...: what positions say (range-specific, J45)",
-    "timing": "the frequency and the phases: what time says (domain-specific, J45)",
+    "postures": "p0, p1, p2, ...: positions (range-specific)",
+    "timing": "the frequency and the phases: time (domain-specific)",
 }
 """Parts that gather several blocks; blocks themselves are p0, p1, ..., frequency and phases."""
 
 
 @dataclass(frozen=True)
 class FeatureLayout:
-    """Which number of a feature vector is what.
+    """The order of the numbers in a feature vector.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class FeatureLayout:
 
     @cached_property
     def blocks(self) -> dict[str, slice]:
-        """Where each block stands: p0, p1, ..., frequency and, where they are free, phases."""
+        """Columns of each block: p0, p1, ..., frequency and, where they are free, phases."""
         size = len(self.markers) * len(AXES)
         names = [f"p{i}" for i in range(len(self.harmonics) + 1)]
         blocks = {name: slice(i * size, (i + 1) * size) for i, name in enumerate(names)}
@@ -89,13 +89,13 @@ class FeatureLayout:
         return len(self.names)
 
     def columns(self, part: str) -> np.ndarray:
-        """Return the places of a part of the features.
+        """Return the columns of a part of the features.
 
         Parameters
         ----------
         part : str
             A name among `NAMED_PARTS`, a block (``"p0"``, ``"frequency"``, ``"phases"``), or
-            several joined by ``+``, such as ``"p1+p2+p3"`` (J18).
+            several joined by ``+``, such as ``"p1+p2+p3"``.
 
         Returns
         -------
@@ -124,15 +124,15 @@ class FeatureLayout:
         """Return the features of a walker of this layout, its phases between -pi and pi."""
         if FeatureLayout.of(walker) != self:
             raise ValueError(
-                f"The walker has {_in_words(FeatureLayout.of(walker))}, where "
-                f"{_in_words(self)} are expected; decompose it the same way."
+                f"The walker has {_describe(FeatureLayout.of(walker))}, where "
+                f"{_describe(self)} are expected; decompose it the same way."
             )
         free = walker.phases[1:] if self.form == "eigenposture" else []
         wrapped = wrap_phase(np.asarray(free, dtype=float))
         return np.concatenate([walker.p0.ravel(), walker.p.ravel(), [walker.frequency_hz], wrapped])
 
     def walker(self, vector: np.ndarray, *, speed_mm_s: float = float("nan")) -> Walker:
-        """Return the walker that a feature vector describes (J29)."""
+        """Return the walker that a feature vector describes."""
         vector = np.asarray(vector, dtype=float)
         if vector.shape != (len(self),):
             raise ValueError(
@@ -156,30 +156,16 @@ class FeatureLayout:
 
 
 def wrap_phase(angle: np.ndarray, *, around: np.ndarray | float = 0.0) -> np.ndarray:
-    """Return angles as those within pi of a centre (A6).
-
-    Examples
-    --------
-    >>> wrap_phase(np.array([6.0]), around=0.0).round(3).tolist()
-    [-0.283]
-
-    """
+    """Return angles as those within pi of a centre."""
     return around + np.mod(angle - around + np.pi, 2 * np.pi) - np.pi
 
 
 def circular_mean(angles: np.ndarray) -> np.ndarray:
-    """Return the mean direction of angles over the first dimension (A6).
-
-    Examples
-    --------
-    >>> bool(abs(circular_mean(np.array([[3.0], [-3.0]]))[0]) > 3.1)
-    True
-
-    """
+    """Return the mean direction of angles over the first dimension."""
     return np.angle(np.exp(1j * angles).mean(axis=0))
 
 
-def _in_words(layout: FeatureLayout) -> str:
+def _describe(layout: FeatureLayout) -> str:
     return (
         f"{len(layout.markers)} markers ({layout.markers[0]} ...), harmonics {layout.harmonics} "
         f"in the {layout.form} form"

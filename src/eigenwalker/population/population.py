@@ -1,4 +1,4 @@
-"""Walkers with their traits, in correspondence: the rows of a table of features (J11 to J13)."""
+"""Walkers with their traits, in correspondence: the rows of a table of features."""
 
 from __future__ import annotations
 
@@ -22,21 +22,20 @@ from eigenwalker.population.correspondence import (
     posture_correlations,
 )
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
-from eigenwalker.population.population_file import read_population, write_population
+from eigenwalker.population.population_file import Stored, read_population, write_population
 
 FLAG = "flag"
 """Column of the traits that says why a walker is left out of averages and curves; empty if not."""
 MOST_SHOWN = 12
-"""Traits that a notebook tells of."""
+"""Traits that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False)
 class Population:
     """Walkers and what is known of them.
 
-    Making a population brings its walkers into correspondence (A4 to A6), which needs no traits and
-    is done once; a walker for which that fails is flagged. Flagged walkers stay, but shape no
-    average.
+    Making a population brings its walkers into correspondence, which needs no traits and is done
+    once; a walker for which that fails is flagged. Flagged walkers stay, but shape no average.
 
     Parameters
     ----------
@@ -48,7 +47,7 @@ class Population:
     correspondence : Correspondence, optional
         How walkers that are in correspondence already were brought there; leave it out for others.
     provenance : mapping of str to str
-        Where the walkers come from: kept with the file and shown in reports.
+        Where the walkers come from: stored in the file and shown in reports.
 
     Raises
     ------
@@ -61,7 +60,7 @@ class Population:
     >>> people.X.shape
     (40, 229)
     >>> tall = people.select(people.traits["height_mm"] > 1700)
-    >>> strange = people.walker(3 * people.X[0] - 2 * people.X[1])
+    >>> extrapolated = people.walker(3 * people.X[0] - 2 * people.X[1])
 
     """
 
@@ -81,7 +80,7 @@ class Population:
         if self.correspondence is None:
             walkers, correspondence = correspond(walkers, leave_out=[flag != "" for flag in flags])
             object.__setattr__(self, "correspondence", correspondence)
-            flags = joined_flags(flags, correspondence.flags)
+            flags = join_flags(flags, correspondence.flags)
         object.__setattr__(self, "walkers", walkers)
         object.__setattr__(self, "traits", traits.assign(**{FLAG: flags}))
         object.__setattr__(self, "provenance", dict(self.provenance))
@@ -94,7 +93,7 @@ class Population:
         )
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the average walker, and what is known of all of them."""
+        """The average walker, and a table of traits, for notebooks."""
         named = self.traits.drop(columns=FLAG)
         rows = [
             [escape(str(name)), escape(_summary(named[name])), str(int(named[name].notna().sum()))]
@@ -132,36 +131,41 @@ class Population:
 
     @property
     def flagged(self) -> np.ndarray:
-        """Which walkers averages and curves leave out: array of bool of shape (walker,)."""
+        """Which walkers averages and curves leave out: bool of shape (walker,)."""
         return (self.traits[FLAG] != "").to_numpy()
+
+    @property
+    def in_average(self) -> np.ndarray:
+        """Which walkers shape the average: the unflagged ones, or all where all are flagged."""
+        return ~self.flagged | self.flagged.all()
 
     @cached_property
     def X(self) -> np.ndarray:  # noqa: N802 - the name that scikit-learn gives such a table
         """Features: array of shape (walker, feature), in mm, Hz and radians.
 
-        Phases are unwrapped around their circular mean, so that they can be averaged (A6).
+        Phases are unwrapped around their circular mean, so that they can be averaged.
         """
         table = np.stack([self.layout.vector(walker) for walker in self.walkers])
         return _read_only(self._unwrapped(table))
 
     @cached_property
     def average(self) -> np.ndarray:
-        """The average walker as a vector (w_0 of eq. 5): array of shape (feature,)."""
-        return _read_only(self.X[self._trusted].mean(axis=0))
+        """The average walker as a vector, w_0 of Troje (2002), eq. 5: shape (feature,)."""
+        return _read_only(self.X[self.in_average].mean(axis=0))
 
     @cached_property
     def sizes(self) -> np.ndarray:
-        """Size of each walker beside the average one (eq. 12, J25): array of shape (walker,).
+        """Size of each walker relative to the average one: array of shape (walker,).
 
-        The least-squares s_j in ``p_j0 = s_j * mean(p_0)``, positions taken from the point of the
-        floor below the pelvis (A15).
+        The least-squares s_j in ``p_j0 = s_j * mean(p_0)``, Troje (2002), eq. 12, with positions
+        relative to the point of the floor below the pelvis.
         """
         postures = self.part("p0")
-        mean = postures[self._trusted].mean(axis=0)
+        mean = postures[self.in_average].mean(axis=0)
         return _read_only(postures @ mean / (mean @ mean))
 
     def part(self, name: str) -> np.ndarray:
-        """Return some of the features of all walkers, to train a classifier on (J18).
+        """Return some of the features of all walkers, to train a classifier on.
 
         Parameters
         ----------
@@ -186,7 +190,7 @@ class Population:
         return self.X[:, self.layout.columns(name)]
 
     def walker(self, vector: np.ndarray) -> Walker:
-        """Return the walker that any point of the feature space describes (J29).
+        """Return the walker that any point of the feature space describes.
 
         Parameters
         ----------
@@ -196,7 +200,7 @@ class Population:
         Returns
         -------
         Walker
-            Its speed is that of its own feet on the ground.
+            Its speed is that of its feet on the ground.
 
         Raises
         ------
@@ -216,35 +220,24 @@ class Population:
         return replace(walker, speed_mm_s=ground_speed(walker))
 
     def vector(self, walker: Walker) -> np.ndarray:
-        """Return any walker as a point of this population's feature space.
+        """Return any walker as a point of this population's feature space: shape (feature,).
 
-        The walker is brought into correspondence with the population first, so it can be one's own
-        (W7).
-
-        Returns
-        -------
-        array of shape (feature,)
-
+        The walker need not belong to the population: it is brought into correspondence first.
         """
-        together, _, flag = correspond_to(walker, self._correspondence.reference)
+        aligned, _, flag = correspond_to(walker, self._correspondence.reference)
         if flag:
             raise ValueError(f"This walker cannot be compared with the population: {flag}")
-        return self._unwrapped(self.layout.vector(together)[None])[0]
+        return self._unwrapped(self.layout.vector(aligned)[None])[0]
 
     def hybrid(self, *, structure: np.ndarray, dynamics: np.ndarray) -> np.ndarray:
-        """Return the structure of one walker with the dynamics of another (J35).
+        """Return the structure of one walker with the dynamics of another: shape (feature,).
 
-        The papers' stimuli have size divided out first (A17), ``people.size_normalised()``, and an
-        average is the mean of walkers where the paper prints their sum (A16).
+        The stimuli of Troje (2002) have size divided out first: ``people.size_normalised()``.
 
         Parameters
         ----------
         structure, dynamics : array of shape (feature,)
             Vectors of the two walkers; either may be ``people.average``.
-
-        Returns
-        -------
-        array of shape (feature,)
 
         Examples
         --------
@@ -262,7 +255,7 @@ class Population:
         return mixed
 
     def size_normalised(self) -> Population:
-        """Return the population with the size of each walker divided out (J25).
+        """Return the population with the size of each walker divided out: Troje (2002), eq. 12.
 
         Mean postures, eigenpostures and speed are divided by s_j, frequency and phases are not.
         Correspondence stays as it is.
@@ -278,21 +271,18 @@ class Population:
         )
         return replace(self, walkers=walkers)
 
-    def select(self, keep: Sequence[bool] | Sequence[int] | pd.Series | np.ndarray) -> Population:
+    def select(self, rows: Sequence[bool] | Sequence[int] | pd.Series | np.ndarray) -> Population:
         """Return some of the walkers, by a mask or by their numbers; correspondence stays."""
-        numbers = np.arange(len(self))[np.asarray(keep)]
+        numbers = np.arange(len(self))[np.asarray(rows)]
         if not len(numbers):
             raise ValueError("No walker is left; a population needs one or more.")
-        found = self._correspondence
+        before = self._correspondence
+        flags = tuple(before.flags[number] for number in numbers)
         return replace(
             self,
             walkers=tuple(self.walkers[number] for number in numbers),
             traits=self.traits.iloc[numbers],
-            correspondence=replace(
-                found,
-                similarity=found.similarity[numbers],
-                flags=tuple(found.flags[number] for number in numbers),
-            ),
+            correspondence=replace(before, similarity=before.similarity[numbers], flags=flags),
         )
 
     def drop(self, numbers: Iterable[int]) -> Population:
@@ -304,7 +294,7 @@ class Population:
         return self.select(~self.flagged)
 
     def without_flags(self) -> Population:
-        """Return the population with its flags taken off, so that flagged walkers count too."""
+        """Return the population with its flags removed, so that flagged walkers count too."""
         return replace(self, traits=self.traits.assign(**{FLAG: ""}))
 
     def add(self, walkers: Sequence[Walker], traits: pd.DataFrame) -> Population:
@@ -314,51 +304,52 @@ class Population:
         """
         if not walkers:
             return self
-        found = self._correspondence
-        joined = [correspond_to(walker, found.reference) for walker in walkers]
+        before = self._correspondence
+        aligned = [correspond_to(walker, before.reference) for walker in walkers]
         traits = pd.DataFrame(traits).reset_index(drop=True)
-        if len(traits) != len(joined):
-            raise ValueError(f"There are {len(joined)} walkers and {len(traits)} rows of traits.")
-        flags = joined_flags(flags_of(traits), [flag for _, _, flag in joined])
-        newcomers = np.stack([similarity for _, similarity, _ in joined])
+        if len(traits) != len(aligned):
+            raise ValueError(f"There are {len(aligned)} walkers and {len(traits)} rows of traits.")
+        more, similarity, flags = zip(*aligned, strict=True)
+        traits = traits.assign(**{FLAG: join_flags(flags_of(traits), flags)})
         return replace(
             self,
-            walkers=(*self.walkers, *(walker for walker, _, _ in joined)),
-            traits=pd.concat([self.traits, traits.assign(**{FLAG: flags})], ignore_index=True),
+            walkers=(*self.walkers, *more),
+            traits=pd.concat([self.traits, traits], ignore_index=True),
             correspondence=replace(
-                found,
-                similarity=np.concatenate([found.similarity, newcomers]),
-                flags=(*found.flags, *(flag for _, _, flag in joined)),
+                before,
+                similarity=np.concatenate([before.similarity, np.stack(similarity)]),
+                flags=(*before.flags, *flags),
             ),
         )
 
     def posture_correlations(self) -> pd.DataFrame:
-        """Return how alike the postures of all pairs of walkers are (J12).
+        """Return the mean correlation of each posture over all pairs of unflagged walkers.
 
         Returns
         -------
         DataFrame of shape (posture, 2)
-            Mean correlation over all pairs of unflagged walkers: of eigenpostures as found, with
-            only sign and order made to agree (as the paper's), and in correspondence.
+            Of eigenpostures with only sign and order made to agree, as in Troje (2002), and in
+            correspondence.
 
         """
-        walkers = [w for w, kept in zip(self.walkers, self._trusted, strict=True) if kept]
+        walkers = [self.walkers[number] for number in np.flatnonzero(self.in_average)]
         mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
-        as_found = posture_correlations(match_sign_and_order(walkers))
-        together = posture_correlations(np.stack([walker.p for walker in walkers]))
+        eigenpostures = {
+            "sign and order": match_sign_and_order(walkers),
+            "in correspondence": np.stack([walker.p for walker in walkers]),
+        }
         return pd.DataFrame(
             {
-                "sign and order": np.concatenate([mean, as_found]),
-                "in correspondence": np.concatenate([mean, together]),
+                name: np.concatenate([mean, posture_correlations(postures)])
+                for name, postures in eigenpostures.items()
             },
-            index=[f"p{i}" for i in range(len(as_found) + 1)],
+            index=[f"p{i}" for i in range(len(walkers[0].p) + 1)],
         )
 
-    def save(self, path: str | Path) -> None:
-        """Write the population to one self-describing NetCDF file."""
-        write_population(
-            Path(path), self.walkers, self.traits, self._correspondence, self.provenance
-        )
+    def save(self, path: str | Path) -> Path:
+        """Write the population to one self-describing NetCDF file, and return its path."""
+        content = Stored(self.walkers, self.traits, self._correspondence, self.provenance)
+        return write_population(content, Path(path))
 
     @classmethod
     def load(cls, path: str | Path) -> Population:
@@ -378,13 +369,9 @@ class Population:
         return self.correspondence
 
     @cached_property
-    def _trusted(self) -> np.ndarray:
-        return ~self.flagged if not self.flagged.all() else np.ones(len(self), dtype=bool)
-
-    @cached_property
     def _phase_centre(self) -> np.ndarray:
         phases = np.stack([walker.phases[1:] for walker in self.walkers])
-        return circular_mean(phases[self._trusted])
+        return circular_mean(phases[self.in_average])
 
     def _unwrapped(self, table: np.ndarray) -> np.ndarray:
         if self.layout.form == "eigenposture":
@@ -401,8 +388,8 @@ def _summary(values: pd.Series) -> str:
             return ""
         return f"{known.min():.4g} to {known.max():.4g}, mean {known.mean():.4g}"
     counts = known.astype(str).value_counts()
-    said = ", ".join(f"{count} {str(value)[:40]}" for value, count in counts.head(4).items())
-    return said + (f", {len(counts) - 4} others" if len(counts) > 4 else "")
+    shown = ", ".join(f"{count} {str(value)[:40]}" for value, count in counts.head(4).items())
+    return shown + (f", {len(counts) - 4} others" if len(counts) > 4 else "")
 
 
 def _read_only(values: np.ndarray) -> np.ndarray:
@@ -416,6 +403,6 @@ def flags_of(traits: pd.DataFrame) -> list[str]:
     return flags.fillna("").astype(str).tolist()
 
 
-def joined_flags(*flags: Iterable[str]) -> list[str]:
-    """Return all that several sources say of each walker, in one line a walker."""
-    return [" ".join(said for said in each if said) for each in zip(*flags, strict=True)]
+def join_flags(*flags: Iterable[str]) -> list[str]:
+    """Return the flags of several sources as one for each walker."""
+    return [" ".join(filter(None, each)) for each in zip(*flags, strict=True)]

@@ -7,38 +7,38 @@ file says its version, so that other programs can read it without this one. Noth
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from eigenwalker._version import __version__
+from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import CaptureFit, Walker
 from eigenwalker.io.capture_file import read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.file_types import file_type_of
 from eigenwalker.io.readers.netcdf import dataset_of, looks_like_netcdf
-from eigenwalker.population.correspondence import Correspondence, Reference
+from eigenwalker.population.correspondence import Correspondence, ReferenceWalker
 
 FORMAT = "eigenwalker population"
 VERSION = 1
 _EXPECTED = "a population file"
 _MAKE = "make one with 'eigenwalker fit' or Population.save"
-_UNITS = {
-    "p0": "mm",
-    "p": "mm",
-    "phases": "rad",
-    "frequency_hz": "Hz",
-    "speed_mm_s": "mm/s",
-    "time_origin_s": "s",
+_FIELDS = {
+    "p0": ("mm", ("walker", "marker", "axis")),
+    "p": ("mm", ("walker", "component", "marker", "axis")),
+    "phases": ("rad", ("walker", "component")),
+    "frequency_hz": ("Hz", ("walker",)),
+    "speed_mm_s": ("mm/s", ("walker",)),
+    "time_origin_s": ("s", ("walker",)),
 }
+"""Fields of a walker: their units and dimensions."""
 _FIT_DIMS = {
     "variance_share": ("walker", "share"),
     "sine_r2": ("walker", "component"),
@@ -52,41 +52,27 @@ _FIT_DIMS = {
 class Stored(NamedTuple):
     """What a population file holds."""
 
-    walkers: tuple[Walker, ...]
+    walkers: Sequence[Walker]
     traits: pd.DataFrame
     correspondence: Correspondence
-    provenance: dict[str, str]
+    provenance: Mapping[str, str]
 
 
-def write_population(
-    path: Path,
-    walkers: Sequence[Walker],
-    traits: pd.DataFrame,
-    correspondence: Correspondence,
-    provenance: Mapping[str, str],
-) -> None:
-    """Write walkers in correspondence, with their traits, to a NetCDF file.
-
-    The file appears whole or not at all.
-    """
+def write_population(content: Stored, path: Path) -> Path:
+    """Write walkers in correspondence, with their traits, to a NetCDF file; return its path."""
     if not path.parent.is_dir():
         raise FileNotFoundError(f"There is no folder {path.parent} to write {path.name} into.")
-    dataset = _dataset(walkers, traits, correspondence)
+    dataset = _dataset(content.walkers, content.traits, content.correspondence)
     dataset.attrs = {
         "format": FORMAT,
         "format_version": VERSION,
         "program": f"eigenwalker {__version__}",
-        "form": walkers[0].form,
-        "provenance": json.dumps(dict(provenance)),
+        "form": content.walkers[0].form,
+        "provenance": json.dumps(dict(content.provenance)),
     }
-    handle, unfinished = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".nc")
-    os.close(handle)
-    try:
+    with atomic_write(path) as unfinished:
         dataset.to_netcdf(unfinished, engine="scipy", format="NETCDF3_64BIT")
-        os.chmod(unfinished, 0o666 & ~_umask())
-        os.replace(unfinished, path)
-    finally:
-        Path(unfinished).unlink(missing_ok=True)
+    return path
 
 
 def looks_like_population(path: Path) -> bool:
@@ -97,21 +83,14 @@ def looks_like_population(path: Path) -> bool:
 
 
 def read_population(path: Path) -> Stored:
-    """Read what `write_population` wrote.
-
-    Raises
-    ------
-    UnreadableFile
-        If the file is none of ours, is damaged, or comes from a newer version.
-
-    """
+    """Read what `write_population` wrote, or raise UnreadableFile."""
     content = read_bytes(path, expected=_EXPECTED)
     if not looks_like_netcdf(content):
         raise UnreadableFile(path.name, _EXPECTED, file_type_of(content), _MAKE)
     dataset = dataset_of(content, path.name, expected=_EXPECTED)
     if str(dataset.attrs.get("format")) != FORMAT:
-        came = "a NetCDF file that holds no walkers of eigenwalker"
-        raise UnreadableFile(path.name, _EXPECTED, came, _MAKE)
+        content = "a NetCDF file that holds no walkers of eigenwalker"
+        raise UnreadableFile(path.name, _EXPECTED, content, _MAKE)
     if str(version := dataset.attrs.get("format_version")) != str(VERSION):
         raise UnreadableFile(
             path.name,
@@ -131,17 +110,9 @@ def _dataset(
     walkers: Sequence[Walker], traits: pd.DataFrame, correspondence: Correspondence
 ) -> xr.Dataset:
     first = walkers[0]
-    dims = {
-        "p0": ("walker", "marker", "axis"),
-        "p": ("walker", "component", "marker", "axis"),
-        "phases": ("walker", "component"),
-        "frequency_hz": ("walker",),
-        "speed_mm_s": ("walker",),
-        "time_origin_s": ("walker",),
-    }
-    variables: dict[str, tuple] = {
-        name: (dim, np.stack([getattr(walker, name) for walker in walkers]), {"units": unit})
-        for (name, dim), unit in zip(dims.items(), _UNITS.values(), strict=True)
+    variables: dict[str, tuple[Any, ...]] = {
+        name: (dims, np.stack([getattr(walker, name) for walker in walkers]), {"units": unit})
+        for name, (unit, dims) in _FIELDS.items()
     }
     if all(walker.fit is not None for walker in walkers):
         for entry in fields(CaptureFit):
@@ -149,11 +120,11 @@ def _dataset(
             variables[f"fit_{entry.name}"] = (_FIT_DIMS.get(entry.name, ("walker",)), stacked)
     for number, name in enumerate(traits):
         variables[f"trait_{number}"] = ("walker", _storable(traits[name]), {"trait": str(name)})
-    found = correspondence
-    variables["similarity"] = (("walker", "component"), found.similarity)
-    variables["correspondence_flag"] = ("walker", np.array(found.flags, dtype=object))
-    variables["reference_axes"] = (("harmonic", "pair", "feature"), found.reference.axes)
-    variables["reference_average"] = (("coefficient", "feature"), found.reference.average)
+    reference = correspondence.reference
+    variables["similarity"] = (("walker", "component"), correspondence.similarity)
+    variables["correspondence_flag"] = ("walker", np.array(correspondence.flags, dtype=object))
+    variables["reference_axes"] = (("harmonic", "pair", "feature"), reference.axes)
+    variables["reference_average"] = (("coefficient", "feature"), reference.average)
     coords = {
         "marker": list(first.markers),
         "axis": list(AXES),
@@ -177,7 +148,7 @@ def _stored(dataset: xr.Dataset) -> Stored:
     harmonics = dataset["harmonics"].values
     form = dataset.attrs["form"]
     _check_layout(dataset, markers, harmonics, form)
-    arrays = {name: dataset[name].values for name in _UNITS}
+    arrays = {name: dataset[name].values for name in _FIELDS}
     fits = _fits(dataset) if "fit_r2" in dataset else [None] * dataset.sizes["walker"]
     walkers = tuple(
         Walker(
@@ -195,7 +166,7 @@ def _stored(dataset: xr.Dataset) -> Stored:
             for number in range(sum(str(name).startswith("trait_") for name in dataset))
         }
     )
-    reference = Reference(
+    reference = ReferenceWalker(
         dataset["reference_axes"].values, dataset["reference_average"].values, form, markers
     )
     flags = tuple(str(flag) for flag in dataset["correspondence_flag"].values)
@@ -211,7 +182,7 @@ def _stored(dataset: xr.Dataset) -> Stored:
 def _check_layout(
     dataset: xr.Dataset, markers: tuple[str, ...], harmonics: np.ndarray, form: str
 ) -> None:
-    """Refuse a file whose parts do not fit each other, before anything is made of them."""
+    """Raise ValueError if parts of a file do not fit each other."""
     n_harmonics, odd = divmod(len(harmonics), 2)
     if odd or harmonics.tolist() != np.repeat(np.arange(1, n_harmonics + 1), 2).tolist():
         raise ValueError(f"harmonics {harmonics.tolist()[:8]} are not 1, 1, 2, 2, ...")
@@ -226,7 +197,7 @@ def _check_layout(
     numbers += [name for name in map(str, dataset) if name.startswith("fit_")]
     for name in numbers:
         if not np.isfinite(dataset[name].values).all():
-            raise ValueError(f"{name} holds what is no number")
+            raise ValueError(f"{name} holds values that are not finite")
     if form == "eigenposture" and np.any(dataset["phases"].values[:, 0] != 0):
         raise ValueError("the first phase of a walker is not 0")
     traits = [dataset[name].attrs.get("trait") for name in map(str, dataset) if "trait_" in name]
@@ -244,9 +215,3 @@ def _fits(dataset: xr.Dataset) -> list[CaptureFit]:
         CaptureFit(**{name: column[number] for name, column in columns.items()})
         for number in range(dataset.sizes["walker"])
     ]
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -18,7 +18,7 @@ from eigenwalker._version import __version__
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.io.read import companion_files
-from eigenwalker.population.population import FLAG, Population, flags_of, joined_flags
+from eigenwalker.population.population import FLAG, Population, flags_of, join_flags
 from eigenwalker.study.capture_table import FILE, capture_table, captures_in
 from eigenwalker.study.checkpoint import Checkpoint
 from eigenwalker.study.messages import flag_of, summarise
@@ -156,7 +156,7 @@ def _study(
     if not read:
         return Study(None, files, unlisted)
     traits = table.iloc[read].reset_index(drop=True)
-    flags = joined_flags(flags_of(traits), rows[FLAG].iloc[read])
+    flags = join_flags(flags_of(traits), rows[FLAG].iloc[read])
     population = Population(
         tuple(walker for walker, _ in attempts if walker is not None),
         traits.assign(**{FLAG: flags}),
