@@ -13,17 +13,16 @@ from eigenwalker.metric import loop, motion_map, register_walks
 from eigenwalker.plotting.difference_maps import (
     MapPicture,
     figure_maps,
-    figure_shares,
     figure_two_walks,
     picture_of_strides,
 )
 from eigenwalker.plotting.difference_tables import (
-    MOST_CLASSES,
+    MAX_CLASSES,
     figure_difference_table,
     figure_map_of_walks,
     short_names,
 )
-from eigenwalker.plotting.fitted_weights import figure_predictions, figure_weights
+from eigenwalker.plotting.fitted_weights import figure_predictions, figure_shares, figure_weights
 from eigenwalker.plotting.style import BLUE, RED
 from eigenwalker.simulation.walk import simulate_walk
 
@@ -105,13 +104,13 @@ def test_short_names_tell_apart_what_names_do(names):
 
 
 def test_many_classes_all_look_different():
-    classes = [f"class {number:02}" for number in range(MOST_CLASSES)]
-    axes = figure_map_of_walks(np.arange(2 * MOST_CLASSES).reshape(-1, 2), classes).axes[0]
+    classes = [f"class {number:02}" for number in range(MAX_CLASSES)]
+    axes = figure_map_of_walks(np.arange(2 * MAX_CLASSES).reshape(-1, 2), classes).axes[0]
     looks = {
         (tuple(drawn.get_facecolor()[0]), drawn.get_paths()[0].vertices.tobytes())
         for drawn in axes.collections
     }
-    assert len(looks) == MOST_CLASSES
+    assert len(looks) == MAX_CLASSES
 
 
 def test_weights_and_predictions_are_those_given():

@@ -13,7 +13,7 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting import encoding
-from eigenwalker.plotting.layout import positions_at, stage
+from eigenwalker.plotting.layout import arrange, positions_at
 from eigenwalker.plotting.raster import draw_discs, draw_lines, lettering
 from eigenwalker.plotting.walker_films import write_film
 
@@ -72,7 +72,7 @@ def test_dots_are_within_half_a_pixel_of_where_the_walker_is(tmp_path, suffix, a
         walker, tmp_path / f"walk{suffix}", duration_s=1, azimuth_deg=azimuth_deg, rate_hz=25
     )
     frames, _ = decode(path)
-    scene = stage(
+    scene = arrange(
         [positions_at(walker, walker.time_origin_s + np.arange(25) / 25)],
         azimuth_deg=azimuth_deg,
         elevation_deg=0,
@@ -143,7 +143,7 @@ def test_walkers_side_by_side_have_one_scale_and_stay_in_their_panels():
     small = Walker(THREE, 0.5 * three_dots().p0, 0.5 * three_dots().p, [1, 2], [0, 0], 1.0)
     giant = Walker(THREE, 3 * three_dots().p0, 6 * three_dots().p, [1, 2], [0, 0], 1.0)
     seconds = np.linspace(0, 1, 40)
-    scene = stage(
+    scene = arrange(
         [positions_at(walker, seconds) for walker in (small, giant)],
         azimuth_deg=90,
         elevation_deg=0,
@@ -165,7 +165,7 @@ def test_walkers_side_by_side_have_one_scale_and_stay_in_their_panels():
 @settings(max_examples=20, deadline=None)
 def test_nothing_is_drawn_at_the_border_however_large_the_step(alpha, azimuth_deg, style):
     walker = three_dots(step=250 + 150 * alpha)
-    scene = stage(
+    scene = arrange(
         [positions_at(walker, np.linspace(0, 1.19, 12))],
         azimuth_deg=azimuth_deg,
         elevation_deg=10,

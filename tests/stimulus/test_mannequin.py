@@ -124,7 +124,7 @@ def test_a_hull_seen_along_its_axis(way, radii, eye_mm):
 
 def test_what_is_worked_out_in_parts_is_the_same(average, monkeypatch):
     whole_picture = frame(wooden(average))
-    monkeypatch.setattr("eigenwalker.stimulus.solids.MOST_PIXELS", 200)
+    monkeypatch.setattr("eigenwalker.stimulus.solids.MAX_PIXELS", 200)
     np.testing.assert_array_equal(frame(wooden(average)), whole_picture)
 
 

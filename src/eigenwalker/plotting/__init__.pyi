@@ -11,7 +11,8 @@ from .difference_maps import (
     figure_two_walks as figure_two_walks,
 )
 from .eigenpostures import figure_eigenpostures as figure_eigenpostures
+from .layout import Style as Style
 from .projection import project as project
-from .walker_films import write_film as write_film
+from .walker_films import Background as Background, write_film as write_film
 from .walker_space_figure import Space as Space, figure_space as figure_space
 from .walkers import figure_joints as figure_joints, figure_walkers as figure_walkers

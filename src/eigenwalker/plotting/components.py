@@ -1,4 +1,4 @@
-"""How much of a walk its components hold, and how well sines fit them (J fig. 2 and 3)."""
+"""How much of a walk its components hold, and how well sines fit them."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ FOUR_INKS = (BLUE, RED, "#009988", "#AA4499")
 
 
 def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figure:
-    """Return the share of variance of the first components, mean and SD over walkers (J fig. 2).
+    """Return the share of variance of the first components, mean and SD over walkers.
 
     Parameters
     ----------
     walkers : sequence of Walker
-        Decomposed from captures, so that they know how well they fit.
+        Decomposed from captures, which gives them their fit.
     n_components : int
-        Bars to draw, as far as the walkers know them.
+        Bars to draw, as far as the walkers have them.
 
     Returns
     -------
@@ -43,14 +43,16 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     Raises
     ------
     ValueError
-        If no walker came from a capture.
+        If no walker was decomposed from a capture.
+
+    References
+    ----------
+    Troje (2002), fig. 2.
 
     """
     shares = [walker.fit.variance_share for walker in walkers if walker.fit is not None]
     if not shares:
-        raise ValueError(
-            "None of the walkers knows its fit; decompose captures with decompose_pca()."
-        )
+        raise ValueError("None of the walkers has a fit; decompose captures with decompose_pca().")
     n_components = min(n_components, *(len(share) for share in shares))
     percent = 100 * np.array([share[:n_components] for share in shares])
     mean = percent.mean(axis=0)
@@ -80,10 +82,10 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
 
 
 def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) -> Figure:
-    """Return the scores of a walk on its eigenpostures over time, and the sines (J fig. 3).
+    """Return the scores of a walk on its eigenpostures over time, and the sines.
 
-    Above, the scores of the capture; below, the sines that the walker puts in their place. R2 is
-    the coefficient of determination over the whole capture (J8).
+    Above, the scores of the capture; below, the sines that the walker has in their place. R2 is
+    the coefficient of determination over the whole capture.
 
     Parameters
     ----------
@@ -97,6 +99,10 @@ def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) ->
     Returns
     -------
     Figure
+
+    References
+    ----------
+    Troje (2002), fig. 3 and eq. 8.
 
     """
     walk = check_trajectories(walk, complete=True).sel(marker=list(walker.markers))
@@ -131,22 +137,7 @@ def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) ->
 
 
 def scores_of(walk: xr.DataArray, walker: Walker) -> tuple[np.ndarray, np.ndarray]:
-    """Return a walk's scores on a walker's eigenpostures, and what the walker's sines make them.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        With the walker's markers.
-    walker : Walker
-        Whose eigenpostures, brought to unit length, are what the walk is projected on (by least
-        squares, where they are not orthogonal).
-
-    Returns
-    -------
-    scores, sines : array of shape (time, component)
-        Millimetres.
-
-    """
+    """Return a walk's scores on eigenpostures, and those of the sines: (time, component), mm."""
     postures = walker.p.reshape(len(walker.p), -1)
     amplitudes = np.linalg.norm(postures, axis=1)
     moved = (walk.values - walker.p0).reshape(walk.sizes["time"], -1)

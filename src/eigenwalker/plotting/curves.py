@@ -1,10 +1,10 @@
-"""How well classifiers and regressions do with more and more components (J fig. 4)."""
+"""How well classifiers and regressions do with more and more components (Troje 2002, fig. 4)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -37,7 +37,7 @@ class Curves(Protocol):
 
 
 class TraitCurves(Protocol):
-    """Share of a trait's variance told by 1, 2, ... components, as of `regression_curves`."""
+    """Share of a trait's variance explained by 1, 2, ... components, as of `regression_curves`."""
 
     @property
     def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells
@@ -50,11 +50,11 @@ class TraitCurves(Protocol):
 def figure_curves(
     curves: Mapping[str, Curves], *, n_walkers: int, n_columns: int | None = None
 ) -> Figure:
-    """Return misclassified walkers over the number of components, one panel an input (J fig. 4).
+    """Return misclassified walkers over the number of components, one panel an input.
 
-    Dashed blue is separation: walkers that a classifier misses although it was fitted to them.
-    Solid red is generalisation: walkers that a classifier fitted to all others misses. The axis at
-    the right gives the share of walkers (A18).
+    Dashed blue is separation: walkers misclassified by a classifier that was fitted to them too.
+    Solid red is generalisation: walkers misclassified by one that was fitted to all others. The
+    axis at the right gives the share of walkers.
 
     Parameters
     ----------
@@ -69,6 +69,10 @@ def figure_curves(
     -------
     Figure
 
+    References
+    ----------
+    Troje (2002), fig. 4.
+
     Examples
     --------
     >>> from types import SimpleNamespace
@@ -79,28 +83,28 @@ def figure_curves(
     """
     figure, axes, n_columns = _grid(curves, n_columns)
     for index, (axis, curve) in enumerate(zip(axes, curves.values(), strict=True), start=1):
-        missed = np.asarray(curve.generalisation)
-        _draw(axis, curve.n_components, curve.separation, missed)
-        best, n = int(np.argmin(missed)), curve.n_components
-        _ring(axis, n[best], missed[best])
-        _say(axis, f"best: {missed[best]:g} at {n[best]}")
+        misclassified = np.asarray(curve.generalisation)
+        _draw(axis, curve.n_components, curve.separation, misclassified)
+        best, n = int(np.argmin(misclassified)), curve.n_components
+        axis.plot(n[best], misclassified[best], **_RING)
+        axis.annotate(f"best: {misclassified[best]:g} at {n[best]}", (0.97, 0.97), **_CORNER)
         _add_percent(axis, n_walkers, named=index % n_columns == 0)
     most = max(np.max([curve.separation, curve.generalisation]) for curve in curves.values())
     axes[0].set_ylim(0, 1.25 * max(most, 1))  # the words at the top stay clear of the curves
     axes[0].yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
-    _name(figure, "Misclassified walkers", axes[0])
+    _label_axes(figure, "Misclassified walkers", axes[0])
     return figure
 
 
 def figure_regression_curves(
     curves: Mapping[str, TraitCurves], *, n_columns: int | None = None
 ) -> Figure:
-    """Return the share of a trait's variance told over the number of components (W8).
+    """Return the share of a trait's variance explained over the number of components.
 
-    Panels as in `figure_curves`. Dashed blue is separation: what a regression tells of the walkers
-    it was fitted to. Solid red is generalisation: what one fitted to all others tells of walkers
-    left out. Below the thin line at 0 the mean of all walkers tells more; a curve that falls far
-    below leaves its panel, and with it the ring at its best.
+    Panels as in `figure_curves`. Dashed blue is separation: R2 of the walkers that a regression was
+    fitted to. Solid red is generalisation: R2 of walkers left out. Below the thin line at 0 the
+    mean of all walkers predicts better; a curve that falls far below leaves its panel, and with it
+    the ring at its best.
 
     Parameters
     ----------
@@ -113,6 +117,10 @@ def figure_regression_curves(
     -------
     Figure
 
+    References
+    ----------
+    Troje (2002, WDP): regression of continuous traits.
+
     Examples
     --------
     >>> from types import SimpleNamespace
@@ -123,22 +131,29 @@ def figure_regression_curves(
     """
     figure, axes, _ = _grid(curves, n_columns)
     for axis, curve in zip(axes, curves.values(), strict=True):
-        told = np.asarray(curve.r2)
-        _draw(axis, curve.n_components, curve.trained_r2, told)
-        best, n = int(np.argmax(told)), curve.n_components
-        if told[best] > _LOWEST_R2:
-            _ring(axis, n[best], told[best])
-        _say(axis, f"best: {told[best]:z.2f} at {n[best]}".replace("-", "\N{MINUS SIGN}"))
+        r2 = np.asarray(curve.r2)
+        _draw(axis, curve.n_components, curve.trained_r2, r2)
+        best, n = int(np.argmax(r2)), curve.n_components
+        if r2[best] > _LOWEST_R2:
+            axis.plot(n[best], r2[best], **_RING)
+        words = f"best: {r2[best]:z.2f} at {n[best]}".replace("-", "\N{MINUS SIGN}")
+        axis.annotate(words, (0.97, 0.97), **_CORNER)
         axis.axhline(0, color=PALE, lw=0.8, zorder=0)
     axes[0].set_ylim(_LOWEST_R2, 1.5)
     axes[0].set_yticks([-0.5, 0, 0.5, 1])
-    _name(figure, "Share of variance told, $R^2$", axes[0])
+    _label_axes(figure, "Share of variance told, $R^2$", axes[0])
     return figure
 
 
 _LOWEST_R2 = -0.6
 """A regression that overshoots falls without limit; drawing all of it would flatten the rest."""
-_CORNER = {"ha": "right", "va": "top", "fontsize": SMALL, "color": RED}
+_CORNER: dict[str, Any] = {
+    "xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": SMALL, "color": RED
+}  # fmt: skip
+_RING: dict[str, Any] = {
+    "marker": "o", "mfc": "white", "mec": RED, "mew": 1.1, "ms": 4.5, "clip_on": False
+}  # fmt: skip
+"""Where generalisation is best."""
 
 
 def _grid(titles: Collection[str], n_columns: int | None) -> tuple[Figure, list[Axes], int]:
@@ -164,16 +179,7 @@ def _draw(axis: Axes, n: np.ndarray, separation: np.ndarray, generalisation: np.
     axis.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
 
 
-def _ring(axis: Axes, n: int, height: float) -> None:
-    """A ring where generalisation is best."""
-    axis.plot(n, height, "o", mfc="white", mec=RED, mew=1.1, ms=4.5, clip_on=False)
-
-
-def _say(axis: Axes, words: str) -> None:
-    axis.text(0.97, 0.97, words, transform=axis.transAxes, **_CORNER)
-
-
-def _name(figure: Figure, height: str, axis: Axes) -> None:
+def _label_axes(figure: Figure, height: str, axis: Axes) -> None:
     """Say what the axes are, and, by those of a panel, what the lines are."""
     figure.supxlabel("Number of components", fontsize=USUAL, color=INK)
     figure.supylabel(height, fontsize=USUAL, color=INK)
@@ -182,7 +188,7 @@ def _name(figure: Figure, height: str, axis: Axes) -> None:
 
 
 def _add_percent(axis: Axes, n_walkers: int, *, named: bool) -> None:
-    """The share of walkers at the right of a panel (A18)."""
+    """The share of walkers at the right of a panel."""
 
     def share(count: ArrayLike) -> np.ndarray:
         return 100 * np.asarray(count) / n_walkers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,6 @@ from eigenwalker.plotting.style import (
     BLUE,
     GREY,
     INK,
-    PALE,
     RED,
     SMALL,
     USUAL,
@@ -45,9 +44,9 @@ class MapPicture:
     title, unit : str
         What is compared, and the unit of the values.
     path : array of shape (step, 2), optional
-        Corresponding moments of a and b in seconds: the blending line, red.
+        Corresponding moments of a and b in seconds, drawn red.
     period : tuple of float, optional
-        Beginnings on a and b, and lengths, of one period of either: a blue frame.
+        Beginnings of a period on a and b, and its lengths, drawn as a blue frame.
     marks : array of shape (moment, 2), optional
         Moments of a and b to mark by a ring.
     names : tuple of str
@@ -76,31 +75,10 @@ def picture_of_strides(
     unit: str = "mm",
     names: tuple[str, str] = ("first walk", "second walk"),
 ) -> MapPicture:
-    """Return the map of two strides repeated, so that the path once round both is one line.
+    """Return a map of two strides repeated, so that the path once round both is one line.
 
-    Parameters
-    ----------
-    values : array of shape (time_a, time_b)
-        Map of one stride with one stride.
-    times_a, times_b : array
-        Seconds of the frames, evenly spaced.
-    path : array of shape (step, 2)
-        Corresponding moments of a and b in seconds, which run on over the seams.
-    title, unit, names
-        As in `MapPicture`.
-
-    Returns
-    -------
-    MapPicture
-        Of two strides of either; one period is framed, at the path's beginning.
-
-    Examples
-    --------
-    >>> t = np.arange(0, 1, 0.1)
-    >>> path = np.stack([t + 0.5, t + 0.5], axis=1)
-    >>> picture_of_strides(np.zeros((10, 10)), t, t, path, "a stride").values.shape
-    (20, 20)
-
+    The path (step, 2) has corresponding moments of a and b in seconds, which run on over the seams;
+    one period is framed, at the path's beginning.
     """
     length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (times_a, times_b))
     lengths = np.array([length_a, length_b])
@@ -118,7 +96,7 @@ def picture_of_strides(
 
 
 def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure:
-    """Return motion maps side by side, dark where frames are alike (fig. 1 and 6).
+    """Return motion maps side by side, dark where frames are alike.
 
     Parameters
     ----------
@@ -130,6 +108,10 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
     Returns
     -------
     Figure
+
+    References
+    ----------
+    Pražák et al. (2010), fig. 1 and 6.
 
     Examples
     --------
@@ -156,7 +138,7 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
 
 
 def _slope(picture: MapPicture) -> float:
-    """Return how tall a map is for its width, as seconds are as long either way."""
+    """Return the height of a map over its width; a second is as long on both axes."""
     spans = [np.ptp(times) + 1e-9 for times in (picture.times_a, picture.times_b)]
     return float(spans[0] / spans[1])
 
@@ -215,7 +197,7 @@ def figure_two_walks(
     n_moments : int
         Evenly spaced moments to draw.
     skeleton : Skeleton
-        Who is joined to whom.
+        Which markers are joined.
 
     Returns
     -------
@@ -259,39 +241,4 @@ def figure_two_walks(
         )
     axes.set_xlim(-reach, (n_moments - 1) * pitch + reach)
     axes.set_ylim(low - storey - 150, top)
-    return figure
-
-
-def figure_shares(shares: Mapping[str, float]) -> Figure:
-    """Return how much each part makes of a difference, the largest first.
-
-    Parameters
-    ----------
-    shares : mapping of str to float
-        Shares by name, 0 to 1.
-
-    Returns
-    -------
-    Figure
-
-    Examples
-    --------
-    >>> figure_shares({"calf": 0.2, "forearm": 0.8}).axes[0].get_yticklabels()[0].get_text()
-    'forearm'
-
-    """
-    ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
-    figure = new_figure(3.6, 0.6 + 0.2 * len(ordered))
-    axes = panels(figure, 1, 1)[0][0]
-    places = np.arange(len(ordered))
-    percent = [100 * share for share in ordered.values()]
-    axes.barh(places, percent, height=0.65, color=BLUE)
-    for place, value in enumerate(percent):
-        axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
-    axes.set_yticks(places, [name.replace("_", " ") for name in ordered])
-    axes.invert_yaxis()
-    axes.set_xlim(0, 1.15 * max(percent))
-    axes.set_xlabel("Share of the difference (%)")
-    axes.spines["left"].set_color(PALE)
-    axes.tick_params(axis="y", length=0)
     return figure

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.plotting.style import BLUE, GREY, INK, RED, SMALL, new_figure, panels
 
-MOST_NAMED = 45
-"""Walks up to which each gets its name; more would stand over each other."""
+MAX_NAMED = 45
+"""Walks up to which each is named; more names would overlap."""
 _LONGEST = 15
 _INKS = (BLUE, RED, "#009988", "#AA4499", GREY, "#DDAA33", "#882255", INK)
 _MARKS = "o^sDvPX>*"
-MOST_CLASSES = len(_INKS) * len(_MARKS)
+MAX_CLASSES = len(_INKS) * len(_MARKS)
 """Classes that have a colour and a mark of their own."""
 
 
@@ -28,31 +28,10 @@ def figure_difference_table(
     clusters: ArrayLike | None = None,
     unit: str = "",
 ) -> Figure:
-    """Return a table of differences as a picture, dark where walks are alike (fig. 4).
+    """Return a table of differences (walk, walk) as a picture, dark where walks are alike.
 
-    Parameters
-    ----------
-    table : array of shape (walk, walk)
-        Differences.
-    names : sequence of str
-        One name a walk.
-    order : array of int of shape (walk,)
-        Which walk comes first, second and so on.
-    clusters : array of int of shape (walk,), optional
-        Dashed lines stand where in that order another cluster begins.
-    unit : str
-        Unit of the differences.
-
-    Returns
-    -------
-    Figure
-
-    Examples
-    --------
-    >>> figure = figure_difference_table([[0, 1], [1, 0]], ["a", "b"], order=[1, 0])
-    >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
-    ['b', 'a']
-
+    `order` has the number of the first walk, the second and so on; a dashed line stands where in
+    that order another of `clusters` (walk,) begins.
     """
     values, order = np.asarray(table, dtype=float), np.asarray(order, dtype=int)
     side = float(np.clip(0.13 * len(order), 2.4, 6.2))
@@ -64,7 +43,7 @@ def figure_difference_table(
         for border in np.flatnonzero(np.diff(sorted_clusters)) + 0.5:
             axes.axhline(border, color="#009988", lw=1.0, ls="--")
             axes.axvline(border, color="#009988", lw=1.0, ls="--")
-    if len(order) <= MOST_NAMED:
+    if len(order) <= MAX_NAMED:
         short = short_names(names)
         labels = [short[walk] for walk in order]
         axes.set_xticks(range(len(order)), labels, rotation=90, parse_math=False)
@@ -81,27 +60,9 @@ def figure_difference_table(
 def figure_map_of_walks(
     places: ArrayLike, classes: Sequence[str], *, names: Sequence[str] | None = None
 ) -> Figure:
-    """Return walks as points, near each other if they are alike.
+    """Return walks as points (walk, 2), near each other if they are alike, as `map_of_walks` gives.
 
-    Parameters
-    ----------
-    places : array of shape (walk, 2)
-        As `map_of_walks` gives them.
-    classes : sequence of str
-        The cluster or label of each walk, told by colour and mark; of up to `MOST_CLASSES`.
-    names : sequence of str, optional
-        Written beside the points.
-
-    Returns
-    -------
-    Figure
-
-    Examples
-    --------
-    >>> figure = figure_map_of_walks([[0, 0], [1, 2]], ["slow", "fast"])
-    >>> [text.get_text() for text in figure.legends[0].get_texts()]
-    ['fast (1)', 'slow (1)']
-
+    Their classes, up to `MAX_CLASSES`, have colours and marks; names are written beside them.
     """
     places, of = np.asarray(places, dtype=float), np.asarray(classes)
     figure = new_figure(4.8, 3.9)
@@ -134,16 +95,8 @@ def figure_map_of_walks(
 def short_names(names: Sequence[str]) -> list[str]:
     """Return names that fit beside a picture, different ones as long as the names are different.
 
-    Of long ones, what all begin and end with is left out, up to a separator; what is still long is
-    told by its beginning and its end, and by a number where these do not tell names apart.
-
-    Examples
-    --------
-    >>> short_names(["dataset-2_walk_sad_001.bvh", "dataset-2_walk_happy_002.bvh"])
-    ['sad_001', 'happy_002']
-    >>> short_names(["dataset-2_walk_normal_001.bvh"])
-    ['datase…rmal_001']
-
+    Of long names, the words that all begin and end with are left out; what is still long becomes
+    its beginning and its end, and gets a number where these are the same for two names.
     """
     names = [str(name) for name in names]
     stems = [name.rpartition(".")[0] or name for name in names]
@@ -164,8 +117,8 @@ def _without_shared(names: list[str]) -> list[str]:
         return names
     start = _words_shared(names)
     end = _words_shared([name[start:][::-1] for name in names])
-    kept = [name[start : len(name) - end] for name in names]
-    return kept if all(kept) else names
+    middles = [name[start : len(name) - end] for name in names]
+    return middles if all(middles) else names
 
 
 def _words_shared(names: list[str]) -> int:

@@ -1,4 +1,4 @@
-"""What each eigenposture does to the body, one by one (M4)."""
+"""What each eigenposture does to the body, one by one."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ REACH_MM = 300.0
 def figure_eigenpostures(
     walker: Walker, *, azimuths_deg: Sequence[float] = (0, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
-    """Return the eigenpostures of a walker one by one, over its mean posture (M4).
+    """Return the eigenpostures of a walker one by one, over its mean posture.
 
     Blue is the mean posture plus the eigenposture, with arrows from where the joints are on
     average; red and dashed is the mean minus it. Small ones are drawn larger, by the factor that
@@ -54,15 +54,19 @@ def figure_eigenpostures(
     Parameters
     ----------
     walker : Walker
-        Its postures, amplitudes included (J9), are what is drawn.
+        Its postures are drawn with their amplitudes.
     azimuths_deg : sequence of float
         Views as `project` takes them, from above to below.
     skeleton : Skeleton
-        Who is joined to whom.
+        Which markers are joined.
 
     Returns
     -------
     Figure
+
+    References
+    ----------
+    Moler (2016), the four postures: stride, sway, hop and bounce.
 
     Examples
     --------

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -16,9 +15,12 @@ import numpy as np
 from av.video.plane import VideoPlane
 from av.video.stream import VideoStream
 
+from eigenwalker.core.atomic_write import atomic_write
+from eigenwalker.core.progress import Progress
+
 CENTISECONDS = {50: 2, 25: 4, 20: 5}
 """Frame rates of a GIF, whose delays are whole hundredths of a second, and those delays."""
-LARGE_PX, HASTY = 1_000_000, {"preset": "ultrafast", "qp": "24"}
+LARGE_PX, FAST_OPTIONS = 1_000_000, {"preset": "ultrafast", "qp": "24"}
 """From how many pixels on H.264 is encoded twice as fast, into files several times as large."""
 LUMA = np.array([0.299, 0.587, 0.114])
 """Shares of red, green and blue in brightness (ITU-R BT.601)."""
@@ -89,55 +91,28 @@ def encode_film(
     form: FilmFormat,
     delays: list[Fraction],
     shades: np.ndarray,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> None:
-    """Write frames as a film, which appears when it is whole.
+    """Write frames as a film, which appears when it is complete.
 
-    Parameters
-    ----------
-    frames : iterable of array of uint8 of shape (row, column)
-        The number of each pixel's shade; 0 is the ground.
-    path : path
-        File to write.
-    shape : tuple of int
-        Rows and columns, both even.
-    form : FilmFormat
-        As `film_format` gives it.
-    delays : list of Fraction
-        Seconds each frame stays, as `frame_delays` gives them.
-    shades : array of shape (256, 3)
-        Red, green and blue of each shade, 0 to 255: `shades_between` two colours, where a
-        pixel's number is how much of it is covered.
-    progress : callable, optional
-        Called after each frame with the number of frames written and of all.
-
+    Frames are arrays of uint8 (row, column), both even: the number of each pixel's shade, 0 for the
+    ground. `delays` are the seconds each stays; `shades` has red, green and blue of each number,
+    shape (256, 3).
     """
-    whole = path.with_name(f".{path.name}.part")
-    try:
-        _encode(frames, whole, shape, form, delays, shades, progress)
-        os.replace(whole, path)
-    finally:
-        whole.unlink(missing_ok=True)
-
-
-def _encode(
-    frames: Iterable[np.ndarray],
-    path: Path,
-    shape: tuple[int, int],
-    form: FilmFormat,
-    delays: list[Fraction],
-    shades: np.ndarray,
-    progress: Callable[[int, int], object] | None,
-) -> None:
     painted = _Gif(shades) if form.codec == "gif" else _Video(shape, shades)
     tick = delays[0] if form.codec != "gif" else Fraction(1, 100)
     options = dict(form.container_options)
-    if form.codec == "gif":  # the last frame has no next one to tell how long it stays
+    if form.codec == "gif":  # the last frame has no next one whose start ends it
         options["final_delay"] = str(round(100 * delays[-1]))
-    with av.open(str(path), "w", format=form.container, options=options) as film:
-        hasty = form.codec == "libx264" and math.prod(shape) > LARGE_PX
-        how = HASTY if hasty else form.options
-        stream = cast(VideoStream, film.add_stream(form.codec, rate=1 / tick, options=how))
+    with (
+        atomic_write(path) as unfinished,
+        av.open(str(unfinished), "w", format=form.container, options=options) as film,
+    ):
+        fast = form.codec == "libx264" and math.prod(shape) > LARGE_PX
+        codec_options = FAST_OPTIONS if fast else form.options
+        stream = cast(
+            VideoStream, film.add_stream(form.codec, rate=1 / tick, options=codec_options)
+        )
         stream.height, stream.width = shape
         stream.pix_fmt = form.pixels
         stream.codec_context.time_base = tick
@@ -229,14 +204,7 @@ def _box(cover: np.ndarray) -> tuple[slice, slice]:
 
 
 def shades_between(ground: str, ink: str) -> np.ndarray:
-    """Return red, green and blue, 0 to 255, from one colour to another: array of shape (256, 3).
-
-    Examples
-    --------
-    >>> shades_between("#000000", "#ff8000")[[0, 51, 255]].tolist()
-    [[0.0, 0.0, 0.0], [51.0, 25.6, 0.0], [255.0, 128.0, 0.0]]
-
-    """
+    """Return red, green and blue, 0 to 255, from one colour to another: array of shape (256, 3)."""
     start, end = (np.array(rgb(colour)) for colour in (ground, ink))
     return start + np.linspace(0, 1, 256)[:, None] * (end - start)
 

@@ -1,4 +1,4 @@
-"""Fitted weights with their intervals, and what they predict beside what was seen."""
+"""Shares of a difference, fitted weights, and predicted beside perceived differences."""
 
 from __future__ import annotations
 
@@ -14,27 +14,10 @@ from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, new_fi
 def figure_weights(
     names: Sequence[str], fits: Mapping[str, tuple[ArrayLike, ArrayLike, ArrayLike]]
 ) -> Figure:
-    """Return the relative weight of each joint group with its interval, as figure 5 lists them.
+    """Return the relative weight of each joint group with its interval.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Joint groups.
-    fits : mapping of str to three arrays of shape (group,)
-        One or two fits by what they were fitted to: relative weights and the ends of their
-        intervals.
-
-    Returns
-    -------
-    Figure
-
-    Examples
-    --------
-    >>> fits = {"shares": ([0.8, 0.2], [0.6, 0.0], [0.9, 0.4])}
-    >>> figure = figure_weights(["forearm", "toe"], fits)
-    >>> [label.get_text() for label in figure.axes[0].get_yticklabels()]
-    ['forearm', 'toe']
-
+    Of one or two fits by their names: relative weights and the ends of their intervals, (group,),
+    as fig. 5 of Pražák et al. (2010) lists them.
     """
     several = len(fits) > 1
     figure = new_figure(4.0, 0.6 + (0.3 if several else 0.22) * len(names) + 0.2 * several)
@@ -60,23 +43,7 @@ def figure_weights(
 
 
 def figure_predictions(observed: ArrayLike, predicted: ArrayLike) -> Figure:
-    """Return predicted over perceived differences, a point a pair.
-
-    Parameters
-    ----------
-    observed, predicted : array of shape (pair,)
-        Shares of times that a pair was not chosen, 0 to 1.
-
-    Returns
-    -------
-    Figure
-
-    Examples
-    --------
-    >>> figure_predictions([0.7, 0.9], [0.75, 0.85]).axes[0].get_ylabel()
-    'Predicted difference'
-
-    """
+    """Return predicted over perceived differences, 0 to 1, a point a pair."""
     observed, predicted = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
     figure = new_figure(3.2, 3.2)
     axes = panels(figure, 1, 1)[0][0]
@@ -86,4 +53,23 @@ def figure_predictions(observed: ArrayLike, predicted: ArrayLike) -> Figure:
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("Perceived difference", color=INK)
     axes.set_ylabel("Predicted difference", color=INK)
+    return figure
+
+
+def figure_shares(shares: Mapping[str, float]) -> Figure:
+    """Return bars of the share of a difference that each part has, 0 to 1, the largest first."""
+    ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
+    figure = new_figure(3.6, 0.6 + 0.2 * len(ordered))
+    axes = panels(figure, 1, 1)[0][0]
+    places = np.arange(len(ordered))
+    percent = [100 * share for share in ordered.values()]
+    axes.barh(places, percent, height=0.65, color=BLUE)
+    for place, value in enumerate(percent):
+        axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
+    axes.set_yticks(places, [name.replace("_", " ") for name in ordered])
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.15 * max(percent))
+    axes.set_xlabel("Share of the difference (%)")
+    axes.spines["left"].set_color(PALE)
+    axes.tick_params(axis="y", length=0)
     return figure

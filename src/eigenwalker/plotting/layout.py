@@ -35,24 +35,11 @@ FAR_SIDE = 0.55
 
 
 @dataclass(frozen=True)
-class Scene:
+class Layout:
     """Walkers side by side, at one scale, with every dot's place in the picture.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Rows and columns of the picture, both even.
-    places : tuple of arrays of shape (time, marker, 2)
-        For each walker the columns and rows of its markers.
-    bodies : tuple of Skeleton
-        For each walker its markers and who is joined to whom.
-    pixels_per_mm : float
-        The scale, the same for all.
-    style : {"dots", "sticks"}
-        Point-light display or stick figure.
-    titles : tuple of str
-        One for each walker, or none.
-
+    `shape` is (rows, columns), both even; `places` has for each walker columns and rows of its
+    markers, an array of shape (time, marker, 2); `titles` has one for each walker, or none.
     """
 
     shape: tuple[int, int]
@@ -105,7 +92,7 @@ class Scene:
         draw_discs(canvas, places, radius=np.maximum(reach, 1.1), level=levels)
 
 
-def stage(
+def arrange(
     walks: Sequence[xr.DataArray],
     *,
     azimuth_deg: float,
@@ -115,31 +102,12 @@ def stage(
     size_px: int | tuple[int, int],
     titles: Sequence[str],
     skeleton: Skeleton = LINKS,
-) -> Scene:
+) -> Layout:
     """Return walks set side by side in a picture that holds all of them all the time.
 
-    Every walk has a panel of the same width, is centred in it, and stands at the same height and
-    scale as the others.
-
-    Parameters
-    ----------
-    walks : sequence of DataArray of shape (time, marker, axis)
-        Positions at the moments of the film, in millimetres; NaN where a marker is missing.
-    azimuth_deg, elevation_deg, eye_distance_mm : float
-        The view, as `project` takes it.
-    style : {"dots", "sticks"}
-        Point-light display or stick figure.
-    size_px : int or tuple of int
-        Height of the picture, whose width then is what the walkers need; or width and height.
-    titles : sequence of str
-        One for each walk, or none.
-    skeleton : Skeleton
-        Who is joined to whom.
-
-    Returns
-    -------
-    Scene
-
+    Walks have shape (time, marker, axis), mm, NaN where a marker is missing. Each has a panel of
+    the same width, is centred in it, and stands at the same height and scale as the others. With
+    `size_px` one number, the height, the width is what the walks need.
     """
     if any(np.isnan(walk.values).all() for walk in walks):
         raise ValueError("A capture has no samples at all during the film; nothing can be drawn.")
@@ -176,7 +144,7 @@ def stage(
         for index, (view, low, high) in enumerate(zip(views, lows, highs, strict=True))
     )
     bodies = tuple(skeleton.restricted_to(walk.marker.values.tolist()) for walk in walks)
-    return Scene((height, width), places, bodies, scale, style, tuple(titles))
+    return Layout((height, width), places, bodies, scale, style, tuple(titles))
 
 
 def _radii(markers: list[str], style: Style) -> np.ndarray:
@@ -209,12 +177,6 @@ def positions_at(walk: Walker | xr.DataArray, time: np.ndarray) -> xr.DataArray:
     """Return a walker, or a capture of one, at moments of its own clock.
 
     Between the frames of a capture lies a straight line.
-
-    Raises
-    ------
-    ValueError
-        If a capture ends before the last moment asked for.
-
     """
     if isinstance(walk, Walker):
         return walk.trajectories(time)

@@ -15,21 +15,20 @@ def project(
     elevation_deg: float = 0.0,
     eye_distance_mm: float | None = None,
 ) -> np.ndarray:
-    """Return where an observer sees points of the room.
+    """Return where an observer sees points of the scene, in two dimensions.
 
-    The views of Troje (2002) and WDP2002: orthographic, at 0 (front), 30 (three-quarter) or 90
-    degrees (profile). The observer of view 0 faces the walker, whose left is then at the observer's
-    right. A positive view turns the walker to its own left, so that at 90 it walks to the right of
-    the picture, and at -90 to the left.
+    At an azimuth of 0 the observer faces the walker, whose left is then at the observer's right. A
+    positive azimuth turns the walker to its own left: at 90 degrees it walks to the right of the
+    picture, at -90 to the left.
 
     Parameters
     ----------
     positions : array of shape (..., 3)
-        Millimetres: x forward, y to the walker's left, z up. Trajectories will do.
+        Millimetres: x forward, y to the walker's left, z up.
     azimuth_deg : float
         By how much the walker is turned out of the frontal view.
     elevation_deg : float
-        By how much the observer is raised above the horizontal; 90 looks straight down.
+        Of the observer above the horizontal; 90 looks straight down.
     eye_distance_mm : float, optional
         From the eye to the middle of all points, about which the observer turns, for a perspective
         picture, in which things as far as the middle keep their size. None: orthographic.
@@ -43,6 +42,10 @@ def project(
     ------
     ValueError
         If positions have other than three coordinates, or a point lies beside or behind the eye.
+
+    References
+    ----------
+    Troje (2002), Methods, experiment: orthographic, at 0, 30 and 90 degrees.
 
     Examples
     --------
@@ -66,21 +69,7 @@ def project(
 
 
 def observer_axes(azimuth_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
-    """Return the observer's right, up and the way to the observer as unit vectors of the room.
-
-    Returns
-    -------
-    array of shape (3, 3)
-        One direction a row, right-handed.
-
-    Examples
-    --------
-    In the frontal view the observer's right is the walker's left:
-
-    >>> observer_axes(0)[0].tolist()
-    [0.0, 1.0, 0.0]
-
-    """
+    """Return the observer's right, up and the direction to the observer: rows of a rotation."""
     view, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
     ahead = np.array([math.cos(view), -math.sin(view), 0.0])
     right = np.array([math.sin(view), math.cos(view), 0.0])

@@ -14,8 +14,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-MOST_SHARES = 2_000_000
-"""Pixels of discs that are worked out at once."""
+MAX_PIXELS = 2_000_000
+"""Pixels of discs computed at once."""
 
 
 def draw_discs(
@@ -25,26 +25,10 @@ def draw_discs(
     radius: float | np.ndarray,
     level: float | np.ndarray = 1.0,
 ) -> None:
-    """Put discs on a canvas, in place.
+    """Put discs on a canvas, in place; where things overlap, the fuller cover stays.
 
-    Parameters
-    ----------
-    canvas : array of uint8 of shape (row, column)
-        What is drawn on; where things overlap, the fuller cover stays.
-    centres : array of shape (disc, 2)
-        Columns and rows; a disc at NaN is left out, one that reaches over the border is cut.
-    radius : float or array of shape (disc,)
-        Pixels.
-    level : float or array of shape (disc,)
-        Share of cover of a pixel that lies within a disc.
-
-    Examples
-    --------
-    >>> canvas = np.zeros((5, 5), np.uint8)
-    >>> draw_discs(canvas, np.array([[2, 2]]), radius=1)
-    >>> canvas[2].tolist()
-    [0, 128, 255, 128, 0]
-
+    Centres (disc, 2) are columns and rows, NaN for none; radius in pixels and level, the share of
+    cover within, are one for all or one a disc.
     """
     centres = np.asarray(centres, dtype=np.float32)
     seen = np.isfinite(centres).all(axis=1)
@@ -52,7 +36,7 @@ def draw_discs(
         return
     radii = np.broadcast_to(np.float32(radius), len(centres))[seen]
     levels = np.broadcast_to(np.float32(level), len(centres))[seen]
-    some = max(MOST_SHARES // (2 * math.ceil(radii.max()) + 3) ** 2, 1)
+    some = max(MAX_PIXELS // (2 * math.ceil(radii.max()) + 3) ** 2, 1)
     for first in range(0, len(radii), some):
         few = slice(first, first + some)
         _draw_few_discs(canvas, centres[seen][few], radii[few], levels[few])
@@ -80,19 +64,9 @@ def draw_lines(
     width: float,
     level: float | np.ndarray = 1.0,
 ) -> None:
-    """Put straight lines with round ends on a canvas, in place.
+    """Put straight lines with round ends on a canvas, in place, as `draw_discs` does.
 
-    Parameters
-    ----------
-    canvas : array of uint8 of shape (row, column)
-        As for `draw_discs`.
-    starts, ends : array of shape (line, 2)
-        Columns and rows; a line with an end at NaN is left out.
-    width : float
-        Pixels.
-    level : float or array of shape (line,)
-        Share of cover of a pixel that lies within a line.
-
+    Starts and ends have shape (line, 2); a line with an end at NaN is left out.
     """
     levels = np.broadcast_to(np.float32(level), len(starts))
     reach = math.ceil(width / 2 + 0.5)
@@ -122,22 +96,7 @@ def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
 
 
 def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.ndarray:
-    """Return a line of words, centred on a canvas of its own; long ones are set smaller.
-
-    Parameters
-    ----------
-    words : str
-        Taken as they are, without mathematical markup.
-    width, height : int
-        Of the canvas, in pixels.
-    level : float
-        Share of cover within the strokes.
-
-    Returns
-    -------
-    array of uint8 of shape (height, width)
-
-    """
+    """Return a line of words centred on a canvas (height, width); long ones are set smaller."""
     dots_an_inch = 72
     figure = Figure(figsize=(width / dots_an_inch, height / dots_an_inch), dpi=dots_an_inch)
     figure.set_facecolor("black")

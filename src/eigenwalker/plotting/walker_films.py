@@ -20,7 +20,7 @@ from eigenwalker.plotting.encoding import (
     frame_delays,
     shades_between,
 )
-from eigenwalker.plotting.layout import DEFAULT_DURATION_S, STYLES, Style, positions_at, stage
+from eigenwalker.plotting.layout import DEFAULT_DURATION_S, STYLES, Style, arrange, positions_at
 
 Background = Literal["dark", "light"]
 COLOURS = {"dark": ("#000000", "#ffffff"), "light": ("#ffffff", "#191919")}
@@ -46,52 +46,58 @@ def write_film(
 ) -> Path:
     """Write a film of one walker, or of several side by side, and return its path.
 
-    White dots on black as in J34, or a stick figure whose left limbs are the dimmer ones. All
-    walkers have one scale, at which all of them stay in the picture.
+    White dots on black, or stick figures whose left limbs are dimmer. All walkers have one scale,
+    at which all of them stay in the picture.
 
     Parameters
     ----------
-    walks : Walker, trajectories, or a sequence of them
+    walks : Walker, DataArray of shape (time, marker, axis), or a sequence of them
         Walkers begin where their first phase is 0, captures with their first frame, and walkers
-        beside a capture at the moment of its first frame, on its clock. Markers of a capture that
-        are missing at a moment are not drawn.
+        beside a capture at the moment of its first frame, on its clock. Missing markers are not
+        drawn.
     path : path
-        The suffix decides: ``.mp4``, ``.webm`` or ``.gif``. The file appears when it is whole.
+        Ends in ``.mp4``, ``.webm`` or ``.gif``. The file appears when it is complete.
     duration_s : float, optional
-        Seconds of the film; left open, 4 for walkers, and what the shortest capture lasts.
+        Seconds of the film; left out, 4 for walkers, and as long as the shortest capture.
     n_strides : int, optional
         Whole strides in place of a duration, so that the film repeats without a seam. Walkers of
-        different frequency then keep step, in the time of their mean frequency (M1).
+        different frequency then keep step, at their mean frequency.
     azimuth_deg, elevation_deg, eye_distance_mm : float
         An azimuth of 0 is the frontal view, 90 in profile to the right; see `project`.
     style : {"dots", "sticks"}
         Point-light display or stick figure.
     size_px : int or (width, height)
-        Height of the picture, the width being what the walkers need; or both. Odd ones get one
-        more.
+        Height of the picture, whose width then is what the walkers need; or both. Odd numbers
+        are rounded up.
     rate_hz : float, optional
-        Frames a second; 60, and 50 for a GIF, whose delays are whole hundredths of a second: it
-        takes 50, 25 or 20.
+        Frames a second; 60 if left out, and 50 for a GIF, which takes 50, 25 or 20.
     background : {"dark", "light"}
         White on black or black on white.
     titles : sequence of str
-        Words over each walker.
+        One over each walker.
     skeleton : Skeleton
         Which markers the sticks join.
     progress : callable, optional
-        Called after each frame with the number of frames written and of all.
+        Called after each frame with the numbers of frames written and of all.
 
     Returns
     -------
     Path
-        The file written.
 
     Raises
     ------
     ValueError
-        If a choice is not known or does not go with another, saying what does.
+        If an option is not known or contradicts another.
     FileNotFoundError
         If the folder does not exist.
+
+    See Also
+    --------
+    eigenwalker.stimulus.write_stimulus : Films of stimuli, with transforms and mannequins.
+
+    References
+    ----------
+    Troje (2002), Methods, experiment (white dots on black); Moler (2016), walkers in step.
 
     Examples
     --------
@@ -109,7 +115,7 @@ def write_film(
     form = film_format(path, rate_hz)
     _check(shown, duration_s, n_strides, style, background, titles)
     delays, seconds = _moments(shown, duration_s, n_strides, rate_hz or form.rate_hz, form)
-    scene = stage(
+    layout = arrange(
         [
             positions_at(walk, _start(walk, shown) + moments)
             for walk, moments in zip(shown, seconds, strict=True)
@@ -123,9 +129,9 @@ def write_film(
         skeleton=skeleton,
     )
     encode_film(
-        scene.frames(),
+        layout.frames(),
         path,
-        shape=scene.shape,
+        shape=layout.shape,
         form=form,
         delays=delays,
         shades=shades_between(*COLOURS[background]),
@@ -142,24 +148,26 @@ def _check(
     background: str,
     titles: Sequence[str],
 ) -> None:
-    amiss = []
+    problems = []
     if not shown:
-        amiss.append("there is no walker to film")
+        problems.append("there is no walker to film")
     if duration_s is not None and n_strides is not None:
-        amiss.append("duration_s and n_strides are both given; give one")
+        problems.append("duration_s and n_strides are both given; give one")
     if duration_s is not None and not 0 < duration_s <= 3600:
-        amiss.append(f"duration_s={duration_s:g} must lie between 0 and 3600")
+        problems.append(f"duration_s={duration_s:g} must lie between 0 and 3600")
     captures = [check_trajectories(walk) for walk in shown if not isinstance(walk, Walker)]
     if n_strides is not None and (captures or n_strides < 1):
-        amiss.append("n_strides must be 1 or more, and is for walkers; a capture takes duration_s")
+        problems.append(
+            "n_strides must be 1 or more, and is for walkers; a capture takes duration_s"
+        )
     if style not in STYLES:
-        amiss.append(f"style={style!r} is none of {STYLES}")
+        problems.append(f"style={style!r} is none of {STYLES}")
     if background not in COLOURS:
-        amiss.append(f"background={background!r} is none of {tuple(COLOURS)}")
+        problems.append(f"background={background!r} is none of {tuple(COLOURS)}")
     if len(titles) not in (0, len(shown)):
-        amiss.append(f"there are {len(titles)} titles for {len(shown)} walkers")
-    if amiss:
-        raise ValueError("This film cannot be made: " + "; ".join(amiss) + ".")
+        problems.append(f"there are {len(titles)} titles for {len(shown)} walkers")
+    if problems:
+        raise ValueError("This film cannot be made: " + "; ".join(problems) + ".")
 
 
 def _moments(

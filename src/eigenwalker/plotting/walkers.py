@@ -33,22 +33,7 @@ def draw_body(
     dashes: str | tuple = "-",
     zorder: float = 2.0,
 ) -> None:
-    """Draw a posture, its left limbs paler than its right ones.
-
-    Parameters
-    ----------
-    axes : Axes
-        What is drawn on, in millimetres.
-    seen : array of shape (marker, 2)
-        The posture in projection, as `project` gives it.
-    body : Skeleton
-        Names of the markers and who is joined to whom.
-    at : tuple of float
-        Where in the picture the posture's origin goes.
-    color, width, dots, dashes, zorder
-        Of the links, in points; and whether joints are marked.
-
-    """
+    """Draw a posture in projection (marker, 2), mm, its left limbs paler than its right ones."""
     seen = np.asarray(seen) + at
     left = {marker for marker, _ in body.pairs}
     for link in body.segments:
@@ -82,7 +67,7 @@ def _mixed(color: str, share: float) -> tuple[float, ...]:
 def figure_joints(
     walker: Walker, *, azimuths_deg: Sequence[float] = (0, 30, 90), skeleton: Skeleton = LINKS
 ) -> Figure:
-    """Return the joints and links of a walker's mean posture from several sides (J fig. 1).
+    """Return the joints and links of a walker's mean posture from several sides.
 
     Names stand beside the joints of the first view.
 
@@ -93,11 +78,15 @@ def figure_joints(
     azimuths_deg : sequence of float
         Views as `project` takes them; 0 is the front.
     skeleton : Skeleton
-        Who is joined to whom.
+        Which markers are joined.
 
     Returns
     -------
     Figure
+
+    References
+    ----------
+    Troje (2002), fig. 1.
 
     Examples
     --------
@@ -127,14 +116,7 @@ def figure_joints(
 
 
 def view_name(azimuth_deg: float) -> str:
-    """Return a view in words: front, three-quarter, side, or its angle.
-
-    Examples
-    --------
-    >>> view_name(90), view_name(45)
-    ('side', '45°')
-
-    """
+    """Return a view in words: front, three-quarter, side, or its angle."""
     names: dict[float, str] = {0: "front", 30: "three-quarter", 90: "side"}
     return names.get(azimuth_deg, f"{azimuth_deg:g}°")
 
@@ -184,7 +166,7 @@ def figure_walkers(
 ) -> Figure:
     """Return walkers side by side at one scale, each over the paths of its joints.
 
-    For the extremes of a trait, and for Moler's four panels (M5): women, men, and both with their
+    For the extremes of a trait, and for Moler's four panels: women, men, and both with their
     difference tripled.
 
     Parameters
@@ -198,11 +180,15 @@ def figure_walkers(
         is 0. At a quarter the legs of a walker of a population are furthest apart, the left one in
         front.
     skeleton : Skeleton
-        Who is joined to whom.
+        Which markers are joined.
 
     Returns
     -------
     Figure
+
+    See Also
+    --------
+    write_film : The same, moving.
 
     Examples
     --------

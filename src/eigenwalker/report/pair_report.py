@@ -11,7 +11,8 @@ from eigenwalker.metric.clips import Loop
 from eigenwalker.metric.comparison import Comparison
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.loops import loop
-from eigenwalker.plotting.difference_maps import figure_shares, figure_two_walks
+from eigenwalker.plotting.difference_maps import figure_two_walks
+from eigenwalker.plotting.fitted_weights import figure_shares
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
 from eigenwalker.report.pair_figures import map_of_loop_and_pair, maps_of_components, passing

@@ -1,4 +1,4 @@
-"""A figure of a stimulus as animators take it: constant bones, and a root that travels."""
+"""A figure of a stimulus for animation: constant bones, and a root that travels."""
 
 from __future__ import annotations
 
@@ -15,22 +15,15 @@ from eigenwalker.stimulus.stimulus import Stimulus
 ANKLES = ("left_ankle", "right_ankle")
 SOFT_MM = 8.0
 """Difference in height of the ankles over which the weight passes from foot to foot."""
-MOST_OFF_MM = 100.0
+MAX_ERROR_MM = 100.0
 """Root mean square by which bones of constant length may miss the dots."""
 
 
 class FootSlide(NamedTuple):
-    """How still a figure's feet stand.
+    """How far a figure's standing feet slide.
 
-    Parameters
-    ----------
-    mean_mm_s : float
-        Mean horizontal speed of the ankle that stands.
-    per_stance_mm : float
-        How far the ankle that stands travels in a stance, on average.
-    before_mm_s : float
-        The same speed with the root at a constant speed, as a treadmill gives it.
-
+    Mean horizontal speed of the standing ankle, how far it travels in a stance on average, and its
+    speed with the root at a constant speed, as on a treadmill.
     """
 
     mean_mm_s: float
@@ -45,16 +38,7 @@ class FootSlide(NamedTuple):
 
 
 class Animation(NamedTuple):
-    """A figure with constant bones that walks over ground.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        Joints, in mm, z up, as its bones have them.
-    slide : FootSlide
-        How still its feet stand.
-
-    """
+    """A figure with constant bones that walks over ground: joints (time, marker, axis), mm."""
 
     walk: xr.DataArray
     slide: FootSlide
@@ -63,28 +47,10 @@ class Animation(NamedTuple):
 def animated(stimulus: Stimulus, *, figure: int = 0, rate_hz: float | None = None) -> Animation:
     """Return a figure as its chain of transforms leaves it, with bones of constant length.
 
-    The root travels so that the foot that stands stays where it is: at each moment it goes against
-    the velocity of the lower ankle; while both are within 8 mm of one height, of both, weighed. A
-    figure whose ankles are above its pelvis, as inverted, is left where it is.
-
-    Parameters
-    ----------
-    stimulus : Stimulus
-        Of a figure with the 15 joints.
-    figure : int
-        Its number.
-    rate_hz : float, optional
-        Frames a second; left out, those of the stimulus.
-
-    Returns
-    -------
-    Animation
-
-    Raises
-    ------
-    ValueError
-        If it lacks joints, or moves as no body with bones does, as when scrambled.
-
+    The root travels so that the standing foot stays where it is: at each moment it moves against
+    the velocity of the lower ankle, or of a weighted mean of both while their heights differ by
+    less than 8 mm. A figure whose ankles are above its pelvis, as when inverted, does not travel.
+    Raises ValueError if the figure lacks joints, or moves as no body with bones does.
     """
     rate_hz = rate_hz or stimulus.timing.rate_hz
     n_frames = max(round(stimulus.timing.duration_s * rate_hz), 2)
@@ -101,11 +67,11 @@ def animated(stimulus: Stimulus, *, figure: int = 0, rate_hz: float | None = Non
         played.positions[:, keep], markers=list(JOINTS.markers), rate_hz=rate_hz
     )
     walk = constant_bones(seen)
-    off_mm = float(np.sqrt(np.mean(np.sum((walk.values - seen.values) ** 2, axis=2))))
-    if off_mm > MOST_OFF_MM:
+    error_mm = float(np.sqrt(np.mean(np.sum((walk.values - seen.values) ** 2, axis=2))))
+    if error_mm > MAX_ERROR_MM:
         raise ValueError(
             f"This figure does not move as a body with bones: constant ones miss its joints by "
-            f"{off_mm:.0f} mm. Leave out what takes the body apart, or write .csv or .npz."
+            f"{error_mm:.0f} mm. Leave out what takes the body apart, or write .csv or .npz."
         )
     return _travelling(walk, rate_hz)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,7 @@ from eigenwalker.plotting.raster import draw_discs, draw_lines
 from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
 from eigenwalker.stimulus.player import Played
 from eigenwalker.stimulus.solids import Lit, Look, draw_hulls
-
-if TYPE_CHECKING:
-    from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.stimulus import Stimulus
 
 STICK_PER_DOT = 0.6
 """Width of a stick beside the diameter of a dot."""
@@ -24,7 +21,7 @@ BLOB_REACH_SD = 3.6
 """Standard deviations beyond which a blob gives less light than an 8-bit pixel shows."""
 
 SPECULAR = 0.1
-"""How much of white light a mannequin's surface throws back, whatever its colour."""
+"""Share of white light that a mannequin's surface reflects, whatever its colour."""
 DOTS, EDGES, BRIGHT, FULL = 15, 4, 24, 144
 """Shades of dots' edges; of a mannequin's edges, and how bright; of what it covers wholly."""
 FIRST_EDGE = 1 + DOTS
@@ -32,13 +29,7 @@ FIRST_FULL = FIRST_EDGE + EDGES * BRIGHT
 
 
 def places_px(stimulus: Stimulus, played: Played) -> np.ndarray:
-    """Return where dots are in the picture, in pixels from its left and its upper edge.
-
-    Returns
-    -------
-    array of shape (time, dot, 2)
-
-    """
+    """Return where dots are, pixels from the left and upper edge: array of shape (time, dot, 2)."""
     display = stimulus.display
     middle = np.array([display.width_px, display.height_px]) / 2
     return middle + display.px_per_mm * played.picture * [1, -1]
@@ -47,23 +38,10 @@ def places_px(stimulus: Stimulus, played: Played) -> np.ndarray:
 def drawn_frames(
     stimulus: Stimulus, time: np.ndarray, *, shape: tuple[int, int] | None = None
 ) -> Iterator[np.ndarray]:
-    """Draw frame after frame.
+    """Draw frame after frame: arrays of uint8 (row, column), overwritten by the next frame.
 
-    Parameters
-    ----------
-    stimulus : Stimulus
-        What is shown.
-    time : array of shape (time,)
-        Seconds.
-    shape : tuple of int, optional
-        Rows and columns; left out, those of the stimulus. What is beyond its picture is ground.
-
-    Yields
-    ------
-    array of uint8 of shape (row, column)
-        The number of each pixel's shade (`drawn_shades`), which for dots and sticks is how much of
-        it is covered; overwritten by the next frame.
-
+    A pixel's number is that of its shade (`drawn_shades`), which for dots and sticks is how much of
+    it is covered. Beyond the picture of the stimulus, `shape` is filled with ground.
     """
     played = stimulus.play(time)
     places = places_px(stimulus, played) - 0.5  # pixels are counted from their centres
@@ -113,12 +91,12 @@ def hulls_of(
     stimulus: Stimulus, bodies: Mapping[int, Mannequin], played: Played, moment: int
 ) -> Hulls:
     """Return the pieces of all mannequins at one of the moments played."""
-    carved = []
+    hulls = []
     for number, body in bodies.items():
         mine = played.figures == number
         places, visible = played.positions[moment, mine], played.visible[moment, mine]
-        carved.append(hulls_at(body, places, visible, stimulus.view))
-    return Hulls(*(np.concatenate(parts) for parts in zip(*carved, strict=True)))
+        hulls.append(hulls_at(body, places, visible, stimulus.view))
+    return Hulls(*(np.concatenate(parts) for parts in zip(*hulls, strict=True)))
 
 
 def look_of(stimulus: Stimulus, shape: tuple[int, int]) -> Look:
@@ -169,16 +147,7 @@ def mannequin_shades(ground: str, ink: str) -> np.ndarray:
 
 
 def composite_mannequin(canvas: np.ndarray, lit: Lit) -> None:
-    """Put mannequins on a canvas of dots' covers, which gets the numbers of shades, in place.
-
-    Parameters
-    ----------
-    canvas : array of uint8 of shape (row, column)
-        How much each pixel is covered with dots, 0 to 255; dots are before mannequins.
-    lit : Lit
-        The mannequins.
-
-    """
+    """Put mannequins on a canvas of dots' covers, which gets the numbers of shades, in place."""
     before = canvas[lit.box] > 127
     if canvas.any():
         canvas[:] = np.rint(canvas * np.float32(DOTS / 255))

@@ -1,4 +1,4 @@
-"""glTF 2.0 binary (.glb): a skeleton with a simple body, animated, as browsers and engines read it.
+"""glTF 2.0 binary (.glb): a skeleton with a simple body, animated, for browsers and game engines.
 
 The skeleton is in centimetres, y up, facing z, under a node that scales it by 0.01, since glTF
 counts in metres.
@@ -63,18 +63,7 @@ class _Buffer:
 
 
 def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = None) -> None:
-    """Write the 15 joints as an animated skeleton.
-
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        Joints in mm, z up, facing x, evenly sampled.
-    path : Path
-        File to write.
-    about : dict of str to str, optional
-        Kept in the file as ``asset.extras``.
-
-    """
+    """Write the 15 joints of a walk (time, marker, axis), mm, as an animated skeleton."""
     turn = turn_upright("y")
     bones = fit_bones(walk.copy(data=walk.values @ turn / 10), turn)
     buffer = _Buffer()
@@ -156,7 +145,7 @@ def _steady(turns: np.ndarray) -> np.ndarray:
 
 
 def _skin(bones: Bones, buffer: _Buffer, first: int) -> dict[str, Any]:
-    """Who carries the body, and how to bring it from rest into each joint's frame."""
+    """The joints that carry the body, and the way from rest into each joint's frame."""
     inverse = np.tile(np.eye(4), (len(bones.names), 1, 1))
     inverse[:, :3, 3] = -_at_rest(bones)
     columns = inverse.transpose(0, 2, 1).reshape(-1, 16)  # glTF writes column after column

@@ -10,25 +10,24 @@ if TYPE_CHECKING:
 
 PAGE, MANNEQUIN = "player.html", "mannequin.js"
 """Built from ``frontend/`` when the package is."""
-HELD = '<script id="stimulus" type="application/json">{}</script>'
-"""Where the page holds its stimulus."""
-HELD_MODULE = '<script id="mannequin" type="text/plain">{}</script>'
-"""Where it holds the module that draws the mannequin, which is run when it is asked for."""
+STIMULUS_SCRIPT = '<script id="stimulus" type="application/json">{}</script>'
+"""The element that holds the stimulus."""
+MODULE_SCRIPT = '<script id="mannequin" type="text/plain">{}</script>'
+"""The element that holds the module that draws mannequins, run when one is shown."""
 SCRIPTS = "script-src 'unsafe-inline'"
-"""What the page may run: what stands in it; for the mannequin also what it makes of its text."""
+"""The page may run scripts that stand in it; for a mannequin also what it makes of its text."""
 
 
 def stand_alone_page(stimulus: Stimulus) -> str:
     """Return a page that plays a stimulus, again and again, at the rate of the screen.
 
-    It holds script, style and stimulus, and loads nothing; for the mannequin, three.js too, which
-    makes half a megabyte of it. With ``#t=0.5`` after its address it
-    stands still at that moment, with ``#bare`` it shows no controls, with ``#t=0.5&bare`` both.
+    The page holds script, style and stimulus and loads nothing; for a mannequin it also holds
+    three.js, half a megabyte. With ``#t=0.5`` after its address it stands still at that moment,
+    with ``#bare`` it shows no controls, with ``#t=0.5&bare`` both.
 
     Parameters
     ----------
     stimulus : Stimulus
-        What to play.
 
     Returns
     -------
@@ -51,23 +50,16 @@ def stand_alone_page(stimulus: Stimulus) -> str:
     """
     # In JSON a "<" stands in texts only, where it may be written as its number; so no text can end
     # the script element that holds it.
-    content = HELD.format(stimulus.to_json().replace("<", "\\u003c"))
-    before, after = built(PAGE).split(HELD.format("null"))
+    content = STIMULUS_SCRIPT.format(stimulus.to_json().replace("<", "\\u003c"))
+    before, after = built(PAGE).split(STIMULUS_SCRIPT.format("null"))
     if stimulus.display.style == "mannequin":
-        content += HELD_MODULE.format(built(MANNEQUIN).replace("</script", "<\\/script"))
+        content += MODULE_SCRIPT.format(built(MANNEQUIN).replace("</script", "<\\/script"))
         before = before.replace(SCRIPTS, f"{SCRIPTS} blob:")
     return before + content + after
 
 
 def built(name: str) -> str:
-    """Return a page or module that is built from ``frontend/`` when the package is.
-
-    Raises
-    ------
-    FileNotFoundError
-        If it is not there.
-
-    """
+    """Return a page or module that is built from ``frontend/`` when the package is."""
     try:
         return files("eigenwalker.stimulus").joinpath("built", name).read_text(encoding="utf-8")
     except FileNotFoundError:

@@ -18,8 +18,8 @@ from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
 from eigenwalker.stimulus.stimulus import Stimulus
 
-FILLED = 0.84
-"""Share of the picture that figures fill where no size is asked for."""
+FILLED_SHARE = 0.84
+"""Share of the picture that figures fill."""
 Information = Literal["full", "structure", "dynamics"]
 
 
@@ -41,28 +41,36 @@ def make_stimulus(
 
     Parameters
     ----------
-    figures : Walker, trajectories, Figure, or several of them
-        Who is seen. A `Figure` says where it stands and how it is joined too.
+    figures : Walker, DataArray of shape (time, marker, axis) in mm, Figure, or several of them
+        What moves. A `Figure` also has a position, a heading and a skeleton.
     azimuth_deg, elevation_deg : float
-        From where; 0 is the front, 90 in profile to the right.
+        The view; an azimuth of 0 is the front, 90 in profile to the right.
     eye_distance_mm : float, optional
         From the eye to the middle of the scene, for a perspective picture.
     duration_s : float, optional
-        Left out, 4 for walkers, and what the shortest of the trajectories lasts.
+        Left out, 4 for walkers, and as long as the shortest of the trajectories.
     rate_hz : float
         Frames a second of films and tables.
     style : {"dots", "sticks", "mannequin"}
-        What is drawn; a mannequin is as thick as its height has it.
+        What is drawn; a mannequin's thickness goes with its height.
     size_px : (width, height)
-        Of the picture.
     colour, background : str
         As in ``"#ffffff"``.
     provenance : mapping of str to str, optional
-        Source, licence, citation of what is shown; the program's version is added.
+        Source, licence, citation; the program's version is added.
 
     Returns
     -------
     Stimulus
+
+    See Also
+    --------
+    write_stimulus : Films, pages, tables and scripts of a stimulus.
+    with_information : Walkers that show structure only, or dynamics only.
+
+    References
+    ----------
+    Troje (2002), Methods, experiment: point-light displays on a treadmill, at 0, 30, 90 degrees.
 
     Examples
     --------
@@ -72,11 +80,10 @@ def make_stimulus(
     [0.0, 0.0, 10.0]
 
     """
-    one = isinstance(figures, Walker | xr.DataArray | Figure)
-    given = [figures] if one else list(figures)  # pyright: ignore[reportArgumentType] - several
-    whole = [item if isinstance(item, Figure) else Figure(item) for item in given]  # pyright: ignore[reportArgumentType] - the same
+    several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else figures
+    whole = [item if isinstance(item, Figure) else Figure(item) for item in several]
     if not whole:
-        raise ValueError("There is nobody to show; give one figure or more.")
+        raise ValueError("There is no figure to show; give one or more.")
     if duration_s is None:
         walks = [figure.motion for figure in whole if isinstance(figure.motion, xr.DataArray)]
         duration_s = min(
@@ -85,16 +92,23 @@ def make_stimulus(
     program = f"eigenwalker {__version__}"
     bare = Stimulus(
         figures=whole,
-        view=View((0.0, 0.0, 0.0), azimuth_deg, elevation_deg),
-        timing=Timing(duration_s, rate_hz),
-        display=Display(1.0, *size_px, style=style, colour=colour, background=background),
+        view=View(centre_mm=(0, 0, 0), view_deg=azimuth_deg, elevation_deg=elevation_deg),
+        timing=Timing(duration_s=duration_s, rate_hz=rate_hz),
+        display=Display(
+            width_px=size_px[0],
+            height_px=size_px[1],
+            px_per_mm=1.0,
+            style=style,
+            colour=colour,
+            background=background,
+        ),
         provenance={**(provenance or {}), "program": program},
     )
     return _fitted(bare, eye_distance_mm)
 
 
 def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
-    """A stimulus with its figures in the middle of the picture and as large as it allows."""
+    """Return a stimulus with its figures in the middle of the picture and as large as it allows."""
     low, high = bare.extent()
     axes = observer_axes(bare.view.view_deg, bare.view.elevation_deg)
     middles = np.mean([moving.middle for moving in bare.scene], axis=0)
@@ -107,7 +121,7 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
         low, high = replace(bare, view=view).extent()
         seen = 2 * np.maximum(np.abs(low), np.abs(high))
         extent = np.where(np.isfinite(seen), np.maximum(extent, seen), extent)
-    room = FILLED * np.array([bare.display.width_px, bare.display.height_px])
+    room = FILLED_SHARE * np.array([bare.display.width_px, bare.display.height_px])
     scale = float((room / extent).min())
     display = replace(bare.display, px_per_mm=scale, dot_px=max(DOT_MM * scale, 2.0))
     return replace(bare, view=view, display=display)
@@ -116,25 +130,29 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
 def with_information(
     population: Population, walker: int | np.ndarray, information: Information
 ) -> Walker:
-    """Return a walker as one of the three stimuli of Troje (2002), experiment.
+    """Return a walker with all its information, with its structure only, or its dynamics only.
 
-    ``"full"``: all its own. ``"structure"``: its own mean posture p0; eigenpostures, phases and
-    frequency are the population's averages. ``"dynamics"``: its own eigenpostures, phases and
-    frequency on the population's mean posture (the mean, A16, which is printed without 1/m). Sizes
-    are divided out first, of eigenpostures too (eq. 12, A17), so that all are equally tall.
+    ``"structure"`` keeps the mean posture p0; eigenpostures, phases and frequency are the
+    population's averages. ``"dynamics"`` keeps eigenpostures, phases and frequency, on the
+    population's average posture. Sizes are divided out first, of eigenpostures too, so that all
+    walkers are equally tall.
 
     Parameters
     ----------
     population : Population
-        Whose averages stand in. Flagged walkers shape none.
+        Its averages, without flagged walkers, replace what is not kept.
     walker : int, or array of shape (feature,)
-        Number of a walker of it, or any point of its feature space.
+        Number of a walker of the population, or any point of its feature space.
     information : {"full", "structure", "dynamics"}
-        What the stimulus may tell.
+        What is kept.
 
     Returns
     -------
     Walker
+
+    References
+    ----------
+    Troje (2002), Methods, experiment, and eq. 12 (size); Mather and Murdoch (1994).
 
     Examples
     --------
@@ -144,29 +162,29 @@ def with_information(
     True
 
     """
-    alike = population.size_normalised()
+    same_size = population.size_normalised()
     if isinstance(walker, int | np.integer):
         if not 0 <= walker < len(population):
             raise ValueError(
                 f"The population has walkers 0 to {len(population) - 1}, not {walker}."
             )
-        own = alike.X[walker]
+        own = same_size.X[walker]
     else:
         own = _normalised(population, np.asarray(walker, dtype=float))
     match information:
         case "full":
-            return alike.walker(own)
+            return same_size.walker(own)
         case "structure":
-            return alike.walker(alike.hybrid(structure=own, dynamics=alike.average))
+            return same_size.walker(same_size.hybrid(structure=own, dynamics=same_size.average))
         case "dynamics":
-            return alike.walker(alike.hybrid(structure=alike.average, dynamics=own))
+            return same_size.walker(same_size.hybrid(structure=same_size.average, dynamics=own))
     raise ValueError(
         f"information={information!r} is not known; choose 'full', 'structure' or 'dynamics'."
     )
 
 
 def _normalised(population: Population, vector: np.ndarray) -> np.ndarray:
-    """A point of the feature space with its size divided out of all postures (eq. 12)."""
+    """Divide the size out of all postures of a point of the feature space (Troje 2002, eq. 12)."""
     mean = population.average[population.layout.columns("structure")]
     posture = vector[population.layout.columns("structure")]
     size = posture @ mean / (mean @ mean)

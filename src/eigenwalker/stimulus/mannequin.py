@@ -1,4 +1,4 @@
-"""The mannequin's body: pieces of wood that go with the dots, each the hull of two balls.
+"""The mannequin's body: pieces that move with the dots, each the hull of two balls.
 
 ``mannequin.json``, which the browser reads too, has their places as weighted means of dots and
 their girth in shares of body height.
@@ -26,15 +26,8 @@ UNSIDED = ("head", "sternum", "pelvis")
 class Mannequin(NamedTuple):
     """The pieces of one figure.
 
-    Parameters
-    ----------
-    weights : array of shape (piece, 2, dot)
-        Of each dot in the middles of a piece's two balls.
-    radii_mm : array of shape (piece, 2)
-        Of these balls.
-    tones : array of shape (piece,)
-        1 for as bright as the light makes it; joints are darker.
-
+    `weights` (piece, 2, dot) of each dot in the centres of a piece's two balls, their radii (piece,
+    2), and `tones` (piece,): 1, or less for joints, which are darker.
     """
 
     weights: np.ndarray
@@ -43,16 +36,9 @@ class Mannequin(NamedTuple):
 
 
 class Hulls(NamedTuple):
-    """Pieces of wood at one moment, as the observer sees them: to the right, up, towards him.
+    """Pieces at one moment in the observer's axes (right, up, towards the observer), in mm.
 
-    Parameters
-    ----------
-    middles : array of shape (piece, 2, 3)
-        Of the two balls whose hull each is, in mm from the centre of the view.
-    radii : array of shape (piece, 2)
-        Millimetres.
-    tones : array of shape (piece,)
-
+    Centres (piece, 2, 3) of the two balls of each, from the centre of the view; radii (piece, 2).
     """
 
     middles: np.ndarray
@@ -67,10 +53,10 @@ def _shape() -> dict[str, Any]:
 
 
 def body_heights(stimulus: Stimulus) -> list[float]:
-    """Return the body height of each figure of a stimulus in mm, by which its mannequin is thick.
+    """Return the body height of each figure in mm, which sets its mannequin's thickness.
 
-    1.15 times the greatest extent of the mean posture on an axis, from the head's middle to the
-    ankles of who stands, of the figure as it stands in the file; times the factors of ``resize``.
+    1.15 times the largest extent of the mean posture on an axis, which for a standing figure is
+    from the head's middle to the ankles, before all transforms; times the factors of ``resize``.
     """
     heights = []
     for number, figure in enumerate(stimulus.figures):
@@ -84,14 +70,7 @@ def body_heights(stimulus: Stimulus) -> list[float]:
 
 
 def mannequin_of(skeleton: Skeleton, height_mm: float) -> Mannequin:
-    """Return the pieces of a figure: those whose dots it has, and a rod for other segments.
-
-    Examples
-    --------
-    >>> len(mannequin_of(ew.JOINTS, 1700.0).tones)
-    31
-
-    """
+    """Return the pieces of a figure: those whose dots it has, and a rod for other segments."""
     known = set(skeleton.markers)
     pieces = [
         piece
@@ -135,16 +114,6 @@ def hulls_at(mannequin: Mannequin, positions: np.ndarray, visible: np.ndarray, v
     """Return the pieces of a figure at one moment that are to be seen.
 
     A piece of which a dot is not visible is left out, and one that reaches the observer's eye.
-
-    Parameters
-    ----------
-    mannequin : Mannequin
-        Of the figure.
-    positions : array of shape (dot, 3)
-        Millimetres in the scene.
-    visible : array of bool of shape (dot,)
-    view : View
-
     """
     axes = observer_axes(view.view_deg, view.elevation_deg)
     known = np.where(visible[:, None], positions - np.array(view.centre_mm), 0.0)

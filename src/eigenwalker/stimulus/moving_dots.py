@@ -1,4 +1,4 @@
-"""A figure that moves: dots with names, as a function of time, which transforms change."""
+"""A figure as dots with names whose positions are a function of time."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class MovingDots:
     Parameters
     ----------
     skeleton : Skeleton
-        Names of the dots, who is joined to whom, and who is whose counterpart.
+        Names of the dots, which are joined, and which are left-right counterparts.
     at : callable
         Takes seconds, an array of shape (time,), and returns `Moments`.
     period_s : float
@@ -77,8 +77,7 @@ class MovingDots:
     def mean(self) -> np.ndarray:
         """Mean place of each dot: array of shape (dot, 3).
 
-        Over 64 moments, evenly spaced from 0 s over the period; those at which it is not known are
-        left out.
+        Over `sample_times`, without those at which the dot's place is not known.
         """
         positions = self.at(self.sample_times).positions
         known = ~np.isnan(positions)
@@ -88,7 +87,7 @@ class MovingDots:
 
     @cached_property
     def middle(self) -> np.ndarray:
-        """Middle between the least and the greatest mean place, on each axis: array (3,)."""
+        """Middle between the smallest and the largest mean place on each axis: array (3,)."""
         seen = self.mean[~np.isnan(self.mean).any(axis=1)]
         return (seen.min(axis=0) + seen.max(axis=0)) / 2 if len(seen) else np.zeros(3)
 
@@ -103,12 +102,6 @@ def parents_of(skeleton: Skeleton) -> tuple[int, ...]:
 
     The root is ``pelvis``, or the first marker where there is none. Markers are reached level by
     level, segments being tried in their order; those that nothing joins to the root have no parent.
-
-    Examples
-    --------
-    >>> parents_of(ew.JOINTS)
-    (1, 8, 1, 2, 3, 1, 5, 6, -1, 8, 9, 10, 8, 12, 13)
-
     """
     markers = skeleton.markers
     root = "pelvis" if "pelvis" in markers else markers[0]
@@ -151,18 +144,6 @@ def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: 
 
     Before the first and after the last frame it holds still, or begins anew one frame after the
     last. Between two frames of which one lacks a dot, the dot is not visible.
-
-    Parameters
-    ----------
-    skeleton : Skeleton
-        Names of the dots.
-    samples : array of shape (time, dot, 3)
-        Millimetres; NaN is missing.
-    rate_hz : float
-        Frames a second.
-    repeat : bool
-        Whether it begins anew.
-
     """
     n_frames = len(samples)
     missing = np.asarray(np.isnan(samples).any(axis=2))

@@ -86,21 +86,9 @@ def play(shown: Sequence[MovingDots], view: View, time: np.ndarray) -> Played:
 def in_picture(positions: np.ndarray, view: View) -> tuple[np.ndarray, np.ndarray]:
     """Return where dots are in the picture, and whether they are in front of the eye.
 
-    As `project`, measured from the centre of the view. In perspective, things as far from the eye
-    as the centre keep their size.
-
-    Parameters
-    ----------
-    positions : array of shape (..., 3)
-        Millimetres in the scene.
-    view : View
-
-    Returns
-    -------
-    picture : array of shape (..., 2)
-        Millimetres to the right of and above the centre.
-    in_front : array of bool of shape (...)
-
+    Of positions (..., 3) in the scene, mm; in the picture (..., 2), mm to the right of and above
+    the centre of the view. In perspective, things as far from the eye as the centre keep their
+    size.
     """
     seen = (positions - np.array(view.centre_mm)) @ _observer(view, 0.0).T
     known = np.asarray(~np.isnan(seen).any(axis=-1))
@@ -113,7 +101,7 @@ def in_picture(positions: np.ndarray, view: View) -> tuple[np.ndarray, np.ndarra
 
 
 def _observer(view: View, heading_deg: float) -> np.ndarray:
-    """The observer's axes in the frame of a figure that is turned to its left by a heading."""
+    """Return the observer's axes in the frame of a figure turned to its left by a heading."""
     return observer_axes(view.view_deg + heading_deg, view.elevation_deg)
 
 

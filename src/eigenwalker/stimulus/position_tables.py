@@ -16,20 +16,9 @@ from eigenwalker.stimulus.stimulus import Stimulus
 def positions_table(stimulus: Stimulus) -> pd.DataFrame:
     """Return one row for each dot of each frame.
 
-    Returns
-    -------
-    DataFrame
-        ``frame, time_s, figure, dot, visible``; ``x_mm, y_mm, z_mm`` in the scene; ``right_mm,
-        up_mm`` in the picture at the walker's scale; ``x_px, y_px`` from the upper left; and,
-        where the stimulus knows its screen, ``right_deg, up_deg`` of visual angle from the middle.
-
-    Examples
-    --------
-    >>> from eigenwalker.stimulus import make_stimulus
-    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
-    >>> positions_table(make_stimulus(hop, rate_hz=4, duration_s=1))["z_mm"].round(6).tolist()
-    [50.0, 90.0, 50.0, 10.0]
-
+    Columns: ``frame, time_s, figure, dot, visible``; ``x_mm, y_mm, z_mm`` in the scene; ``right_mm,
+    up_mm`` in the picture at the walker's scale; ``x_px, y_px`` from the upper left; and, where the
+    stimulus states its screen, ``right_deg, up_deg`` of visual angle from the middle.
     """
     arrays = frame_arrays(stimulus)
     n_frames, n_dots = arrays["visible"].shape
@@ -49,15 +38,10 @@ def positions_table(stimulus: Stimulus) -> pd.DataFrame:
 
 
 def frame_arrays(stimulus: Stimulus) -> dict[str, np.ndarray]:
-    """Return dots frame by frame, as arrays.
+    """Return dots frame by frame as arrays.
 
-    Returns
-    -------
-    dict
-        ``time_s`` (frame), ``dots`` and ``figure`` (dot), ``visible`` (frame, dot), ``mm`` (frame,
-        dot, 3) in the scene, ``picture_mm``, ``px`` and, if the screen is known, ``deg`` (frame,
-        dot, 2).
-
+    ``time_s`` (frame), ``dots`` and ``figure`` (dot), ``visible`` (frame, dot), ``mm`` (frame, dot,
+    3) in the scene, ``picture_mm``, ``px`` and, if the screen is stated, ``deg`` (frame, dot, 2).
     """
     played = stimulus.play()
     arrays = {
@@ -84,7 +68,8 @@ def write_csv(stimulus: Stimulus, path: Path) -> None:
 def write_npz(stimulus: Stimulus, path: Path) -> None:
     """Write `frame_arrays`, and the stimulus file as the text ``stimulus``."""
     with path.open("wb") as file:
-        np.savez_compressed(file, **frame_arrays(stimulus), stimulus=np.array(stimulus.to_json()))  # pyright: ignore[reportArgumentType] - arrays by name
+        np.savez_compressed(file, **frame_arrays(stimulus), stimulus=np.array(stimulus.to_json()))
+        # pyright: ignore[reportArgumentType] - arrays by name
 
 
 def write_mat(stimulus: Stimulus, path: Path) -> None:

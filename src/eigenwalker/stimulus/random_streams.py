@@ -1,9 +1,9 @@
 """Random numbers that Python and the browser draw alike: sfc32, reached at any place at once.
 
-A stimulus is a function of time, so what is drawn at random for the seventh life of dot 12 must be
-had without drawing the six lives before. Every such place has a stream of its own, named by four
-words: what it is for, the seed, the number of the dot, the number of its life.
-`docs/stimulus-format.md` says it bit by bit.
+A stimulus is a function of time, so the random numbers of the seventh life of dot 12 must not
+depend on drawing those of the six lives before. Each has a stream of its own, named by four words:
+purpose, seed, number of the dot, number of its life. `docs/stimulus-format.md` defines them bit by
+bit.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 WARM_UP = 20
-"""Words thrown away before the first is used, so that neighbouring names give unlike streams."""
+"""Words dropped before the first is used, so that similar names give different streams."""
 
 
 class Purpose(IntEnum):
-    """What a stream is for, so that two transforms with one seed draw different numbers."""
+    """The transform that a stream is for: with one seed, two draw different numbers."""
 
     TEST = 1
     SCRAMBLE = 2
@@ -30,26 +30,9 @@ class Purpose(IntEnum):
 def random_words(
     purpose: int, seed: int, index: ArrayLike = 0, life: ArrayLike = 0, *, count: int
 ) -> np.ndarray:
-    """Return the first 32-bit words of streams of sfc32 (Doty-Humphrey, PractRand).
+    """Return the first 32-bit words of streams of sfc32 (Doty-Humphrey, PractRand): (..., count).
 
-    Parameters
-    ----------
-    purpose, seed : int
-        The first two words of the stream's name, 0 to 2^32 - 1.
-    index, life : int or array of int
-        The other two; arrays are broadcast against each other. Taken modulo 2^32.
-    count : int
-        How many words.
-
-    Returns
-    -------
-    array of uint32 of shape (..., count)
-
-    Examples
-    --------
-    >>> random_words(1, 0, count=3).tolist()
-    [4208506024, 1017427976, 941733061]
-
+    Index and life are broadcast against each other and taken modulo 2^32.
     """
     index, life = np.broadcast_arrays(np.atleast_1d(index), np.atleast_1d(life))
     a = np.full(index.shape, seed, dtype=np.uint32)
@@ -71,18 +54,7 @@ def random_words(
 def uniforms(
     purpose: int, seed: int, index: ArrayLike = 0, life: ArrayLike = 0, *, count: int
 ) -> np.ndarray:
-    """Return numbers from 0 to below 1, of 53 bits, each from two words of a stream.
-
-    Returns
-    -------
-    array of shape (..., count)
-
-    Examples
-    --------
-    >>> uniforms(1, 0, count=2).round(6).tolist()
-    [0.979869, 0.219264]
-
-    """
+    """Return numbers in [0, 1) of 53 bits, each from two words of a stream: (..., count)."""
     words = random_words(purpose, seed, index, life, count=2 * count)
     high, low = words[..., 0::2] >> np.uint32(5), words[..., 1::2] >> np.uint32(6)
     return (high * 2.0**26 + low) / 2.0**53
@@ -91,13 +63,7 @@ def uniforms(
 def normals(
     purpose: int, seed: int, index: ArrayLike = 0, life: ArrayLike = 0, *, count: int
 ) -> np.ndarray:
-    """Return normally distributed numbers, by Box and Muller (1958), two from two uniform ones.
-
-    Returns
-    -------
-    array of shape (..., count)
-
-    """
+    """Return normally distributed numbers by Box and Muller (1958): (..., count)."""
     drawn = uniforms(purpose, seed, index, life, count=2 * ((count + 1) // 2))
     radius = np.sqrt(-2 * np.log(1 - drawn[..., 0::2]))
     angle = 2 * np.pi * drawn[..., 1::2]
@@ -106,17 +72,10 @@ def normals(
 
 
 def permutation(purpose: int, seed: int, index: int, *, size: int) -> np.ndarray:
-    """Return 0, 1, ... size - 1 in random order (Fisher and Yates, from the end).
-
-    Examples
-    --------
-    >>> sorted(permutation(1, 5, 0, size=4).tolist())
-    [0, 1, 2, 3]
-
-    """
+    """Return 0, 1, ... size - 1 in random order (Fisher and Yates, from the end)."""
     order = np.arange(size)
     drawn = uniforms(purpose, seed, index, count=max(size - 1, 1))
-    for last, chance in zip(range(size - 1, 0, -1), drawn.tolist(), strict=False):
-        other = int(chance * (last + 1))
+    for last, uniform in zip(range(size - 1, 0, -1), drawn.tolist(), strict=False):
+        other = int(uniform * (last + 1))
         order[[last, other]] = order[[other, last]]
     return order

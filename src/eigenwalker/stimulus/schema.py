@@ -67,20 +67,20 @@ ProvenanceName = Annotated[str, Field(strict=True, min_length=1, max_length=100)
 ProvenanceText = Annotated[str, Field(strict=True, max_length=2000)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class View(KnownNames):
     """From where a stimulus is seen; see `project`. The centre is in the middle of the picture."""
 
-    centre_mm: Annotated[Vector, about("place of the scene in the middle of the picture")]
     view_deg: Annotated[Degrees, about("0 is the front, 90 in profile to the right")] = 0.0
     elevation_deg: Annotated[Degrees, about("of the observer above the horizontal")] = 0.0
     eye_distance_mm: Annotated[
         Annotated[float, Field(strict=True, gt=0, le=1e7)] | None,
         about("from the centre; null for orthographic"),
     ] = None
+    centre_mm: Annotated[Vector, about("place of the scene in the middle of the picture")]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Timing(KnownNames):
     """How long a stimulus is shown, and the frames a second of films and tables of it."""
 
@@ -90,15 +90,15 @@ class Timing(KnownNames):
     ] = 60.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Display(KnownNames):
     """How a stimulus is drawn, and before what screen its observer sits."""
 
+    width_px: Annotated[Pixels, about("of the picture")] = 512
+    height_px: Annotated[Pixels, about("of the picture")] = 512
     px_per_mm: Annotated[
         float, Field(strict=True, gt=0, le=100), about("pixels a millimetre of the walker")
     ]
-    width_px: Annotated[Pixels, about("of the picture")] = 512
-    height_px: Annotated[Pixels, about("of the picture")] = 512
     dot_px: Annotated[float, Field(strict=True, gt=0, le=1000), about("diameter of a dot")] = 8.0
     style: Annotated[Style, about("what is drawn")] = "dots"
     colour: Annotated[Colour, about("of the figures")] = "#ffffff"
@@ -227,11 +227,8 @@ def _misfits(step: Transform, dots: Sequence[str], n_segments: int) -> list[str]
 def checked(content: Any) -> StimulusFile:
     """Return the content of a stimulus file, checked, with all defaults filled in.
 
-    Raises
-    ------
-    ValueError
-        With up to twenty problems: the place of each, what was expected, and what is there.
-
+    Raises ValueError with up to twenty problems: the place of each, what was expected, what is
+    there.
     """
     try:
         return StimulusFile.model_validate(content)

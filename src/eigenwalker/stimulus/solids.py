@@ -15,29 +15,22 @@ from eigenwalker.stimulus.mannequin import Hulls
 from eigenwalker.stimulus.player import NEAREST_MM
 
 LIGHT = np.array([-0.44, 0.67, 0.6]) / np.sqrt(0.44**2 + 0.67**2 + 0.6**2)
-"""Where the light comes from, seen by the observer: right, up, towards him."""
+"""Where the light comes from, seen by the observer: right, up, towards the observer."""
 SHADOW, EDGE = 0.34, 0.8
 """Light in the deepest shadow, and share of light where the surface turns away."""
 Pixels = np.ndarray | np.float32
-MOST_PIXELS = 1_000_000
-"""Pixels of a hull that are worked out at once."""
+MAX_PIXELS = 1_000_000
+"""Pixels of a hull computed at once."""
 TIE_MM = 1e-3
 """Balls nearer to each other than this are one."""
 TINY = 1e-6
 
 
 class Lit(NamedTuple):
-    """What is drawn.
+    """Mannequins as pixels.
 
-    Parameters
-    ----------
-    box : tuple of slice
-        Rows and columns of the picture in which it is.
-    cover : array of float32 of shape (row, column)
-        Share of each pixel of the box that is covered.
-    light : array of float32 of shape (row, column)
-        How bright what covers it is, 0 to 1, times its cover.
-
+    Rows and columns of the picture that they are in; there the share of each pixel that is covered,
+    and how bright it is, 0 to 1, times that share.
     """
 
     box: tuple[slice, slice]
@@ -72,19 +65,7 @@ class _Sight(NamedTuple):
 
 
 def draw_hulls(hulls: Hulls, look: Look) -> Lit:
-    """Return hulls as an observer sees them, the nearer before the farther.
-
-    Parameters
-    ----------
-    hulls : Hulls
-        In mm from the middle of the picture.
-    look : Look
-
-    Returns
-    -------
-    Lit
-
-    """
+    """Return hulls as an observer sees them, nearer ones before farther ones."""
     boxes = [_box(*piece, look) for piece in zip(hulls.middles, hulls.radii, strict=True)]
     whole = _around([box for box in boxes if box is not None])
     size = [side.stop - side.start for side in whole]
@@ -114,20 +95,13 @@ def _bands(box: tuple[slice, slice] | None) -> Iterator[tuple[slice, slice]]:
     if box is None:
         return
     rows, columns = box
-    step = max(MOST_PIXELS // (columns.stop - columns.start), 1)
+    step = max(MAX_PIXELS // (columns.stop - columns.start), 1)
     for first in range(rows.start, rows.stop, step):
         yield slice(first, min(first + step, rows.stop)), columns
 
 
 def brightness(lit: np.ndarray, facing: np.ndarray) -> np.ndarray:
-    """Return how bright surfaces are, 0 to 1.
-
-    Parameters
-    ----------
-    lit, facing : array
-        Cosines of the angles of their normals with the light, and with the line of sight.
-
-    """
+    """Return the brightness of surfaces whose normals have these cosines with light and sight."""
     soft = 0.5 + 0.5 * lit
     return (SHADOW + (1 - SHADOW) * soft**2) * (EDGE + (1 - EDGE) * facing)
 

@@ -1,4 +1,4 @@
-"""The stimulus: figures, what is done to them, and how they are shown; one small JSON file."""
+"""The stimulus: figures, transforms, and how they are shown; one small JSON file."""
 
 from __future__ import annotations
 
@@ -36,24 +36,24 @@ MAX_BYTES = 64_000_000
 class Stimulus:
     """What an observer is shown, exactly: figures, a chain of transforms, view, timing, display.
 
-    Made by `make_stimulus`, changed by `then`, kept as JSON, and played alike in Python and in the
-    browser, to a millionth of a millimetre.
+    `make_stimulus` makes one, `then` adds a transform, `write_stimulus` writes it as a file, which
+    Python and the browser play alike, to a millionth of a millimetre.
 
     Parameters
     ----------
     figures : sequence of Figure
-        Who is seen.
+        What moves.
     view, timing, display : View, Timing, Display
         How it is shown.
     transforms : sequence of mapping
-        What is done to the figures, in this order: each a name and its parameters.
+        Changes of the figures, in this order: each a name and its parameters.
     provenance : mapping of str to str
         Source, licence, program.
 
     Raises
     ------
     ValueError
-        If anything is amiss: a number out of range, an unknown transform, dots that are not there.
+        If a part is wrong: a number out of range, an unknown transform, dots that are not there.
 
     """
 
@@ -94,15 +94,15 @@ class Stimulus:
     def then(self, name: str, **parameters: Any) -> Stimulus:
         """Return the stimulus with one more transform at the end of its chain.
 
-        `docs/stimuli.md` lists them all. Parameters that depend on the figures may be left out
-        where `resolve_transform` says so; they are computed here and stand in the file as numbers.
+        `docs/stimuli.md` lists all transforms. Some parameters may be left out, such as the box of
+        a scrambled walker; they are computed from the figures and stand in the file as numbers.
 
         Parameters
         ----------
         name : str
             Such as ``"invert"``, ``"scramble"``, ``"limb_dots"``.
         **parameters
-            As the transform takes them; ``figures`` may list those to act on.
+            Those of the transform; ``figures`` may list those to act on.
 
         Returns
         -------
@@ -111,8 +111,7 @@ class Stimulus:
         Examples
         --------
         >>> people = ew.load_population()
-        >>> from eigenwalker.stimulus import make_stimulus
-        >>> shown = make_stimulus(people.walker(people.average)).then("invert")
+        >>> shown = ew.make_stimulus(people.walker(people.average)).then("invert")
         >>> shown.then("scramble", seed=3).transforms[-1]["name"]
         'scramble'
 
@@ -122,15 +121,15 @@ class Stimulus:
         return replace(self, transforms=(*self.transforms, step))
 
     def sized(self, height_deg: float, *, viewing_distance_mm: float, px_per_cm: float) -> Stimulus:
-        """Return the stimulus with the first figure as high as an angle before the observer.
+        """Return the stimulus with the first figure scaled to a visual angle.
 
-        What is measured is the greatest height of the figure's dots as they are shown, from lowest
-        to highest over one period, without their radius. Troje (2002) shows walkers of 5 degrees.
+        The figure's height is that of its dots as they are shown, from the lowest to the highest
+        over one period, without their radius. Troje (2002) shows walkers of 5 degrees.
 
         Parameters
         ----------
         height_deg : float
-            Degrees of visual angle: ``2 atan(height / 2 / distance)``.
+            Visual angle of the height: ``2 atan(height / 2 / distance)``.
         viewing_distance_mm : float
             From the eye to the screen.
         px_per_cm : float
@@ -142,8 +141,8 @@ class Stimulus:
 
         """
         low, high = self.extent(0)
-        tall_px = 2 * viewing_distance_mm * np.tan(np.deg2rad(height_deg) / 2) * px_per_cm / 10
-        scale = float(tall_px / (high[1] - low[1]))
+        height_px = 2 * viewing_distance_mm * np.tan(np.deg2rad(height_deg) / 2) * px_per_cm / 10
+        scale = float(height_px / (high[1] - low[1]))
         display = replace(
             self.display,
             px_per_mm=scale,
@@ -154,7 +153,7 @@ class Stimulus:
         return replace(self, display=display)
 
     def extent(self, figure: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and greatest places in the picture, mm, of a figure or all of them."""
+        """Return the smallest and largest coordinates in the picture, mm, of a figure or all."""
         chosen = self.scene[: len(self.figures)] if figure is None else [self.scene[figure]]
         positions = [moving.at(moving.sample_times).positions for moving in chosen]
         places = np.concatenate(
@@ -241,9 +240,9 @@ class Stimulus:
         except UnicodeDecodeError:
             raise UnreadableFile(path.name, "a stimulus in UTF-8", "other bytes") from None
         except ValueError as error:
-            fault = str(error).rstrip(".").removeprefix("This is no stimulus: ")
-            found = f"a file that is none ({fault})"
-            raise UnreadableFile(path.name, "a stimulus", found, "make it again") from None
+            problem = str(error).rstrip(".").removeprefix("This is no stimulus: ")
+            got = f"a file that is none ({problem})"
+            raise UnreadableFile(path.name, "a stimulus", got, "make it again") from None
 
 
 def _text(content: dict[str, Any]) -> str:
@@ -272,14 +271,7 @@ def _plain(content: Any) -> Any:
 
 
 def _parsed(text: str) -> Any:
-    """Return the content of a text of JSON.
-
-    Raises
-    ------
-    ValueError
-        If it is no JSON, is nested without end, has a name twice or a number that is not finite.
-
-    """
+    """Return the content of a text of JSON, refused where it is hostile."""
     if len(text) > MAX_BYTES:
         raise ValueError(f"A stimulus has {MAX_BYTES} letters at most; this has {len(text)}.")
     try:
@@ -299,7 +291,7 @@ def _refuse_constant(name: str) -> Any:
 
 
 def _refuse_twice(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    kept = dict(pairs)
-    if len(kept) < len(pairs):
+    content = dict(pairs)
+    if len(content) < len(pairs):
         raise ValueError("an object has one name twice")
-    return kept
+    return content

@@ -28,16 +28,8 @@ ACROSS = np.linspace(-1, 1, 9)
 def svg_drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
     """Return one moment as SVG, in pixels of the stimulus.
 
-    Each circle has the name of its dot as its ``class``, and that of its figure's number; pieces of
-    mannequins have the class ``wood``.
-
-    Examples
-    --------
-    >>> from eigenwalker.stimulus import make_stimulus
-    >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
-    >>> svg_drawing(make_stimulus(hop)).count("<circle")
-    1
-
+    Circles have the number of their figure and the name of their dot as ``class``, pieces of
+    mannequins ``wood``.
     """
     display = stimulus.display
     played = stimulus.play([time_s])

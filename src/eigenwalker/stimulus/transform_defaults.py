@@ -28,17 +28,9 @@ Parameters = dict[str, Any]
 
 @dataclass(frozen=True)
 class Situation:
-    """The stimulus to whose chain a transform is added, as it is before.
+    """The stimulus to whose chain a transform is added.
 
-    Parameters
-    ----------
-    figures : sequence of Figure
-        As they are without any transform.
-    scene : sequence of MovingDots
-        As they are after the transforms so far.
-    view : View
-    duration_s : float
-
+    `figures` are as they are without any transform, `scene` is after the transforms so far.
     """
 
     figures: Sequence[Figure]
@@ -59,23 +51,15 @@ class Situation:
 
 
 def resolve_transform(name: str, parameters: Mapping[str, Any], situation: Situation) -> Parameters:
-    """Return a transform as it stands in a file.
+    """Return a transform as it stands in a file, in a situation that gives what is left out.
 
-    Parameters
-    ----------
-    name : str
-        A transform, or ``"arm_swing"`` (the gain of elbows and wrists), ``"overground"`` (the
-        translation with a figure's own speed, in the middle of the picture at half time).
-    parameters : mapping
-        Its parameters. May be left out: the box of ``scramble`` (the figure's extent), the box of
-        ``mask`` (twice as wide, 1.15 times as high) and its centre, the end of ``reverse``,
-        ``perturb`` and ``morph`` (the duration), the phase of ``ellipses`` (that of the figure's
-        legs). May be given otherwise: markers as ``parts`` of the body or as those to ``show``,
-        the number of a mask's dots as ``signal_to_noise`` or ``dots_per_m2``, the walker of
-        ``morph`` as a `Walker`.
-    situation : Situation
-        The stimulus that it is added to.
-
+    May be left out: the box of ``scramble`` (the figure's extent), the box of ``mask`` (twice as
+    wide, 1.15 times as high) and its centre, the end of ``reverse``, ``perturb`` and ``morph`` (the
+    duration), the phase of ``ellipses`` (that of the figure's legs). May be given otherwise:
+    markers as ``parts`` of the body or as those to ``show``, the number of a mask's dots as
+    ``signal_to_noise`` or ``dots_per_m2``, the walker of ``morph`` as a `Walker`. Two more names:
+    ``"arm_swing"`` is the gain of elbows and wrists, ``"overground"`` the translation with a
+    figure's own speed, in the middle of the picture at half time.
     """
     given = dict(parameters)
     if isinstance(given.get("figures"), int):

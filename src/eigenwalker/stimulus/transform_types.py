@@ -142,13 +142,8 @@ FigureNumbers = TypeAliasType(
 class Context(NamedTuple):
     """What a transform knows beside the dots that it changes.
 
-    Parameters
-    ----------
-    observer : array of shape (3, 3)
-        The observer's right, up, and the direction to the observer, in the figure's own frame.
-    figure : int
-        Number of the figure, from 0: figures of one scene draw different random numbers.
-
+    The observer's right, up and the direction to the observer, rows of a matrix in the figure's own
+    frame; and the figure's number, from 0: figures of one scene draw different random numbers.
     """
 
     observer: np.ndarray

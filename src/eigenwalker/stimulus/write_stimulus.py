@@ -20,7 +20,7 @@ from eigenwalker.stimulus.svg import svg_drawing
 def write_stimulus(
     stimulus: Stimulus, path: str | os.PathLike[str], *, progress: Progress | None = None
 ) -> Path:
-    """Write a stimulus as a file and return its path.
+    """Write a stimulus as a file, which appears when it is complete, and return its path.
 
     ======================== ==========================================================
     suffix                   what it is
@@ -30,14 +30,13 @@ def write_stimulus(
     .png, .svg               its first moment; for a folder (no suffix) all frames as PNG
     .csv, .npz, .mat         where each dot is in each frame: mm, pixels, degrees
     .py                      a PsychoPy script, and an .npz beside it
-    .html                    a page that plays it in a browser, with nothing else
+    .html                    a page that plays it in a browser
     .bvh, .glb               its first figure as a skeleton with constant bones that walks
     ======================== ==========================================================
 
     Parameters
     ----------
     stimulus : Stimulus
-        What is shown.
     path : path
         File to write, or to replace, or the folder of frames.
     progress : callable, optional
@@ -58,10 +57,9 @@ def write_stimulus(
     --------
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from eigenwalker.stimulus import make_stimulus
     >>> hop = ew.Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 1.0)
     >>> with TemporaryDirectory() as folder:
-    ...     path = write_stimulus(make_stimulus(hop), Path(folder) / "hop.svg")
+    ...     path = ew.write_stimulus(ew.make_stimulus(hop), Path(folder) / "hop.svg")
     ...     path.read_text().startswith("<svg")
     True
 
