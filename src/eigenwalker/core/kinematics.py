@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from eigenwalker.core.quaternions import product
+
 
 def forward_kinematics(
     parents: Sequence[int], offsets: np.ndarray, rotations: np.ndarray
@@ -21,18 +23,15 @@ def forward_kinematics(
     n_frames, n_joints, _ = rotations.shape
     offsets = np.array(np.broadcast_to(offsets, (n_frames, n_joints, 3)))
     positions = np.empty((n_frames, n_joints, 3))
-    orientations: list[Rotation] = []
+    orientations = rotations / np.linalg.norm(rotations, axis=2, keepdims=True)
     for joint, parent in enumerate(parents):
-        turn = Rotation.from_quat(rotations[:, joint])
         if parent < 0:
             positions[:, joint] = offsets[:, joint]
-            orientations.append(turn)
         else:
-            positions[:, joint] = positions[:, parent] + orientations[parent].apply(
-                offsets[:, joint]
-            )
-            orientations.append(orientations[parent] * turn)
-    return positions, np.stack([turn.as_quat() for turn in orientations], axis=1)
+            turn = Rotation.from_quat(orientations[:, parent])
+            positions[:, joint] = positions[:, parent] + turn.apply(offsets[:, joint])
+            orientations[:, joint] = product(orientations[:, parent], orientations[:, joint])
+    return positions, orientations
 
 
 def bone_rotations(parents: Sequence[int], rest: np.ndarray, positions: np.ndarray) -> np.ndarray:

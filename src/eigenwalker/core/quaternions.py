@@ -44,3 +44,41 @@ def vectors_of(quaternions: np.ndarray) -> np.ndarray:
     known = np.isfinite(quaternions).all(axis=-1)
     vectors[known] = Rotation.from_quat(quaternions[known]).as_rotvec()
     return vectors
+
+
+def product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return the rotations `right` followed by `left`, as quaternions (..., x y z w).
+
+    Rotation of SciPy takes ten times as long for a few hundred frames.
+    """
+    x, y, z, w = np.moveaxis(left, -1, 0)
+    a, b, c, d = np.moveaxis(right, -1, 0)
+    return np.stack(
+        [
+            w * a + x * d + y * c - z * b,
+            w * b - x * c + y * d + z * a,
+            w * c + x * b - y * a + z * d,
+            w * d - x * a - y * b - z * c,
+        ],
+        axis=-1,
+    )
+
+
+def from_euler(order: str, degrees: np.ndarray) -> np.ndarray:
+    """Return quaternions (..., x y z w) of turns about the axes of the body, such as "ZXY".
+
+    Examples
+    --------
+    >>> from_euler("ZX", np.array([90.0, 0.0])).round(3).tolist()
+    [0.0, 0.0, 0.707, 0.707]
+
+    """
+    half = np.deg2rad(degrees) / 2
+    turns = np.zeros((*half.shape, 4))
+    turns[..., 3] = np.cos(half)
+    for step, axis in enumerate(order):
+        turns[..., step, "XYZ".index(axis)] = np.sin(half[..., step])
+    result = turns[..., 0, :]
+    for step in range(1, len(order)):
+        result = product(result, turns[..., step, :])
+    return result

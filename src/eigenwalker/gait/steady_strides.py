@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.core.fourier import fit_basis, harmonic_basis
+from eigenwalker.core.fourier import fit_basis, harmonic_basis, share_explained
 from eigenwalker.core.smoothing import running_mean
 from eigenwalker.gait.frequency import frequency_of_scores
 
@@ -41,6 +43,9 @@ CLOSED_SHARE = 0.02
 recording closes: an eightieth of a stride, or noise of a few millimetres."""
 
 _MAX_ROUNDS = 30
+
+Window = tuple[int, int]
+"""First frame of a window, and the first one after it."""
 
 
 class SteadyStrides(NamedTuple):
@@ -98,11 +103,16 @@ def find_steady_strides(movement: np.ndarray, rate_hz: float) -> SteadyStrides:
     coarse = movement[: n_blocks * block].reshape(n_blocks, block, -1).mean(axis=1)
     rate = rate_hz / block
     whole = (0, n_blocks)
-    window = _settle(coarse, rate, whole, TOLERATED_SHARE)
+
+    @cache
+    def departure(window: Window) -> tuple[np.ndarray, float]:
+        return _departure(coarse, rate, window)
+
+    window = _settle(departure, whole, TOLERATED_SHARE)
     if window != whole:
-        core, irregularity = _most_regular(coarse, rate)
+        core, irregularity = _most_regular(coarse, rate, departure(whole)[1])
         tolerated = max(TOLERATED_SHARE, TOLERANCE_BESIDE_CORE * irregularity)
-        grown = [_settle(coarse, rate, start, tolerated) for start in (whole, core)]
+        grown = [_settle(departure, start, tolerated) for start in (whole, core)]
         window = max(core, *grown, key=lambda run: run[1] - run[0])
     start, stop = window[0] * block, window[1] * block
     if window[1] == n_blocks:
@@ -133,13 +143,12 @@ def closing_step(movement: np.ndarray) -> np.ndarray:
 
 
 def _settle(
-    movement: np.ndarray, rate_hz: float, window: tuple[int, int], tolerated: float
-) -> tuple[int, int]:
+    departure_from: Callable[[Window], tuple[np.ndarray, float]], window: Window, tolerated: float
+) -> Window:
     """Return the window at which taking in and dropping half-strides ends; else an empty one."""
     seen = {window}
     for _ in range(_MAX_ROUNDS):
-        departure, frequency = _departure(movement, rate_hz, window)
-        stride = rate_hz / frequency
+        departure, stride = departure_from(window)
         smooth = running_mean(departure, max(1, round(stride / 2)))
         broken = smooth > max(BROKEN_SHARE, 2 * tolerated)
         run = _best_run(np.where(broken, -np.inf, tolerated - smooth))
@@ -152,22 +161,23 @@ def _settle(
     return window
 
 
-def _departure(
-    movement: np.ndarray, rate_hz: float, window: tuple[int, int]
-) -> tuple[np.ndarray, float]:
-    """Return each frame's squared distance from the cycle of a window over its variance; and Hz."""
+def _departure(movement: np.ndarray, rate_hz: float, window: Window) -> tuple[np.ndarray, float]:
+    """Return each frame's squared distance from the cycle of a window over its variance.
+
+    And the frames of one stride.
+    """
     inside = movement[slice(*window)]
-    frequency = frequency_of_scores(inside, rate_hz)
-    cycles = np.arange(len(movement)) * frequency / rate_hz
+    stride = rate_hz / frequency_of_scores(inside, rate_hz)
+    cycles = np.arange(len(movement)) / stride
     basis = harmonic_basis(cycles, N_HARMONICS)
     centre = inside.mean(axis=0)
     weights = fit_basis(basis[slice(*window)], inside - centre)
     residual = movement - centre - basis @ weights
     variance = np.vdot(inside - centre, inside - centre) / len(inside)
-    return np.einsum("tf,tf->t", residual, residual) / variance, frequency
+    return np.einsum("tf,tf->t", residual, residual) / variance, stride
 
 
-def _best_run(gain: np.ndarray) -> tuple[int, int]:
+def _best_run(gain: np.ndarray) -> Window:
     """Return the run of frames with the largest sum of gains."""
     best, best_sum, start, total = (0, 0), -np.inf, 0, 0.0
     for frame, value in enumerate(gain.tolist()):
@@ -179,21 +189,23 @@ def _best_run(gain: np.ndarray) -> tuple[int, int]:
     return best
 
 
-def _most_regular(movement: np.ndarray, rate_hz: float) -> tuple[tuple[int, int], float]:
+def _most_regular(movement: np.ndarray, rate_hz: float, stride: float) -> tuple[Window, float]:
     """Return the two strides that repeat best, among those that move much, and their departure."""
     n_frames = len(movement)
-    length = round(CORE_STRIDES * rate_hz / frequency_of_scores(movement, rate_hz))
-    length = min(length, n_frames)
+    length = min(round(CORE_STRIDES * stride), n_frames)
     n_starts = min(n_frames - length, 4 * (n_frames - length) // length + 1, MOST_CORES - 1) + 1
     starts = np.linspace(0, n_frames - length, n_starts).astype(int).tolist()
     windows = [(start, start + length) for start in starts]
     variances = [float(movement[slice(*window)].var(axis=0).sum()) for window in windows]
     lively = 0.5 * np.quantile(variances, 0.9)
-    return min(
-        (
-            (window, float(_departure(movement, rate_hz, window)[0][slice(*window)].mean()))
-            for window, variance in zip(windows, variances, strict=True)
-            if variance >= lively
-        ),
-        key=lambda candidate: candidate[1],
-    )
+    departures = {
+        window: _own_departure(movement[slice(*window)], rate_hz)
+        for window, variance in zip(windows, variances, strict=True)
+        if variance >= lively
+    }
+    return min(departures.items(), key=lambda candidate: candidate[1])
+
+
+def _own_departure(piece: np.ndarray, rate_hz: float) -> float:
+    cycles = np.arange(len(piece)) * frequency_of_scores(piece, rate_hz) / rate_hz
+    return 1 - share_explained(piece, cycles, N_HARMONICS)

@@ -84,10 +84,11 @@ def numbers(words: Sequence[str], where: str, source: str) -> np.ndarray:
 def plain_numbers(words: Sequence[str]) -> np.ndarray | None:
     """Return words as numbers, NaN included; None if one is no number, infinite or absurd."""
     try:
-        row = np.array([float(word) for word in words])
+        row = np.array(list(map(float, words)))
     except ValueError:
         return None
-    sound = all(word.isascii() and "_" not in word for word in words)  # 1_0 is not 10 here
+    text = "".join(words)
+    sound = text.isascii() and "_" not in text  # 1_0 is not 10 here
     return row if sound and np.all(np.isnan(row) | (np.abs(row) < MAX_SIZE)) else None
 
 

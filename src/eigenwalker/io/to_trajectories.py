@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
 
+from eigenwalker.core.quaternions import product
 from eigenwalker.core.trajectories import MILLIMETRES, label_trajectories
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.up_axis_and_unit import (
@@ -117,8 +118,9 @@ def trajectories_of(
         positions * used.millimetres, markers=names, rate_hz=rate_hz, start_s=start_s
     )
     if quaternions is not None:
-        turned = Rotation.from_matrix(turn) * Rotation.from_quat(quaternions.reshape(-1, 4))
-        walk = walk.assign_coords(rotation=(walk.dims, turned.as_rotvec().reshape(walk.shape)))
+        turned = product(Rotation.from_matrix(turn).as_quat(), quaternions).reshape(-1, 4)
+        vectors = Rotation.from_quat(turned).as_rotvec().reshape(walk.shape)
+        walk = walk.assign_coords(rotation=(walk.dims, vectors))
     walk.attrs.update(
         source=file.name,
         format=format_name,

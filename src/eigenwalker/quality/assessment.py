@@ -101,7 +101,12 @@ def judge(
     names = capture.marker.values.tolist()
     missing = np.isnan(capture.values).any(axis=2).mean(axis=0)
     rate_hz = sampling_rate(capture)
-    strides = repaired if walk is None else repaired.sel(time=walk.time, marker=walk.marker)
+    strides = repaired
+    if walk is not None:
+        start = int(np.searchsorted(repaired.time.values, walk.time.values[0]))
+        strides = repaired[start : start + len(walk)]
+        if walk.sizes["marker"] < repaired.sizes["marker"]:
+            strides = strides.sel(marker=walk.marker)
     height_mm, lean_deg = _height_and_lean(repaired.values, names)
     return Quality(
         rate_hz=rate_hz,

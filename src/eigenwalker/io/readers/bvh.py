@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
-from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.kinematics import forward_kinematics
+from eigenwalker.core.quaternions import from_euler
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.readers.bvh_grammar import Joint, parse_bvh
 from eigenwalker.io.to_trajectories import trajectories_of
@@ -83,9 +83,8 @@ def _pose(joints: Sequence[Joint], values: np.ndarray) -> tuple[np.ndarray, np.n
             same_order.setdefault(order, []).append((index, angle_columns))
     for order, members in same_order.items():
         indices = [index for index, _ in members]
-        angles = values[:, [columns for _, columns in members]].reshape(-1, len(order))
-        turns = Rotation.from_euler(order, angles, degrees=True)
-        rotations[:, indices] = turns.as_quat().reshape(len(values), len(indices), 4)
+        angles = values[:, [columns for _, columns in members]]
+        rotations[:, indices] = from_euler(order, angles)
     offsets = _joint_positions(joints, offsets, has_position)
     return forward_kinematics([joint.parent for joint in joints], offsets, rotations)
 
