@@ -201,7 +201,6 @@ def test_true_events_merge_with_estimated_ones():
     walk = simulate_walk(seed=5, duration_s=5, markers="full")
     true, estimated = true_events(walk), gait_events(walk)
     assert list(true) == list(estimated)
-    estimated["event"] = estimated["event"].str.replace(" ", "_")
     both = pd.merge_asof(
         true.query("0.3 < time_s < 4.7"), estimated.rename(columns={"time_s": "estimated_s"}),
         left_on="time_s", right_on="estimated_s", by=["side", "event", "marker"],

@@ -1,4 +1,4 @@
-"""The model behind Troje's web demonstration: a mean walker, and steps along four axes (W10)."""
+"""The model behind Troje's web demonstration: a mean walker, and steps along four axes."""
 
 from __future__ import annotations
 
@@ -23,14 +23,13 @@ from eigenwalker.io.walker_tables import (
 )
 
 POSITIVE_POLES = {"sex": "male", "weight": "heavy", "nervous": "nervous", "happy": "happy"}
-"""The axes and where + leads."""
-
+"""The axes and their positive poles."""
 _KEYS = {"sex": "gender", "weight": "weight", "nervous": "nervous", "happy": "happy"}
 _MEAN_KEY = "walker"
 _N_ROWS = 3 * len(JOINTS.markers) + 1
 _N_NUMBERS = _N_ROWS * len(SIN_FIRST)
-_MOST_BYTES = 10**7
-_MOST_MM = 1e5
+_MAX_BYTES = 10**7
+_MAX_MM = 1e5
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +43,20 @@ class BmlModel:
         column) and speed in millimetres a frame (third). Columns: mean, sin 1, cos 1, sin 2,
         cos 2.
     axes : mapping of str to array of shape (46, 5)
-        For each trait what one standard deviation adds to the mean, towards its pole in
-        `POSITIVE_POLES`.
+        For each trait what one standard deviation adds to the mean, towards its positive pole
+        (male, heavy, nervous, happy).
+
+    See Also
+    --------
+    read_bml_axes : reads one.
+
+    References
+    ----------
+    Troje (2002), The little difference: Fourier based gender classification (demonstration).
 
     Examples
     --------
-    >>> model = BmlModel(np.ones((46, 5)), {"sex": np.full((46, 5), 0.5)})
+    >>> model = ew.datasets.BmlModel(np.ones((46, 5)), {"sex": np.full((46, 5), 0.5)})
     >>> model.table(sex=2)[0, 0].item()
     2.0
 
@@ -59,23 +66,10 @@ class BmlModel:
     axes: Mapping[str, np.ndarray]
 
     def table(self, **z: float) -> np.ndarray:
-        """Return ``mean + b * sex + w * weight + n * nervous + h * happy`` as a table.
+        """Return ``mean + b * sex + w * weight + n * nervous + h * happy``, of shape (46, 5).
 
-        Parameters
-        ----------
-        **z : float
-            How many standard deviations along each axis; those left out are 0. The demonstration
-            goes from -6 to 6.
-
-        Returns
-        -------
-        array of shape (46, 5)
-
-        Raises
-        ------
-        ValueError
-            If there is no such axis.
-
+        Each number is standard deviations along its axis; those left out are 0. The demonstration
+        goes from -6 to 6.
         """
         if unknown := sorted(set(z) - set(self.axes)):
             raise ValueError(f"There are no axes {unknown}; there are {list(self.axes)}.")
@@ -84,14 +78,8 @@ class BmlModel:
     def walker(self, **z: float) -> Walker:
         """Return the walker at a place on the axes: ``model.walker(sex=3, happy=-2)``.
 
-        Its frequency and speed are those that the table tells, and it stands with the origin on the
-        floor below its pelvis.
-
-        Returns
-        -------
-        Walker
-            In the Fourier form, of the 15 joints.
-
+        It has the 15 joints, in the Fourier form, and the frequency and speed of the table; the
+        origin is on the floor below its pelvis.
         """
         sine, cosine = SIN_FIRST.index("sin1"), SIN_FIRST.index("cos1")
         mm = self.table(**z)
@@ -117,6 +105,14 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     UnreadableFile
         If the file is damaged or holds no such tables.
 
+    See Also
+    --------
+    read_walkers_mat : the same kind of table from MATLAB.
+
+    References
+    ----------
+    Troje (2002), The little difference: Fourier based gender classification (demonstration).
+
     Examples
     --------
     >>> read_bml_axes("nowhere.json")
@@ -128,7 +124,7 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     """
     path = Path(path)
     try:
-        content = json.loads(read_bytes(path, max_bytes=_MOST_BYTES), parse_int=float)
+        content = json.loads(read_bytes(path, max_bytes=_MAX_BYTES), parse_int=float)
     except (ValueError, RecursionError) as error:
         if isinstance(error, UnreadableFile):
             raise
@@ -148,7 +144,7 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
 
 
 def _tables(content: Any) -> dict[str, Any] | None:
-    """Return the first object that holds the mean walker."""
+    """Return the first object, at any depth, that holds the mean walker."""
     waiting = [content]
     for item in waiting:
         if isinstance(item, dict):
@@ -159,11 +155,11 @@ def _tables(content: Any) -> dict[str, Any] | None:
 
 
 def _table(numbers: Any, key: str, path: Path) -> np.ndarray:
-    sound = isinstance(numbers, list) and len(numbers) == _N_NUMBERS
-    if not sound or not all(isinstance(number, float) for number in numbers):
-        came = f"{len(numbers)}, or others" if isinstance(numbers, list) else "something else"
-        raise UnreadableFile(path.name, f"{_N_NUMBERS} numbers as {key!r}", came)
+    complete = isinstance(numbers, list) and len(numbers) == _N_NUMBERS
+    if not complete or not all(isinstance(number, float) for number in numbers):
+        got = f"{len(numbers)}, or others" if isinstance(numbers, list) else "something else"
+        raise UnreadableFile(path.name, f"{_N_NUMBERS} numbers as {key!r}", got)
     table = np.array(numbers, dtype=float).reshape(len(SIN_FIRST), _N_ROWS).T
-    if not (np.abs(table) < _MOST_MM).all():
+    if not (np.abs(table) < _MAX_MM).all():
         raise UnreadableFile(path.name, f"{key!r} in millimetres", "numbers that are too large")
     return table

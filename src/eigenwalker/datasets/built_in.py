@@ -21,9 +21,9 @@ def load_population(path: str | Path | None = None) -> Population:
     Parameters
     ----------
     path : str or Path, optional
-        What ``Population.save`` or ``eigenwalker fit`` wrote. Left out, it is the built-in
-        population of 20 women and 20 men, who are simulated: good to learn and test with, no
-        evidence about people.
+        File of ``Population.save`` or ``eigenwalker fit``. Left out, it is the built-in population
+        of 20 women and 20 men, who are simulated: good to learn and test with, no evidence about
+        people.
 
     Returns
     -------
@@ -33,6 +33,11 @@ def load_population(path: str | Path | None = None) -> Population:
     ------
     UnreadableFile
         If the file holds no population or is damaged.
+
+    See Also
+    --------
+    simulate_population : other simulated people.
+    fit_folder : a population of captures.
 
     Examples
     --------
@@ -50,14 +55,7 @@ def _built_in() -> Population:
 
 
 def built_in_capture() -> xr.DataArray:
-    """Return the walk of the first woman of the built-in population.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        Steady strides of the 15 joints in place, at 120 Hz.
-
-    """
+    """Return the walk in place, at 120 Hz, of the first woman of the built-in population."""
     capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
     walk = in_place(virtual_markers(capture), speed_mm_s=capture.attrs["speed_mm_s"])
     return walk.assign_attrs(source="The first woman of the built-in population")

@@ -1,7 +1,7 @@
-"""Captures that others published, brought from where they are: asked for, licensed, and checked.
+"""Captures that others published, fetched from where they are, licensed, and checked.
 
-Nothing is fetched unless asked for, nothing without consent to its terms, and nothing is kept whose
-SHA-256 is not the one that stands in ``downloads.tsv``.
+Nothing is fetched without consent to its terms, and no file is stored whose SHA-256 differs from
+that in ``downloads.tsv``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SOURCE_URL = "https://raw.githubusercontent.com"
 """Where the repositories' files are, as ``<repository>/<commit>/<path>``."""
 SOURCE_VARIABLE = "EIGENWALKER_DATA_URL"
 """Environment variable that names a mirror of it."""
-PATIENCE_S = 30
+TIMEOUT_S = 30
 _CHUNK = 1 << 16
 
 
@@ -46,26 +46,7 @@ class PublishedFile(NamedTuple):
 
 @dataclass(frozen=True)
 class Collection:
-    """Captures that were published together.
-
-    Parameters
-    ----------
-    name : str
-        What to ask for.
-    about : str
-        What they are.
-    size_mb : float
-        How much there is to fetch.
-    licence : str
-        Its name.
-    terms : str
-        What it asks, and where to read it.
-    citation : str
-        What to cite with results.
-    files : tuple of PublishedFile
-        All its files, the text of the licence among them where one was published.
-
-    """
+    """Captures that were published together."""
 
     name: str
     about: str
@@ -76,7 +57,7 @@ class Collection:
     files: tuple[PublishedFile, ...]
 
     def notice(self) -> str:
-        """Return what whoever fetches the collection must have seen."""
+        """Return contents, licence and citation, to be shown before it is fetched."""
         return (
             f"{self.name}: {self.about}\n"
             f"{len(self.files)} files, {self.size_mb:g} MB\n"
@@ -87,26 +68,17 @@ class Collection:
 
 @cache
 def collections() -> dict[str, Collection]:
-    """Return the collections that can be fetched, by name.
-
-    Examples
-    --------
-    >>> sorted(collections())
-    ['bandai-namco', 'cmu', 'delussanet', 'pycgm']
-    >>> collections()["cmu"].licence
-    'CMU terms'
-
-    """
+    """Return the collections that can be fetched, by name."""
     package = files("eigenwalker.datasets")
     described = tomllib.loads((package / "downloads.toml").read_text(encoding="utf-8"))
     rows = csv.reader((package / "downloads.tsv").read_text(encoding="utf-8").splitlines()[1:],
                       delimiter="\t")  # fmt: skip
-    found: dict[str, list[PublishedFile]] = {name: [] for name in described}
+    published: dict[str, list[PublishedFile]] = {name: [] for name in described}
     for file, *origin in rows:
         collection, _, name = file.partition("/")
-        found[collection].append(PublishedFile(name, *origin))
+        published[collection].append(PublishedFile(name, *origin))
     return {
-        name: Collection(name=name, files=tuple(found[name]), **facts)
+        name: Collection(name=name, files=tuple(published[name]), **facts)
         for name, facts in described.items()
     }
 
@@ -128,21 +100,21 @@ def fetch_captures(
 ) -> Path:
     """Return a folder with a collection of published captures, fetching what is not yet there.
 
-    Files appear whole or not at all; if it is interrupted, call it again and it goes on.
+    Files are written whole or not at all; if it is interrupted, the next call goes on.
 
     Parameters
     ----------
     name : str
-        One of `collections`.
+        ``"cmu"``, ``"bandai-namco"``, ``"delussanet"`` or ``"pycgm"``.
     folder : path, optional
         Where to put the files; if left out, in this user's cache.
     accept_licence : bool
-        That you have read the licence and keep to it. Not asked for what is there already.
+        Whether you have read the licence and keep to it; not needed for what is there already.
     base_url : str, optional
         Mirror to take; else the one in the environment variable ``EIGENWALKER_DATA_URL``; else
         where the files were published.
     progress : callable, optional
-        Called with the number of files that are there and of all.
+        Called with the number of files that are there, and of all.
 
     Returns
     -------
@@ -157,7 +129,7 @@ def fetch_captures(
     FileExistsError
         If a file of that name is there which is another.
     ConnectionError
-        If a file cannot be had.
+        If a file cannot be fetched.
 
     Examples
     --------
@@ -193,14 +165,7 @@ def folder_of(name: str) -> Path:
 
 
 def missing_files(collection: Collection, folder: Path) -> list[PublishedFile]:
-    """Return the files of a collection that are not in a folder.
-
-    Raises
-    ------
-    FileExistsError
-        If one of its files is there with other content.
-
-    """
+    """Return the files of a collection that are not in a folder."""
     missing = []
     for file in collection.files:
         path = folder / file.name
@@ -215,7 +180,7 @@ def missing_files(collection: Collection, folder: Path) -> list[PublishedFile]:
 
 
 def _fetch(file: PublishedFile, folder: Path, url: str, there: str) -> None:
-    downloader = pooch.HTTPDownloader(timeout=PATIENCE_S, chunk_size=_CHUNK)
+    downloader = pooch.HTTPDownloader(timeout=TIMEOUT_S, chunk_size=_CHUNK)
     try:
         with _quiet(pooch.get_logger()):
             pooch.retrieve(
@@ -241,7 +206,7 @@ def _reason(error: Exception) -> str:
     if isinstance(error, requests.HTTPError) and error.response is not None:
         return f"the server said {error.response.status_code} {error.response.reason}"
     if isinstance(error, requests.Timeout):
-        return f"no answer within {PATIENCE_S} s"
+        return f"no answer within {TIMEOUT_S} s"
     if isinstance(error, requests.exceptions.ChunkedEncodingError):
         return "the connection broke off"
     if isinstance(error, requests.ConnectionError):
@@ -253,7 +218,7 @@ def _reason(error: Exception) -> str:
 
 @contextmanager
 def _quiet(logger: logging.Logger) -> Iterator[None]:
-    """Keep a library from telling of each file."""
+    """Keep a library from logging each file."""
     level = logger.level
     logger.setLevel(logging.WARNING)
     try:

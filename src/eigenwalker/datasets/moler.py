@@ -33,17 +33,16 @@ MOLER_MARKERS = (
 )
 """The 15 points of walkers.mat; the article calls some of them hand, neck and foot."""
 MOLER_PERIOD_SAMPLES = 151.5751
-"""Samples of a stride (two steps) in walker.m, at 120 Hz (A35)."""
+"""Samples of a stride (two steps) in walker.m, at 120 Hz."""
 
 _SEXES = {"F": "female", "M": "male"}
-_MOST_MM = 1e5
+_MAX_MM = 1e5
 
 
 def read_walkers_mat(path: str | os.PathLike[str]) -> Population:
-    """Return the two walkers of Moler's walkers.mat: the average woman and the average man (M5).
+    """Return the two walkers of Moler's walkers.mat: the average woman and the average man.
 
-    The file comes with *The Eigenwalker Model of the Human Gait* (Moler 2016) and is not part of
-    this package: bring your own copy.
+    The file comes with the article and is not part of this package: bring your own copy.
 
     Parameters
     ----------
@@ -55,12 +54,20 @@ def read_walkers_mat(path: str | os.PathLike[str]) -> Population:
     Population of two
         In the Fourier form and the frame and names of this package, the trait ``sex`` being
         ``female`` for F and ``male`` for M. The point that the article calls neck is ``sternum``.
-        Note that the article's gender slider is positive for women, and axes here for men (A39).
+        The article's gender slider is positive for women; axes here are positive for men.
 
     Raises
     ------
     UnreadableFile
-        If it is no such file. It is read in a process of its own, so it may be as bad as it likes.
+        If it is no such file; it is read in a process of its own, which it may break.
+
+    See Also
+    --------
+    read_mm : walkers of any MATLAB file in the BML's mm format.
+
+    References
+    ----------
+    Moler (2016), The Eigenwalker Model of the Human Gait, Cleve's Corner.
 
     Examples
     --------
@@ -91,15 +98,16 @@ def read_walkers_mat(path: str | os.PathLike[str]) -> Population:
 
 
 def _plausible(arrays: dict[str, np.ndarray], name: str, path: Path) -> np.ndarray:
-    """Return the table of a walker that could be a person, in millimetres."""
     table = arrays.get(name)
     shape = (3 * len(MOLER_MARKERS), len(SIN_FIRST))
     if table is None or table.shape != shape:
-        held = {key: array.shape for key, array in list(arrays.items())[:10]}
         raise UnreadableFile(
-            path.name, f"tables F and M of shape {shape}", f"{held}", "is it Moler's walkers.mat?"
+            path.name,
+            f"tables F and M of shape {shape}",
+            _shapes(arrays),
+            "is it Moler's walkers.mat?",
         )
-    if not (np.abs(table) < _MOST_MM).all():
+    if not (np.abs(table) < _MAX_MM).all():
         raise UnreadableFile(
             path.name, f"{name} in millimetres", "numbers that are not finite or too large"
         )
@@ -117,7 +125,7 @@ def read_mm(
     Parameters
     ----------
     path : str or path
-        A MATLAB file with matrices such as 46 x 5 (`walker_from_mm` says what is in them).
+        A MATLAB file with matrices such as 46 x 5, as `walker_from_mm` takes them.
     markers : sequence of str
         One name a marker, in the order of the rows.
     rate_hz : float
@@ -126,26 +134,41 @@ def read_mm(
     Returns
     -------
     dict of str to Walker
-        By the names of the variables. The origin is on the floor below the pelvis.
+        By the names of the variables, which may differ in their harmonics, so that they are no
+        population. The origin is on the floor below the pelvis.
 
     Raises
     ------
     UnreadableFile
         If the file is damaged or holds none.
 
+    See Also
+    --------
+    read_walkers_mat : Moler's file, as a population.
+
+    References
+    ----------
+    Troje (2002), The little difference: Fourier based gender classification, eq. 1.
+
     """
     path = Path(path)
     arrays = read_mat_arrays(path)
     n_rows = 3 * len(markers) + 1
-    found: dict[str, Walker] = {}
+    walkers: dict[str, Walker] = {}
     for name, array in arrays.items():
         if array.ndim == 2 and len(array) == n_rows and array.shape[1] in (3, 5, 7, 9, 11):
             try:
-                found[name] = on_the_floor(walker_from_mm(array, markers=markers, rate_hz=rate_hz))
+                walker = walker_from_mm(array, markers=markers, rate_hz=rate_hz)
             except ValueError as error:
                 raise UnreadableFile(path.name, f"a walker as {name}", f"{error}") from error
-    if not found:
-        held = {key: array.shape for key, array in list(arrays.items())[:10]}
-        wanted = f"matrices of {n_rows} rows (3 x {len(markers)} markers and one more)"
-        raise UnreadableFile(path.name, wanted, f"{held}", "name the markers: markers=[...]")
-    return found
+            walkers[name] = on_the_floor(walker)
+    if not walkers:
+        expected = f"matrices of {n_rows} rows (3 x {len(markers)} markers and one more)"
+        raise UnreadableFile(
+            path.name, expected, _shapes(arrays), "name the markers: markers=[...]"
+        )
+    return walkers
+
+
+def _shapes(arrays: dict[str, np.ndarray]) -> str:
+    return str({key: array.shape for key, array in list(arrays.items())[:10]})

@@ -56,20 +56,6 @@ def make_app(
 
     Files that are sent are read by a child process, one at a time, within limits of time and
     memory, and removed afterwards. What cannot be used is refused with a sentence (``detail``).
-
-    Parameters
-    ----------
-    population : Population
-        What the page shows at first.
-    host : str
-        Where the server listens; requests to other names are refused.
-    title, source : str
-        As `page_model` takes them.
-
-    Returns
-    -------
-    FastAPI
-
     """
     runner = TaskRunner()
     model = page_model(population, title=title, source=source) | {"population": _SERVED}

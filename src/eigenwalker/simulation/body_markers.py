@@ -45,24 +45,9 @@ def skin_markers(
     half a knee's, ankle's and elbow's width and a marker's radius outside the joint), so that
     virtual markers have a truth to be measured against.
 
-    Parameters
-    ----------
-    body : Body
-    positions : mapping of joint to array of shape (frame, 3)
-        As `posture.joint_positions` returns them.
-    rotations : mapping of segment to rotations
-        As `posture.segment_rotations` returns them.
-    phase : array of shape (frame,)
-        Cycles; skin moves with the stride, in each person and marker in its own way.
-    rng : Generator
-        Of that way.
-    soft_tissue : float
-        Multiplies `SOFT_TISSUE_MM`; 0 fixes markers to the bones.
-
-    Returns
-    -------
-    dict of str to array of shape (frame, 3)
-
+    Positions, of joints as of markers, have the shape (frame, 3). Skin moves with the phase of the
+    stride, in cycles, in each person and marker in its own way; `soft_tissue` multiplies
+    `SOFT_TISSUE_MM`, so that 0 fixes markers to the bones.
     """
     waves = harmonic_basis(phase, 2)[:, [2, 4, 1, 3]]
     markers = {}

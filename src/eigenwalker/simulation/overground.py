@@ -36,7 +36,7 @@ class Route:
     Examples
     --------
     >>> walk = ew.simulate_walk(seed=1, route=Route(heading_deg=90))
-    >>> bool(np.ptp(walk.sel(marker="pelvis", axis="y")) > 10_000)  # 12 s along y, in mm
+    >>> bool(np.ptp(walk.sel(marker="pelvis", axis="y").values) > 10_000)  # 12 s along y, in mm
     True
 
     """

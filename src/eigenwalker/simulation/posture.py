@@ -62,14 +62,10 @@ def trunk_rotations(angles: Mapping[str, np.ndarray], part: str) -> Rotations:
 def segment_rotations(angles: Mapping[str, np.ndarray]) -> dict[str, Rotations]:
     """Return how each segment stands in the room.
 
-    Parameters
-    ----------
-    angles : mapping of str to array of shape (frame,)
-        Radians: ``pelvis_``, ``trunk_``, ``head_`` ``tilt``, ``obliquity``, ``rotation`` against
-        the room, and for each side ``thigh`` (against the vertical, in the plane of the leg),
-        ``knee_flexion``, ``splay`` (of that plane), ``foot_pitch``, ``foot_yaw``,
-        ``shoulder_flexion``, ``shoulder_abduction``, ``shoulder_rotation``, ``elbow_flexion``.
-
+    Angles (frame,), in radians: ``pelvis_``, ``trunk_``, ``head_`` ``tilt``, ``obliquity``,
+    ``rotation`` against the room, and for each side ``thigh`` (against the vertical, in the plane
+    of the leg), ``knee_flexion``, ``splay`` (of that plane), ``foot_pitch``, ``foot_yaw``,
+    ``shoulder_flexion``, ``shoulder_abduction``, ``shoulder_rotation``, ``elbow_flexion``.
     """
     rotations = {part: trunk_rotations(angles, part) for part in ("pelvis", "trunk", "head")}
     for name, side in SIDES.items():
@@ -96,14 +92,7 @@ def joint_positions(
 ) -> dict[str, np.ndarray]:
     """Return where all joints are, and heel, ball and tip of the toes: arrays (frame, 3).
 
-    Parameters
-    ----------
-    body : Body
-    rotations : mapping of segment to rotations
-        As `segment_rotations` returns them.
-    pelvis : array of shape (frame, 3)
-        Path of the pelvis point.
-
+    `pelvis` is the path of the pelvis point, of shape (frame, 3).
     """
     places = {"pelvis": pelvis}
 

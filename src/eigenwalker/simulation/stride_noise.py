@@ -60,18 +60,8 @@ def simulate_strides(
     The body keeps its place on the belt but for a slow wander, so longer steps take longer. A leg
     changes the length of its step in swing only.
 
-    Parameters
-    ----------
-    time : array of shape (frame,)
-        Seconds.
-    cycle, gait
-        How the person walks.
-    rng : Generator
-    variability : float
-        0 for strides that are all alike, 1 for those of healthy adults.
-    wander_mm : float
-        SD of the slow wander on the belt.
-
+    `time` (frame,) is in seconds; a `variability` of 1 is that of healthy adults; `wander_mm` is
+    the SD of the wander.
     """
     n_strides = int(np.ceil(time[-1] * gait.frequency * 1.2)) + 3
     wander = wander_mm * slow_noise(rng, time, 4.0, 2).T * [1.0, 0.7]

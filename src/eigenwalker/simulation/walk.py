@@ -11,6 +11,7 @@ import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF
 from eigenwalker.simulation.body import body_of
 from eigenwalker.simulation.body_markers import skin_markers
 from eigenwalker.simulation.cycle import Cycle, solve_cycle
@@ -176,7 +177,7 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
 
     """
     phase, time = walk["phase"].values, walk["time"].values
-    kinds = (("heel_strike", 0.0, "heel"), ("toe_off", walk.attrs["stance_of_stride"], "toe"))
+    kinds = ((HEEL_STRIKE, 0.0, "heel"), (TOE_OFF, walk.attrs["stance_of_stride"], "toe"))
     rows = []
     for side in SIDES:
         for event, share, point in kinds:

@@ -26,14 +26,6 @@ class HostCheck:
 
     Any page may make a browser send requests to this machine, and may have its own name lead here
     (DNS rebinding). The headers ``Origin`` and ``Host`` show both.
-
-    Parameters
-    ----------
-    app : ASGI application
-    host : str
-        What the server listens at. Where that is every address of the machine, requests to any
-        address in numbers, or to the machine's name, are answered.
-
     """
 
     def __init__(self, app: ASGIApp, host: str) -> None:

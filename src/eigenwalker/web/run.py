@@ -25,16 +25,7 @@ MAX_CONCURRENT = 50
 
 
 def new_app(lifespan: Any, *, host: str) -> FastAPI:
-    """Return an application without routes, which refuses in sentences (``detail``).
-
-    Parameters
-    ----------
-    lifespan : asynchronous context manager of the application
-        What is open while it serves.
-    host : str
-        What it listens at; see `HostCheck`.
-
-    """
+    """Return an application without routes, which refuses in sentences (``detail``)."""
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
     app.add_middleware(GZipMiddleware, minimum_size=2000)
     app.add_middleware(HostCheck, host=host)
@@ -64,14 +55,7 @@ def _answer_with(
 
 
 def listening_socket(host: str, port: int | None) -> socket.socket:
-    """Return a socket that listens at a port, by default the usual one or any that is free.
-
-    Raises
-    ------
-    OSError
-        If the port is taken, or the host is not this machine.
-
-    """
+    """Return a socket that listens at a port, by default the usual one or any that is free."""
     if port is not None:
         return _bound(host, port)
     try:

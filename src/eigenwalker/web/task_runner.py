@@ -47,16 +47,7 @@ class TaskRunner:
         return tempfile.TemporaryDirectory(dir=self.folder, ignore_cleanup_errors=True)
 
     async def run(self, job: Job) -> bytes:
-        """Return the result of a job, after those that came before it.
-
-        Raises
-        ------
-        Refused
-            If the job refuses what was sent, or takes too much time or memory.
-        Ending
-            If the server ends meanwhile.
-
-        """
+        """Return the result of a job, after those that came before it."""
         async with self._turn:
             if self._closed:
                 raise Ending("The server was ended.")

@@ -20,20 +20,7 @@ class TooLarge(ValueError):  # noqa: N818 - the name says what is wrong
 async def receive_files(
     chunks: AsyncIterator[bytes], folder: Path, name: str, manifest: str
 ) -> list[str]:
-    """Write the body of a request into a folder, and return the names of its files.
-
-    Parameters
-    ----------
-    chunks : asynchronous iterator of bytes
-        The body: one file, or several one after the other.
-    folder : Path
-        Where to write them.
-    name : str
-        Of the one file.
-    manifest : str
-        Of several files, as `parse_manifest` takes it; empty for one.
-
-    """
+    """Write the body of a request into a folder, and return the names of its files."""
     body = folder / ".body"
     await stream_to_file(chunks, body, MAX_BYTES)
     sizes = parse_manifest(manifest) if manifest else [(name or "file", body.stat().st_size)]
@@ -75,14 +62,7 @@ def parse_manifest(manifest: str) -> list[tuple[str, int]]:
 
 
 def split_multipart(body: Path, files: list[tuple[str, int]], folder: Path) -> list[Path]:
-    """Cut the body of a request into its files, and return their paths.
-
-    Raises
-    ------
-    ValueError
-        If sizes do not add up, or two files have one name.
-
-    """
+    """Cut the body of a request into its files, and return their paths."""
     total = sum(size for _, size in files)
     if total != body.stat().st_size:
         raise ValueError(f"{body.stat().st_size} bytes came where the files have {total}.")
