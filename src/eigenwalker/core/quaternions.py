@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation as Rotation  # pyright: ignore[reportMissingTypeStubs] - SciPy has none
 
 
 def quaternions_at(vectors: np.ndarray, moments: np.ndarray, *, wraps: bool = False) -> np.ndarray:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.spatial.transform import Rotation
 
-from eigenwalker.core.quaternions import product
-from eigenwalker.core.trajectories import MILLIMETRES, label_trajectories
+from eigenwalker.core.quaternions import Rotation, product
+from eigenwalker.core.trajectories import DIMS, MILLIMETRES, label_trajectories
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
@@ -76,7 +76,8 @@ def labelled_points(
     left_out = [name for name in names if not is_labelled(name)]
     names = [names[i] for i in labelled]
     plain, subject = without_subject(numbered(names))
-    attrs = {"subject": subject, "left_out": left_out, "repeated": repeated(names)}
+    attrs: dict[str, object] = {"subject": subject, "left_out": left_out}
+    attrs["repeated"] = repeated(names)
     return positions[:, labelled], plain, attrs
 
 
@@ -120,7 +121,7 @@ def trajectories_of(
     if quaternions is not None:
         turned = product(Rotation.from_matrix(turn).as_quat(), quaternions).reshape(-1, 4)
         vectors = Rotation.from_quat(turned).as_rotvec().reshape(walk.shape)
-        walk = walk.assign_coords(rotation=(walk.dims, vectors))
+        walk = with_coordinate(walk, "rotation", vectors)
     walk.attrs.update(
         source=file.name,
         format=format_name,
@@ -131,6 +132,11 @@ def trajectories_of(
         unit_reason=used.reason,
     )
     return walk
+
+
+def with_coordinate(walk: Any, name: str, values: np.ndarray) -> xr.DataArray:
+    """Return trajectories with a coordinate of shape (time, marker, axis), or fewer of these."""
+    return walk.assign_coords({name: (DIMS[: values.ndim], values)})
 
 
 def _fits_a_body(positions: np.ndarray, names: Sequence[str], unit: Unit) -> bool:

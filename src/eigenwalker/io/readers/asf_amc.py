@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.kinematics import forward_kinematics
+from eigenwalker.core.quaternions import Rotation
 from eigenwalker.io.capture_file import CaptureFile, read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.acclaim_grammar import Acclaim, Bone, Motion, parse_amc, parse_asf

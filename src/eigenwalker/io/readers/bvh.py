@@ -55,7 +55,7 @@ def _names(joints: Sequence[Joint]) -> list[str]:
         {joint.name for joint, root in zip(joints, roots, strict=True) if root == number}
         for number in set(roots)
     ]
-    if len(bodies) > 1 and set.intersection(*bodies):
+    if len(bodies) > 1 and bodies[0].intersection(*bodies[1:]):
         names = [f"{root}:{name}" for root, name in zip(roots, names, strict=True)]
     return numbered(names)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import warnings
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +15,12 @@ from eigenwalker.core.trajectories import AXES, DIMS, sampling_rate, trajectorie
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import MAX_SIZE
+from eigenwalker.io.to_trajectories import with_coordinate
 from eigenwalker.markers.label_repair import Repair
 
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
+_xarray = import_module("xarray")  # whose reading and writing of files is not wholly typed
 _EXPECTED = "trajectories as write_mocap writes them"
 _OPEN = "open it with xarray and label it with label_trajectories()"
 
@@ -48,7 +51,7 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise file.error(_EXPECTED, f"a damaged file ({error})") from error
     if file.rate_hz is not None:
-        walk = walk.assign_coords(time=np.arange(walk.sizes["time"]) / file.rate_hz)
+        walk = with_coordinate(walk, "time", np.arange(walk.sizes["time"]) / file.rate_hz)
     known = {
         str(name).removeprefix("capture_"): value
         for name, value in dataset.attrs.items()
@@ -88,7 +91,7 @@ def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what damage does to names and numbers
-            with xr.open_dataset(file, engine="scipy", decode_times=False) as opened:
+            with _xarray.open_dataset(file, engine="scipy", decode_times=False) as opened:
                 return opened.load()
     except Exception as error:  # a damaged file fails anywhere in the library, in many ways
         raise UnreadableFile(source, expected, "a NetCDF file that is damaged") from error
@@ -111,5 +114,5 @@ def _trajectories(dataset: xr.Dataset, millimetres: float) -> xr.DataArray:
         sampling_rate(walk)  # which refuses uneven times
     if "rotation" in dataset:
         rotation = np.asarray(dataset["rotation"].transpose(*DIMS).values, dtype=float)
-        walk = walk.assign_coords(rotation=(DIMS, rotation))
+        walk = with_coordinate(walk, "rotation", rotation)
     return walk

@@ -10,7 +10,9 @@ from __future__ import annotations
 import json
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, TypeGuard
 
 import numpy as np
 import xarray as xr
@@ -48,8 +50,10 @@ _POINTS = (
     *("pose_world_landmarks", "world_landmarks", "keypoints3D", "keypoints_3d", "keypoints3d"),
     *("pose_keypoints_3d", "landmarks", "pose_landmarks", "keypoints", "points", "joints"),
 )
-_TIMES = {"time": 1.0, "time_s": 1.0, "timestamp": 1.0, "timestamp_s": 1.0, "t": 1.0}
-_TIMES |= {"time_ms": 1e-3, "timestamp_ms": 1e-3}
+_TIMES = {
+    **dict.fromkeys(("time", "time_s", "timestamp", "timestamp_s", "t"), 1.0),
+    **dict.fromkeys(("time_ms", "timestamp_ms"), 1e-3),
+}
 _RATES = ("rate_hz", "fps", "frame_rate", "framerate", "sampling_rate")
 _WORDS = re.compile(rb'"(frames|[^"]{0,40}(landmarks|keypoints[^"]{0,9}|_z))" *:', re.IGNORECASE)
 _PICTURE = "export 3D points (world landmarks, in metres)"
@@ -69,134 +73,131 @@ def holds_poses(beginning: bytes, path: Path) -> bool:
 def read_pose_json(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the points in a JSON document, of one person."""
     try:
-        data = json.loads("\n".join(lines_of(file.content, file.name)))
+        data: Any = json.loads("\n".join(lines_of(file.content, file.name)))
     except UnreadableFile:
         raise
     except (ValueError, RecursionError) as error:
         raise file.error("JSON", str(error)[:80]) from error
-    top = data if isinstance(data, dict) else {}
+    top = data if _is_dict(data) else {}
     keys = {"unit": "unit", "up": "up"} | dict.fromkeys(_RATES, "rate_hz")
     notes = {note: str(top[key])[:40] for key, note in keys.items() if key in top}
-    frames = next((top[key] for key in _FRAMES if isinstance(top.get(key), list)), data)
-    if isinstance(frames, dict):
+    frames = next((top[key] for key in _FRAMES if _is_list(top.get(key))), data)
+    if _is_dict(frames):
         frames = _records(frames)
-    if not isinstance(frames, list) or not frames:
+    if not _is_list(frames) or not frames:
         raise file.error("a list of frames", f"{type(frames).__name__}")
     names, positions = _positions(file, frames, top)
     return body_trajectories(file, TableValues(positions, _times(frames)), names, notes)
 
 
-def _records(columns: dict) -> list[dict]:
+def _is_dict(value: object) -> TypeGuard[dict[str, Any]]:
+    return isinstance(value, dict)
+
+
+def _is_list(value: object) -> TypeGuard[list[Any]]:
+    return isinstance(value, list)
+
+
+def _records(columns: dict[str, Any]) -> list[dict[str, Any]]:
     """Return columns of equal length (lists, or dicts by row) as one record a frame."""
-    lists = {key: list(value.values()) if isinstance(value, dict) else value
-             for key, value in columns.items()}  # fmt: skip
-    lists = {key: value for key, value in lists.items() if isinstance(value, list)}
-    lengths = {len(value) for value in lists.values()}
-    if len(lengths) != 1:
+    lists: dict[str, list[Any]] = {}
+    for key, value in columns.items():
+        if _is_dict(value):
+            lists[key] = list(value.values())
+        elif _is_list(value):
+            lists[key] = value
+    if len({len(value) for value in lists.values()}) != 1:
         return []
     return [dict(zip(lists, row, strict=True)) for row in zip(*lists.values(), strict=True)]
 
 
-def _positions(file: CaptureFile, frames: list, top: dict) -> tuple[list[str], np.ndarray]:
+def _positions(
+    file: CaptureFile, frames: Sequence[Any], top: dict[str, Any]
+) -> tuple[list[str], np.ndarray]:
     """Return names and positions of the points of all frames."""
-    named = [_points(file, frame) for frame in frames]
-    first = next((points for points in named if points), {})
+    points_by_frame = [_points(file, frame) for frame in frames]
+    first = next((points for points in points_by_frame if points), {})
     names = next((top[key] for key in ("names", "keypoint_names", "markers") if key in top), None)
     if names is not None and not (
-        isinstance(names, list) and len(names) == len(first) and all(map(str, names))
+        _is_list(names) and len(names) == len(first) and all(map(str, names))
     ):
         raise file.error(f"{len(first)} names, one a point", f"{str(names)[:60]}")
     if names is None and first and all(key.isdecimal() for key in first):
         names = NAMES.get(len(first))
         if names is None:
-            raise file.error(
-                f"names of the {len(first)} points",
-                "none",
-                'add "names": ["nose", ...] at the top',
-            )
+            advice = 'add "names": ["nose", ...] at the top'
+            raise file.error(f"names of the {len(first)} points", "none", advice)
     if len(first) < 3:
         raise file.error("points x, y, z in each frame", f"{str(frames[0])[:60]}", _PICTURE)
-    if any(points and list(points) != list(first) for points in named):
+    if any(points and list(points) != list(first) for points in points_by_frame):
         raise file.error("the same points in each frame", "others in some")
     missing = [np.full(3, np.nan)] * len(first)
-    positions = np.array([list(points.values()) or missing for points in named], dtype=float)
-    return [str(name) for name in (names or first)], positions
+    positions = [list(points.values()) or missing for points in points_by_frame]
+    return [str(name) for name in (names or first)], np.array(positions, dtype=float)
 
 
-def _points(file: CaptureFile, frame: object) -> dict[str, np.ndarray]:
-    """Return the points of a frame by name or number; none where nobody was seen."""
-    if isinstance(frame, dict):
-        if "people" in frame:
-            frame = _one(file, frame["people"])
-        if isinstance(frame, dict):
-            if "pose_keypoints_2d" in frame and not frame.get("pose_keypoints_3d"):
-                raise file.error("points in space", "pose_keypoints_2d", _PICTURE)
-            key = next((key for key in _POINTS if key in frame), None)
-            if key is None:
-                return _flat(file, frame) or _named(file, frame)
-            frame = frame[key]
-    if isinstance(frame, dict):
+def _points(file: CaptureFile, frame: Any) -> dict[str, np.ndarray]:
+    """Return the points of a frame by name or number; none where no person was seen."""
+    if _is_dict(frame) and "people" in frame:
+        frame = _one_person(file, frame["people"])
+    if _is_dict(frame):
+        if "pose_keypoints_2d" in frame and not frame.get("pose_keypoints_3d"):
+            raise file.error("points in space", "pose_keypoints_2d", _PICTURE)
+        key = next((key for key in _POINTS if key in frame), None)
+        if key is None:
+            return _points_of_record(file, frame)
+        frame = frame[key]
+    if _is_dict(frame):
         return {str(name): _point(file, point) for name, point in frame.items()}
-    if not isinstance(frame, list):
+    if not _is_list(frame):
         return {}
     if frame and all(isinstance(value, (int, float)) for value in frame) and len(frame) % 4 == 0:
         return {str(i): _point(file, frame[i * 4 : i * 4 + 3]) for i in range(len(frame) // 4)}
-    if frame and _is_list_of_points(frame[0]):
-        return _points(file, _one(file, frame))
+    if frame and _is_list(frame[0]) and frame[0] and isinstance(frame[0][0], (list, dict)):
+        return _points(file, _one_person(file, frame))
     points: dict[str, np.ndarray] = {}
     for at, point in enumerate(frame):
-        name = point.get("name", at) if isinstance(point, dict) else at
+        name = point.get("name", at) if _is_dict(point) else at
         points[str(name)] = _point(file, point)
     if len(points) < len(frame):
         raise file.error("points of different names", "a name twice")
     return points
 
 
-def _is_list_of_points(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], (list, dict))
-
-
-def _one(file: CaptureFile, people: object) -> object:
-    """Return the only person of a frame, or nobody."""
-    if not isinstance(people, list) or len(people) > 1:
-        got = f"{len(people)}" if isinstance(people, list) else f"{str(people)[:40]}"
+def _one_person(file: CaptureFile, people: Any) -> Any:
+    """Return the only person of a frame; nothing if there is none."""
+    if not _is_list(people) or len(people) > 1:
+        got = f"{len(people)}" if _is_list(people) else f"{str(people)[:40]}"
         raise file.error("one person", got, "keep the points of one")
     return people[0] if people else {}
 
 
-def _flat(file: CaptureFile, frame: dict) -> dict[str, np.ndarray]:
-    """Return the points of a record with entries such as ``nose_x``."""
-    keys = [str(key) for key in frame]
-    points = points_of(keys)
-    values = list(frame.values())
-    return {
+def _points_of_record(file: CaptureFile, record: dict[str, Any]) -> dict[str, np.ndarray]:
+    """Return the points of a record: entries ``nose_x`` and so on, or entries with x, y and z."""
+    flat = points_of(list(record))
+    values = list(record.values())
+    points = {
         name: _point(file, [values[column] for column in columns])
-        for name, columns in zip(points.names, points.columns, strict=True)
+        for name, columns in zip(flat.names, flat.columns, strict=True)
+    }
+    return points or {
+        name: _point(file, point)
+        for name, point in record.items()
+        if _is_dict(point) and {"x", "y", "z"} <= set(point)
     }
 
 
-def _named(file: CaptureFile, frame: dict) -> dict[str, np.ndarray]:
-    """Return the points that stand in a record by name: entries that have an x, y and z."""
-    points = {
-        str(name): point for name, point in frame.items()
-        if isinstance(point, dict) and {"x", "y", "z"} <= set(point)
-    }  # fmt: skip
-    return {name: _point(file, point) for name, point in points.items()}
-
-
-def _point(file: CaptureFile, point: object) -> np.ndarray:
+def _point(file: CaptureFile, point: Any) -> np.ndarray:
     """Return x, y, z of a point; NaN where it is null."""
     if point is None:
         return np.full(3, np.nan)
-    if isinstance(point, dict):
-        point = [point.get(axis, math.inf) for axis in "xyz"]
-    values = list(point) if isinstance(point, list) else []
-    if len(values) < 3:
+    values = [point.get(axis, math.inf) for axis in "xyz"] if _is_dict(point) else point
+    if not _is_list(values) or len(values) < 3:
         raise file.error("points x, y, z", f"{str(point)[:60]}", _PICTURE)
     return np.array([_number(file, value) for value in values[:3]])
 
 
-def _number(file: CaptureFile, value: object) -> float:
+def _number(file: CaptureFile, value: Any) -> float:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return math.nan
     if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MAX_SIZE:
@@ -205,12 +206,12 @@ def _number(file: CaptureFile, value: object) -> float:
     return float(value)
 
 
-def _times(frames: list) -> np.ndarray | None:
+def _times(frames: Sequence[Any]) -> np.ndarray | None:
     """Return the times of the frames in seconds, if each has one."""
     for key, unit in _TIMES.items():
-        times = [frame.get(key) if isinstance(frame, dict) else None for frame in frames]
+        times = [frame.get(key) if _is_dict(frame) else None for frame in frames]
         if all(isinstance(t, (int, float)) and abs(t) < MAX_SIZE * 1e6 for t in times):
             time = np.array(times, dtype=float) * unit
-            late = unit == 1.0 and len(time) > 1 and np.median(np.diff(time)) >= 1
-            return time * 1e-3 if late else time
+            in_ms = unit == 1.0 and len(time) > 1 and np.median(np.diff(time)) >= 1
+            return time * 1e-3 if in_ms else time
     return None

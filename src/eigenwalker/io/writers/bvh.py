@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.kinematics import bone_rotations, forward_kinematics
+from eigenwalker.core.quaternions import Rotation
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, missing_markers, sampling_rate
 from eigenwalker.io.up_axis_and_unit import turn_upright
@@ -137,7 +137,8 @@ def fit_bones(walk: xr.DataArray, turn: np.ndarray) -> Bones:
     _check(walk)
     joints = _joints([str(name) for name in walk.marker.values])
     names, markers, parents, directions = zip(*joints, strict=True)
-    places = walk.sel(marker=list(markers)).values
+    names_of_walk = [str(name) for name in walk.marker.values]
+    places = walk.values[:, [names_of_walk.index(name) for name in markers]]
     lengths = np.median(np.linalg.norm(places - places[:, parents], axis=2), axis=0)
     lengths[0] = 0.0
     rest = lengths[:, None] * (np.array(directions) @ turn)

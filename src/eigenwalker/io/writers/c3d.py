@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from importlib import import_module
 from pathlib import Path
 
-import c3d
 import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import sampling_rate
 
+_c3d = import_module("c3d")  # which has no types
 MAX_MARKERS = 255
 """Names that one list of the format holds."""
 MAX_NAME_LENGTH = 127
@@ -30,7 +31,7 @@ def write_c3d(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
             "Take some of them, or rename them, or write .csv or .nc."
         )
     rate_hz = sampling_rate(walk)
-    writer = c3d.Writer(point_rate=round(rate_hz, 6), point_units=unit)
+    writer = _c3d.Writer(point_rate=round(rate_hz, 6), point_units=unit)
     writer.point_group.add_param(
         "LABELS",
         desc="Marker names",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,12 +25,7 @@ def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
             f"NetCDF holds trajectories in millimetres, z up, not unit={unit!r}, up={up!r}; leave "
             "these out, or write another format."
         )
-    dataset = walk.drop_vars("rotation", errors="ignore").to_dataset(name="position")
-    dataset["position"].attrs = {"units": "mm"}
-    dataset["time"].attrs = {"units": "s"}
-    if "rotation" in walk.coords:
-        rotation = walk.coords["rotation"].values
-        dataset["rotation"] = (walk.dims, rotation, {"units": "rad"})
+    dataset = _dataset(walk)
     known = {name: _storable(value) for name, value in walk.attrs.items() if name != "units"}
     dataset.attrs = {
         "format": FORMAT,
@@ -40,7 +36,16 @@ def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     dataset.to_netcdf(path, engine="scipy", format="NETCDF3_64BIT")
 
 
-def _storable(value: object) -> str | int | float | None:
+def _dataset(walk: Any) -> Any:
+    dataset = walk.drop_vars("rotation", errors="ignore").to_dataset(name="position")
+    dataset["position"].attrs = {"units": "mm"}
+    dataset["time"].attrs = {"units": "s"}
+    if "rotation" in walk.coords:
+        dataset["rotation"] = (walk.dims, walk.coords["rotation"].values, {"units": "rad"})
+    return dataset
+
+
+def _storable(value: Any) -> str | int | float | None:
     """Return an attribute as NetCDF holds it: a word, a number, names in one line, or JSON."""
     if isinstance(value, bool | np.bool_):
         return str(bool(value))

@@ -7,6 +7,7 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import Walker
+from eigenwalker.io.to_trajectories import with_coordinate
 
 RATE_HZ = 120.0
 """Frames a second if none are named: those of the captures in Troje (2002)."""
@@ -34,7 +35,7 @@ def sampled_walk(
             f"choose 2 to {MAX_FRAMES} of them."
         )
     time = np.arange(round(duration_s * rate_hz)) / rate_hz
-    walk = walker.trajectories(walker.time_origin_s + time).assign_coords(time=time)
+    walk = with_coordinate(walker.trajectories(walker.time_origin_s + time), "time", time)
     walk.attrs["speed_mm_s"] = walker.speed_mm_s
     return with_progress(walk) if overground else walk
 
