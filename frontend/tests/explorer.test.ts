@@ -1,8 +1,8 @@
 /** @vitest-environment jsdom */
-/** Parts of the interactive page: sliders, files that are brought, words. */
+/** Parts of the interactive page: sliders, files, texts. */
 
 import { describe, expect, it, vi } from "vitest";
-import { choice } from "../src/explorer/choice";
+import { choice } from "../src/explorer/controls";
 import { make, signed } from "../src/page/elements";
 import { nearestPoint, nextPoint } from "../src/explorer/cloud";
 import { Notices } from "../src/explorer/notices";
@@ -11,7 +11,7 @@ import { bundles, bundleName, openFiles } from "../src/explorer/openFile";
 import { ownWalkerOf } from "../src/explorer/ownWalker";
 import { axesOf } from "../src/explorer/axis";
 import { plausibilityText, reachOf } from "../src/explorer/plausibility";
-import { slider } from "../src/explorer/slider";
+import { slider } from "../src/explorer/controls";
 import { Store } from "../src/explorer/store";
 import { goldenModel, posture, stimulusWith } from "./golden_model";
 import { mixedVector } from "../src/model/mixing";
@@ -20,13 +20,13 @@ import { initialState } from "../src/model/state";
 import { walkerOf } from "../src/model/features";
 
 describe("a slider", () => {
-  const made = (): { heard: number[]; one: ReturnType<typeof slider> } => {
-    const heard: number[] = [];
+  const made = (): { values: number[]; one: ReturnType<typeof slider> } => {
+    const values: number[] = [];
     const one = slider({
       label: "Sex", ends: ["woman", "man"], min: -6, max: 6, step: 0.05, initial: 0,
-      format: (value) => signed(value), onInput: (value) => heard.push(value),
+      format: (value) => signed(value), onInput: (value) => values.push(value),
     });
-    return { heard, one };
+    return { values, one };
   };
   const move = (input: HTMLInputElement, value: number): void => {
     input.value = String(value);
@@ -34,51 +34,51 @@ describe("a slider", () => {
   };
 
   it("says what it is moved to", () => {
-    const { heard, one } = made();
+    const { values, one } = made();
     move(one.input, -2.5);
-    expect(heard).toEqual([-2.5]);
+    expect(values).toEqual([-2.5]);
     expect(one.input.getAttribute("aria-valuetext")).toBe("\u22122.5 towards woman");
   });
 
   it("goes back by a double click", () => {
-    const { heard, one } = made();
+    const { values, one } = made();
     move(one.input, 4);
     one.input.dispatchEvent(new Event("dblclick"));
-    expect(heard).toEqual([4, 0]);
+    expect(values).toEqual([4, 0]);
     expect(one.input.value).toBe("0");
   });
 
   it("goes back by its button, which is there once it was moved", () => {
-    const { heard, one } = made();
+    const { values, one } = made();
     expect(one.element.classList.contains("changed")).toBe(false);
     move(one.input, 1);
     expect(one.element.classList.contains("changed")).toBe(true);
     one.element.querySelector("button")!.click();
-    expect(heard).toEqual([1, 0]);
+    expect(values).toEqual([1, 0]);
   });
 
   it("is caught by its usual place only while it is dragged", () => {
-    const { heard, one } = made();
+    const { values, one } = made();
     move(one.input, 0.05);
     one.input.dispatchEvent(new Event("pointerdown"));
     move(one.input, -0.05);
-    expect(heard).toEqual([0.05, 0]);
+    expect(values).toEqual([0.05, 0]);
   });
 
   it("stays where it was, where the finger on it scrolls the page", () => {
-    const { heard, one } = made();
+    const { values, one } = made();
     move(one.input, 2);
     one.input.dispatchEvent(new Event("pointerdown"));
     move(one.input, -1);
     one.input.dispatchEvent(new Event("pointercancel"));
-    expect(heard).toEqual([2, -1, 2]);
+    expect(values).toEqual([2, -1, 2]);
   });
 
-  it("tells nobody when it is told where to stand", () => {
-    const { heard, one } = made();
+  it("reports nothing when its value is set", () => {
+    const { values, one } = made();
     one.show(3);
     expect(one.input.value).toBe("3");
-    expect(heard).toEqual([]);
+    expect(values).toEqual([]);
   });
 });
 
@@ -100,14 +100,14 @@ describe("points that are chosen", () => {
 });
 
 it("one of a row of choices is checked at a time", () => {
-  const heard = vi.fn();
-  const row = choice("View", [{ value: 0, label: "Front" }, { value: 90, label: "Side" }], heard);
+  const values = vi.fn();
+  const row = choice("View", [{ value: 0, label: "Front" }, { value: 90, label: "Side" }], values);
   document.body.append(row.element);
   row.show(90);
   const [front, side] = [...row.element.querySelectorAll("input")];
   expect([front!.checked, side!.checked]).toEqual([false, true]);
   front!.click();
-  expect(heard).toHaveBeenCalledExactlyOnceWith(0);
+  expect(values).toHaveBeenCalledExactlyOnceWith(0);
   expect(side!.checked).toBe(false);
 });
 
@@ -126,7 +126,7 @@ it("trouble stays until it is sent away", () => {
   expect(notices.element.textContent).toBe("");
 });
 
-describe("what is brought", () => {
+describe("a file that is opened", () => {
   const model = goldenModel();
   const held = { model, population: "" };
   const file = (content: unknown, name = "a.json"): File =>
@@ -202,18 +202,18 @@ describe("a walker of a stimulus", () => {
 describe("plausibility", () => {
   const model = goldenModel();
   const reach = reachOf(model, axesOf(model));
-  const said = (traits: Record<string, number>): string => {
+  const textFor = (traits: Record<string, number>): string => {
     const vector = mixedVector(model, { ...initialState(model), traits });
     return plausibilityText(reach, positionOf(model, vector));
   };
 
   it("of the average walker is that of nobody and everybody", () => {
-    expect(said({})).toMatch(/average walker/);
+    expect(textFor({})).toMatch(/average walker/);
   });
 
   it("is lost where a slider goes farther than anyone, however near the average that is", () => {
-    expect(said({ sex: 6 })).toMatch(/^(A caricature|Nobody walks so): 6\.0 SD towards man; the farthest walker is at \d\.\d\.$/);
-    expect(said({ sex: -6 })).toMatch(/ SD towards woman; /);
+    expect(textFor({ sex: 6 })).toMatch(/^(A caricature|Nobody walks so): 6\.0 SD towards man; the farthest walker is at \d\.\d\.$/);
+    expect(textFor({ sex: -6 })).toMatch(/ SD towards woman; /);
   });
 
   it("of one's own capture is never called a caricature", () => {
@@ -235,8 +235,8 @@ describe("notices", () => {
     notices.error("Two.", "And a half.");
     notices.info(["Three."]);
     notices.news("Four.");
-    const said = [...notices.element.querySelectorAll(".notice")].map(({ textContent }) => textContent);
-    expect(said).toEqual(["Two.And a half.", "Four."]);
+    const textFor = [...notices.element.querySelectorAll(".notice")].map(({ textContent }) => textContent);
+    expect(textFor).toEqual(["Two.And a half.", "Four."]);
   });
 
   it("of work that goes on come back after others, and end with it", () => {
@@ -260,7 +260,7 @@ describe("captures that were made to a population", () => {
     expect(bundleName(files.slice(0, 1), "walks")).toBe("a.c3d");
   });
 
-  it("are said in place of a file that is not there, and that they are few", () => {
+  it("are textFor in place of a file that is not there, and that they are few", () => {
     const model = { ...goldenModel(), n_walkers: 3, traits: [], source: "people.nc", captures: "walks/" };
     expect(populationLabel(model)).toMatch(/^3 .*walkers of walks\/$/);
     expect(warnings(model)).toEqual([

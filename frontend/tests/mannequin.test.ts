@@ -1,4 +1,4 @@
-// The mannequin's wood is where Python puts it.
+// The pieces of the mannequin are where Python puts them.
 
 import { expect, it } from "vitest";
 
@@ -31,8 +31,8 @@ it("puts every ball where Python does", () => {
 it("makes room for a crowd", () => {
   const hulls = new Hulls();
   const [{ moving, positions, visible }] = framesOf(stimulus)(0) as [ReturnType<ReturnType<typeof framesOf>>[0]];
-  const wood = mannequinOf(moving.body, 1700);
-  for (let i = 0; i < 100; i++) hulls.add(wood, positions, visible, stimulus.view);
+  const pieces = mannequinOf(moving.body, 1700);
+  for (let i = 0; i < 100; i++) hulls.add(pieces, positions, visible, stimulus.view);
   const first = hulls.numbers.slice(0, HULL * (hulls.count / 100));
   expect(hulls.numbers.slice(HULL * (hulls.count - hulls.count / 100), HULL * hulls.count)).toEqual(first);
   hulls.clear();

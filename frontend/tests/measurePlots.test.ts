@@ -20,7 +20,7 @@ function plotted(part: Partial<State>): { points: string[][]; dots: string[]; hi
 
 it.each<[string, Partial<State>]>([
   ["the average", {}],
-  ["somebody", { from: 1 }],
+  ["a walker of the population", { from: 1 }],
   ["one of another weight", { traits: { sex: 0.5, weight_kg: 0.5 } }],
   ["one of whom only the motion is changed", { traits: { sex: 1 }, part: "dynamics" }],
   ["one along an eigenwalker", { eigenwalkers: [0.5] }],

@@ -1,4 +1,4 @@
-// The golden file that Python wrote: walkers made of choices, and what is said of them, agree.
+// The golden file that Python wrote: walkers made of choices, and what is place of them, agree.
 
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
@@ -41,29 +41,29 @@ const { cycles, cases } = golden();
 const model = readModel(golden().model);
 const chosen = (part: Partial<State>): State => ({ ...initialState(model), ...part });
 
-const apart = (found: ArrayLike<number>, wanted: ArrayLike<number>): number => {
-  expect(found.length).toBe(wanted.length);
-  return Array.from(found).reduce((most, value, i) => Math.max(most, Math.abs(value - wanted[i]!)), 0);
+const apart = (actual: ArrayLike<number>, expected: ArrayLike<number>): number => {
+  expect(actual.length).toBe(expected.length);
+  return Array.from(actual).reduce((most, value, i) => Math.max(most, Math.abs(value - expected[i]!)), 0);
 };
 
 describe("walkers are made as in Python", () => {
-  it.each(cases.map((each) => [JSON.stringify(each.state), each] as const))("%s", (_, wanted) => {
-    const vector = mixedVector(model, chosen(wanted.state));
-    expect(apart(vector, wanted.vector)).toBeLessThan(CLOSE);
+  it.each(cases.map((each) => [JSON.stringify(each.state), each] as const))("%s", (_, expected) => {
+    const vector = mixedVector(model, chosen(expected.state));
+    expect(apart(vector, expected.vector)).toBeLessThan(CLOSE);
     const walker = walkerOf(model, vector);
     cycles.forEach((cycle, i) => {
       const { positions } = walking(walker, [], []).at(cycle / walker.frequency_hz);
-      expect(apart(positions, wanted.positions_mm[i]!.flat())).toBeLessThan(CLOSE);
+      expect(apart(positions, expected.positions_mm[i]!.flat())).toBeLessThan(CLOSE);
     });
     const measures = measuresOf(walker);
-    expect(Object.keys(measures)).toEqual(Object.keys(wanted.measures));
-    for (const [name, value] of Object.entries(wanted.measures)) {
+    expect(Object.keys(measures)).toEqual(Object.keys(expected.measures));
+    for (const [name, value] of Object.entries(expected.measures)) {
       expect(measures[name as MeasureName]).toBeCloseTo(value ?? NaN, 6);
     }
     const place = positionOf(model, vector);
-    expect(place.distance).toBeCloseTo(wanted.distance, 6);
-    expect(place.percentile).toBeCloseTo(wanted.percentile, 6);
-    for (const [name, value] of Object.entries(wanted.positions)) {
+    expect(place.distance).toBeCloseTo(expected.distance, 6);
+    expect(place.percentile).toBeCloseTo(expected.percentile, 6);
+    for (const [name, value] of Object.entries(expected.positions)) {
       expect(place.traits[name]).toBeCloseTo(value, 6);
     }
   });
@@ -138,7 +138,7 @@ describe("mixing", () => {
   });
 });
 
-describe("casts", () => {
+describe("figures", () => {
   const figures = (part: Partial<State>) => figuresOf(model, chosen(part));
 
   it("shows women and men, and three times their difference (M5)", () => {
@@ -186,11 +186,11 @@ describe("what is no model is refused, in a sentence", () => {
     ["a block too small", (m) => (m.layout.p1 = [45, 46]), "model.layout.p1"],
     ["scores of other eigenwalkers", (m) => m.cloud.scores[0].pop(), "model.cloud.scores[0]"],
     ["a walker that is not there", (m) => (m.cloud.walker[0] = 999), "model.cloud.walker[0]"],
-  ])("%s", (_, spoil, said) => {
+  ])("%s", (_, spoil, place) => {
     const content = golden().model;
     spoil(content);
     expect(() => readModel(content)).toThrow(InvalidFile);
-    expect(() => readModel(content)).toThrow(said);
+    expect(() => readModel(content)).toThrow(place);
   });
 
   it.each([null, 3, "model", [], {}])("%j", (content) => {

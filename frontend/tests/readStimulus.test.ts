@@ -1,4 +1,4 @@
-// What is no stimulus is refused, in words; what may be left out is filled in.
+// Invalid stimuli are refused with a message; defaults are filled in.
 
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
@@ -48,11 +48,11 @@ it.each([
   ["a posture of too few dots", (s: any) => s.figures[0].walker.p0.pop(), "postures"],
   ["no figures", (s: any) => (s.figures = []), "figures"],
   ["nothing", () => undefined, "null"],
-])("refuses %s", (name, spoil, said) => {
+])("refuses %s", (name, spoil, message) => {
   const content = name === "nothing" ? null : plain();
   spoil(content);
   expect(() => readStimulus(content)).toThrow(InvalidFile);
-  expect(() => readStimulus(content)).toThrow(said);
+  expect(() => readStimulus(content)).toThrow(message);
 });
 
 describe("a chain that no browser could play in time", () => {

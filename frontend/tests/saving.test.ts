@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-// What is snapshot of the viewer; films and pictures are made in a real browser, see test_interactive.
+// Files of the picture in the viewer; films and pictures are tested in a real browser, see test_page.py.
 
 import { beforeEach, describe, expect, it } from "vitest";
 
@@ -80,9 +80,9 @@ describe("pages", () => {
     hold("player", JSON.stringify(PLAYER));
     expect(() => pageFile(snapshot({ style: "mannequin" }))).toThrow("mannequin");
     hold("mannequin", "export const mannequinPainter = 1;");
-    const carved = await pageFile(snapshot({ style: "mannequin" })).blob.text();
-    expect(carved).toContain("export const mannequinPainter = 1;");
-    expect(carved).toContain("script-src 'unsafe-inline' blob:");
+    const page = await pageFile(snapshot({ style: "mannequin" })).blob.text();
+    expect(page).toContain("export const mannequinPainter = 1;");
+    expect(page).toContain("script-src 'unsafe-inline' blob:");
     expect(await pageFile(snapshot()).blob.text()).not.toContain("mannequinPainter");
   });
 
@@ -92,7 +92,7 @@ describe("pages", () => {
 });
 
 it("says what makes films where the browser does not", async () => {
-  const wish = { width: 64, height: 64, frames: 1, rateHz: 60, draw: () => {} };
-  await expect(encodeFilm(wish)).rejects.toThrow(FilmError);
-  await expect(encodeFilm(wish)).rejects.toThrow("eigenwalker serve");
+  const spec = { width: 64, height: 64, frames: 1, rateHz: 60, draw: () => {} };
+  await expect(encodeFilm(spec)).rejects.toThrow(FilmError);
+  await expect(encodeFilm(spec)).rejects.toThrow("eigenwalker serve");
 });

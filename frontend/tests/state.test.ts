@@ -14,7 +14,7 @@ import {
 
 const file = new URL("../../tests/golden/model.json", import.meta.url);
 const model = readModel(JSON.parse(readFileSync(file, "utf8")).model);
-const usual = initialState(model);
+const initial = initialState(model);
 
 /** A state with everything drawn at random, in steps that a slider has. */
 function drawnState(seed: number): State {
@@ -56,16 +56,16 @@ function drawnState(seed: number): State {
 
 describe("an address", () => {
   it("is empty where nothing was chosen", () => {
-    expect(addressOf(usual, model)).toBe("");
-    expect(stateOf("", model)).toEqual(usual);
-    expect(stateOf("#", model)).toEqual(usual);
+    expect(addressOf(initial, model)).toBe("");
+    expect(stateOf("", model)).toEqual(initial);
+    expect(stateOf("#", model)).toEqual(initial);
   });
 
   it("is short", () => {
-    expect(addressOf({ ...usual, traits: { sex: 3, weight_kg: 0 } }, model)).toBe("t=sex:3");
-    const state = { ...usual, strengths: [1, 1.5, 1, 1], transforms: { invert: {}, scramble: initialSettings("scramble") } };
+    expect(addressOf({ ...initial, traits: { sex: 3, weight_kg: 0 } }, model)).toBe("t=sex:3");
+    const state = { ...initial, strengths: [1, 1.5, 1, 1], transforms: { invert: {}, scramble: initialSettings("scramble") } };
     expect(addressOf({ ...state, azimuth_deg: 90 }, model)).toBe("s=1,1.5&az=90&x=invert,scramble");
-    expect(addressOf({ ...usual, playing: false }, model)).toBe("still");
+    expect(addressOf({ ...initial, playing: false }, model)).toBe("still");
   });
 
   it("brings back any state", () => {
@@ -101,9 +101,9 @@ describe("an address", () => {
     "who=1,999999999,2,3,4,5,6", "who=,,,",
     "x=scramble;seed:-1;keep:constructor,fold,mask;number:1e9;number:2.5",
     "x=__proto__,constructor;a:b", "=&=&&==", "#".repeat(5000), "%".repeat(20000),
-  ])("from anybody makes a state within its bounds: %.60s", (address) => {
+  ])("makes a state within its bounds: %.60s", (address) => {
     const state = stateOf(address, model);
-    expect(Object.keys(state).sort()).toEqual(Object.keys(usual).sort());
+    expect(Object.keys(state).sort()).toEqual(Object.keys(initial).sort());
     const inside = ([low, high]: readonly [number, number], ...values: readonly number[]): void =>
       values.forEach((value) => expect(value >= low && value <= high).toBe(true));
     inside(RANGES.trait, ...Object.values(state.traits));

@@ -1,5 +1,5 @@
 // @vitest-environment jsdom
-// The viewer: what it draws is what a stimulus file of it says, strides go on, and it rests unseen.
+// The viewer draws what its stimulus file describes, continues strides, and rests while hidden.
 
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
@@ -20,7 +20,7 @@ const model = readModel(golden.model);
 const chosen = (part: Partial<State> = {}): State => ({ ...initialState(model), ...part });
 const SIZE = { width_px: 900, height_px: 600 };
 
-/** All that an act is made of, beginning at 0 s. */
+/** The specification of an animation that begins at 0 s. */
 function specOf(part: Partial<State>, others: Partial<AnimationSpec> = {}): AnimationSpec {
   const state = chosen(part);
   const figures = figuresOf(model, state);
@@ -39,9 +39,9 @@ function batchPlaces({ figures, state, arrangement }: AnimationSpec, time: numbe
   return batch.places;
 }
 
-const apart = (found: ArrayLike<number>, wanted: ArrayLike<number>): number => {
-  expect(found.length).toBe(wanted.length);
-  return Array.from(found).reduce((most, value, i) => Math.max(most, Math.abs(value - wanted[i]!)), 0);
+const apart = (actual: ArrayLike<number>, expected: ArrayLike<number>): number => {
+  expect(actual.length).toBe(expected.length);
+  return Array.from(actual).reduce((most, value, i) => Math.max(most, Math.abs(value - expected[i]!)), 0);
 };
 
 describe("what is drawn quickly is what the stimulus says", () => {
@@ -58,8 +58,8 @@ describe("what is drawn quickly is what the stimulus says", () => {
     const { figures, state, arrangement } = spec;
     const frames = framesOf(arrangedStimulus(model, figures, state, SIZE, arrangement));
     for (const time of [0, 0.3, 1.7]) {
-      const wanted = frames(time).flatMap(({ places }) => [...places]);
-      expect(apart(batchPlaces(spec, time), wanted)).toBeLessThan(1e-6);
+      const expected = frames(time).flatMap(({ places }) => [...places]);
+      expect(apart(batchPlaces(spec, time), expected)).toBeLessThan(1e-6);
     }
   });
 });
@@ -117,10 +117,10 @@ describe("the chain", () => {
     const names = ["mask", "scramble", "invert", "mirror", "arm_swing"] as const;
     const on = (order: readonly (typeof names)[number][]): State["transforms"] =>
       Object.fromEntries(order.map((name) => [name, initialSettings(name)]));
-    const found = steps({ transforms: on(names), tempo: 2, turning_deg_s: 20 }).map(({ name }) => name);
-    expect(found).toEqual(["speed", "gain", "mirror", "invert", "scramble", "rotate", "mask"]);
+    const actual = steps({ transforms: on(names), tempo: 2, turning_deg_s: 20 }).map(({ name }) => name);
+    expect(actual).toEqual(["speed", "gain", "mirror", "invert", "scramble", "rotate", "mask"]);
     const other = steps({ transforms: on([...names].reverse()), tempo: 2, turning_deg_s: 20 });
-    expect(other.map(({ name }) => name)).toEqual(found);
+    expect(other.map(({ name }) => name)).toEqual(actual);
   });
 
   it("works out the box of a scrambled walker from the walker", () => {
@@ -148,11 +148,11 @@ describe("strides go on", () => {
     ["backwards", { transforms: { reverse: {} }, tempo: 1.4 }],
   ])("%s", (_, part) => {
     const spec = specOf({ ...part, scene: "side" }, { phases: [0.1, 0.2, 5.3, -0.4], time: 7.7 });
-    const act = animationOf(spec);
+    const animation = animationOf(spec);
     const rates = strideRates(spec);
     spec.phases.forEach((cycle, i) => {
-      expect(act.phase(i, 7.7)).toBeCloseTo(cycle, 9);
-      expect(act.phase(i, 8.2) - cycle).toBeCloseTo(0.5 * rates[i]!, 9);
+      expect(animation.phase(i, 7.7)).toBeCloseTo(cycle, 9);
+      expect(animation.phase(i, 8.2) - cycle).toBeCloseTo(0.5 * rates[i]!, 9);
     });
   });
 
@@ -215,7 +215,7 @@ describe("the viewer", () => {
   });
   afterEach(() => vi.unstubAllGlobals());
 
-  /** Let so many frames of the screen go by. */
+  /** Show a number of frames. */
   function run(count: number): void {
     for (let i = 0; i < count; i++) {
       const due = frames;
@@ -227,8 +227,8 @@ describe("the viewer", () => {
 
   function staged(part: Partial<State> = {}, hooks: ViewerEvents = {}): { viewer: Viewer; show: (part: Partial<State>) => void } {
     const viewer = new Viewer(canvas, hooks);
-    const show = (wish: Partial<State>): void => {
-      const state = chosen(wish);
+    const show = (part: Partial<State>): void => {
+      const state = chosen(part);
       const figures: readonly SceneFigure[] = figuresOf(model, state);
       viewer.show(model, figures, state);
     };
@@ -236,9 +236,9 @@ describe("the viewer", () => {
     return { viewer, show };
   }
 
-  const drawnSince = (act: () => void): number => {
+  const drawnSince = (action: () => void): number => {
     counted.mockClear();
-    act();
+    action();
     return counted.mock.calls.filter(([what]) => what === "fillRect").length;
   };
 
@@ -309,7 +309,7 @@ describe("the viewer", () => {
     canvas.dispatchEvent(event);
   };
 
-  it("is turned by dragging, and tells so", () => {
+  it("is turned by dragging, and reports it", () => {
     const turned = vi.fn();
     staged({ azimuth_deg: 170 }, { turned });
     pointer("pointerdown", 100, 100);
@@ -347,9 +347,9 @@ describe("the viewer", () => {
   });
 
   it.each<[string, (change: (part: Partial<State>) => void) => void]>([
-    ["it is told to stand", (change) => change({ turning_deg_s: 0 })],
+    ["turning is switched off", (change) => change({ turning_deg_s: 0 })],
     ["it is held", () => pointer("pointerdown", 10, 10)],
-  ])("stays where it came to by turning itself when %s", (_, act) => {
+  ])("stays where it came to by turning itself when %s", (_, action) => {
     let state: Partial<State> = { turning_deg_s: 60, azimuth_deg: 0 };
     const change = (part: Partial<State>): void => show((state = { ...state, ...part }));
     const { show } = staged(state, { turned: (azimuth_deg) => change({ azimuth_deg }) });
@@ -357,7 +357,7 @@ describe("the viewer", () => {
     run(31);
     change({ playing: false });
     const before = seen();
-    act(change);
+    action(change);
     expect(state.azimuth_deg).toBeCloseTo(30, 6);
     expect(apart(seen().flat(), before.flat())).toBeLessThan(1e-6);
   });

@@ -129,7 +129,6 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     });
   }
 
-  /** A simulated answer. */
   private simulated(trial: Trial, options: Simulation[2]): WalkerData {
     const { pluginAPI, randomization } = this.jsPsych;
     const byKey = trial.choices !== "NO_KEYS";

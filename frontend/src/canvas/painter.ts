@@ -1,18 +1,16 @@
 /** Frames of a stimulus on a canvas: discs, sticks, blobs, or a mannequin. */
 
-import type { Stimulus } from "../core/stimulus";
+import type { Link, Stimulus } from "../core/stimulus";
 import { framesOf, type FigureFrame } from "./figureFrames";
 import { hasLimbs, type MannequinPainter } from "./mannequinLoader";
 
 /** Width of a stick relative to the diameter of a dot. */
-export const STICK_WIDTH = 0.6;
+const STICK_WIDTH = 0.6;
 /** Standard deviations beyond which the light of a blob is too weak for a screen. */
 const BLOB_REACH_SD = 3.6;
 
 export interface Painter {
-  /** Draw the stimulus at a time in seconds. */
   paint(time: number): void;
-  /** Draw the background alone. */
   clear(): void;
 }
 
@@ -55,7 +53,7 @@ export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Dra
     for (const frame of frames) {
       context.fillStyle = context.strokeStyle = stimulus.display.colour;
       if (frame.moving.blurMm > 0) drawBlobs(context, layer, frame, stimulus);
-      else if (!solid || !hasLimbs(frame.moving)) drawDots(context, frame, stimulus);
+      else if (!solid || !hasLimbs(frame.moving)) drawFrame(context, frame, stimulus.display);
     }
   };
 }
@@ -66,7 +64,6 @@ function drawBackground(context: CanvasRenderingContext2D, { display }: Stimulus
   context.fillRect(0, 0, display.width_px, display.height_px);
 }
 
-/** Set the resolution of a canvas for a picture of a size in pixels. */
 export function setResolution(canvas: HTMLCanvasElement, width: number, height: number, pixelRatio: number): void {
   canvas.width = Math.round(width * pixelRatio);
   canvas.height = Math.round(height * pixelRatio);
@@ -81,32 +78,60 @@ export function contextOf(
   return context;
 }
 
-function drawDots(context: CanvasRenderingContext2D, frame: FigureFrame, { display }: Stimulus): void {
-  const { places, visible } = frame;
-  if (display.style === "sticks") drawSticks(context, frame, Math.max(STICK_WIDTH * display.dot_px, 1));
-  context.beginPath();
-  visible.forEach((isVisible, dot) => {
-    if (!isVisible) return;
-    const [x, y] = [places[2 * dot]!, places[2 * dot + 1]!];
-    context.moveTo(x + display.dot_px / 2, y);
-    context.arc(x, y, display.dot_px / 2, 0, 2 * Math.PI);
-  });
-  context.fill();
+function drawFrame(context: CanvasRenderingContext2D, frame: FigureFrame, { style, dot_px }: Stimulus["display"]): void {
+  const { moving: { body }, places, visible } = frame;
+  if (style === "sticks") drawSticks(context, places, body.dots.length, linksOf(body.dots, body.segments), dot_px, visible);
+  drawDots(context, places, body.dots.length, dot_px, visible);
 }
 
-function drawSticks(context: CanvasRenderingContext2D, frame: FigureFrame, width: number): void {
-  const { moving, places, visible } = frame;
-  context.lineWidth = width;
-  context.lineCap = "round";
-  context.beginPath();
-  for (const segment of moving.body.segments) {
-    const [one, other] = [moving.index(segment[0]), moving.index(segment[1])];
-    if (!visible[one] || !visible[other]) continue;
-    context.moveTo(places[2 * one]!, places[2 * one + 1]!);
-    context.lineTo(places[2 * other]!, places[2 * other + 1]!);
+/** Draw figures of `nDots` dots each: one path a figure, as a single path of all dots is slower to fill. */
+export function drawDots(
+  context: CanvasRenderingContext2D,
+  places: Float64Array,
+  nDots: number,
+  diameter: number,
+  visible?: Uint8Array,
+): void {
+  for (let first = 0; first < places.length / 2; first += nDots) {
+    context.beginPath();
+    for (let dot = first; dot < first + nDots; dot++) {
+      if (visible && !visible[dot]) continue;
+      const x = places[2 * dot]!;
+      const y = places[2 * dot + 1]!;
+      context.moveTo(x + diameter / 2, y);
+      context.arc(x, y, diameter / 2, 0, 2 * Math.PI);
+    }
+    context.fill();
   }
-  context.stroke();
 }
+
+/** Draw the segments of figures of `nDots` dots each; `links` has pairs of numbers of dots. */
+export function drawSticks(
+  context: CanvasRenderingContext2D,
+  places: Float64Array,
+  nDots: number,
+  links: Uint16Array,
+  dotPx: number,
+  visible?: Uint8Array,
+): void {
+  context.lineWidth = Math.max(STICK_WIDTH * dotPx, 1);
+  context.lineCap = "round";
+  for (let first = 0; first < places.length / 2; first += nDots) {
+    context.beginPath();
+    for (let i = 0; i < links.length; i += 2) {
+      const one = first + links[i]!;
+      const other = first + links[i + 1]!;
+      if (visible && !(visible[one] && visible[other])) continue;
+      context.moveTo(places[2 * one]!, places[2 * one + 1]!);
+      context.lineTo(places[2 * other]!, places[2 * other + 1]!);
+    }
+    context.stroke();
+  }
+}
+
+/** The numbers of the dots at the ends of segments. */
+export const linksOf = (dots: readonly string[], segments: readonly Link[]): Uint16Array =>
+  Uint16Array.from(segments.flat().map((name) => dots.indexOf(name)));
 
 /** Gaussian blobs whose light adds up, on a separate layer: first the light, then its colour. */
 function drawBlobs(

@@ -1,7 +1,7 @@
 /** A figure as named dots that are a function of time, which transforms change. */
 
 import { coefficientsOf, posture } from "./posture";
-import type { Link, Trajectories, Walker } from "./stimulus";
+import type { Link, Parameters, Trajectories, TransformName, Walker } from "./stimulus";
 import type { Axes, Vector } from "./vector";
 
 /** Moments of the period over which means are taken. */
@@ -31,6 +31,15 @@ export interface TransformContext {
   /** Number of the figure, from 0: figures of one scene draw different random numbers. */
   readonly figure: number;
 }
+
+/** The figure after a step; for a mask, the noise that joins the scene. */
+export type Transform<Name extends TransformName> = (
+  moving: MovingDots,
+  step: Parameters<Name>,
+  context: TransformContext,
+) => MovingDots;
+
+export type Transforms<Names extends TransformName> = { readonly [Name in Names]: Transform<Name> };
 
 /** A figure as a function of time, in its own frame: x forward, y left, z up. */
 export class MovingDots {
@@ -136,7 +145,6 @@ export function isKnown(positions: Float64Array, i: number): boolean {
   return !Number.isNaN(positions[i]! + positions[i + 1]! + positions[i + 2]!);
 }
 
-/** The position of a dot. */
 export const positionOf = (positions: Float64Array, dot: number): Vector => [
   positions[3 * dot]!,
   positions[3 * dot + 1]!,
@@ -160,7 +168,6 @@ export function gathered(sources: readonly (readonly [Moment, number])[]): Momen
   return { positions, visible };
 }
 
-/** A walker as moving dots. */
 export function walking(walker: Walker, segments: readonly Link[], pairs: readonly Link[]): MovingDots {
   const coefficients = coefficientsOf(walker);
   const at = (time: number): Moment => ({

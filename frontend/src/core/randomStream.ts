@@ -47,17 +47,6 @@ export function uniforms(key: Key, count: number): Float64Array {
   );
 }
 
-/** Standard normal numbers, by Box and Muller (1958): two from two uniform numbers. */
-export function normals(key: Key, count: number): Float64Array {
-  const u = uniforms(key, 2 * Math.ceil(count / 2));
-  return Float64Array.from({ length: count }, (_, i) => {
-    const pair = i - (i % 2);
-    const radius = Math.sqrt(-2 * Math.log(1 - u[pair]!));
-    const angle = 2 * Math.PI * u[pair + 1]!;
-    return radius * (i % 2 === 0 ? Math.cos(angle) : Math.sin(angle));
-  });
-}
-
 /** 0, 1, ... size - 1 in random order (Fisher-Yates, from the end). */
 export function permutation(purpose: number, seed: number, index: number, size: number): number[] {
   const order = Array.from({ length: size }, (_, i) => i);

@@ -5,7 +5,7 @@ import { checked, explained, InvalidFile, type Schema } from "./schema";
 import type { Figure, Step, Stimulus, Walker } from "./stimulus";
 import { addsFigure } from "./transforms";
 
-const SCHEMA = schema as Schema;
+const SCHEMA = schema as Schema<Stimulus>;
 
 /** Limit of the dots that are computed for one moment, as in Python's `stimulus/schema.py`. */
 export const MAX_WORK = 1_000_000;
@@ -17,15 +17,16 @@ export const MAX_WORK = 1_000_000;
  */
 export const readStimulus = (content: unknown): Stimulus =>
   explained("This is no stimulus", () => {
-    const stimulus = checked<Stimulus>(content, SCHEMA, "stimulus");
+    const stimulus = checked(content, SCHEMA, "stimulus");
     stimulus.figures.forEach((figure, number) => checkFigure(figure, `figures[${number}]`));
     checkChain(stimulus);
     return stimulus;
   });
 
+const STEP = { ...SCHEMA.properties!["transforms"]!.items, $defs: SCHEMA.$defs } as Schema<Step>;
+
 /** A step with the defaults of its schema. */
-export const completeStep = (step: object): Step =>
-  checked<Step>(step, { ...SCHEMA.properties!["transforms"]!.items, $defs: SCHEMA.$defs ?? {} }, "transform");
+export const completeStep = (step: object): Step => checked(step, STEP, "transform");
 
 function ensure(holds: boolean, message: string): void {
   if (!holds) throw new InvalidFile(message);

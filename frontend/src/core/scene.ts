@@ -24,9 +24,9 @@ export function scene({ figures, transforms, view }: Stimulus): MovingDots[] {
     for (const number of step.figures ?? figures.keys()) {
       const [dots, figure] = [moving[number]!, figures[number]!];
       if (addsFigure(step)) {
-        masks.push(transformed(placed(dots, figure), { observer: observer(0), figure: number }, step));
+        masks.push(transformed(placed(dots, figure), step, { observer: observer(0), figure: number }));
       } else {
-        moving[number] = transformed(dots, { observer: observer(figure.heading_deg), figure: number }, step);
+        moving[number] = transformed(dots, step, { observer: observer(figure.heading_deg), figure: number });
       }
     }
   }

@@ -5,7 +5,10 @@
  * long as the schema itself, and its messages say less.
  */
 
-export interface Schema {
+/** A schema of values of a type. */
+export interface Schema<T = unknown> {
+  /** The type alone; no schema has this field. */
+  readonly inferred?: T;
   readonly $ref?: string;
   readonly $defs?: Readonly<Record<string, Schema>>;
   readonly type?: string;
@@ -32,6 +35,9 @@ export interface Schema {
   readonly oneOf?: readonly Schema[];
 }
 
+/** The type of the values of a schema. */
+export type Checked<S> = S extends Schema<infer T> ? T : never;
+
 /** A file that cannot be used; the message says where and why. */
 export class InvalidFile extends Error {}
 
@@ -51,7 +57,7 @@ export function explained<T>(about: string, read: () => T): T {
 }
 
 /** A copy of the value that keeps to the schema; `where` names its place in messages. */
-export function checked<T>(value: unknown, schema: Schema, where: string): T {
+export function checked<T>(value: unknown, schema: Schema<T>, where: string): T {
   const definitions = schema.$defs ?? {};
 
   function check(value: unknown, given: Schema, where: string): unknown {

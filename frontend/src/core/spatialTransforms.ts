@@ -1,6 +1,6 @@
 /** Transforms of space: inversion, mirror image, rotation, size, position. */
 
-import { positionOf, type Moment, type MovingDots, type TransformContext } from "./movingDots";
+import { positionOf, type Moment, type MovingDots, type TransformContext, type Transforms } from "./movingDots";
 import type { Parameters } from "./stimulus";
 import { dot, minus, radians, type Vector } from "./vector";
 
@@ -15,40 +15,58 @@ export function mapPositions(moving: MovingDots, change: (position: Vector, time
   });
 }
 
-/** Turn the figure upside down: `z` becomes `2 m - z`, where m is the height of its middle. */
-export function invert(moving: MovingDots): MovingDots {
-  const double = 2 * moving.middle[2];
-  return mapPositions(moving, ([x, y, z]) => [x, y, -z + double]);
-}
+export const spatialTransforms: Transforms<"invert" | "mirror" | "rotate" | "resize" | "translate"> = {
+  /** Turn the figure upside down: `z` becomes `2 m - z`, where m is the height of its middle. */
+  invert(moving) {
+    const double = 2 * moving.middle[2];
+    return mapPositions(moving, ([x, y, z]) => [x, y, -z + double]);
+  },
 
-/** Swap the sides: `y` becomes `2 m - y`, and left dots become right dots. */
-export function mirror(moving: MovingDots): MovingDots {
-  const double = 2 * moving.middle[1];
-  const partner = moving.mirrored();
-  const at = (time: number): Moment => {
-    const there = moving.at(time);
-    const positions = new Float64Array(there.positions.length);
-    partner.forEach((other, i) => {
-      const [x, y, z] = positionOf(there.positions, other);
-      positions.set([x, -y + double, z], 3 * i);
+  /** Swap the sides: `y` becomes `2 m - y`, and left dots become right dots. */
+  mirror(moving) {
+    const double = 2 * moving.middle[1];
+    const partner = moving.mirrored();
+    const at = (time: number): Moment => {
+      const there = moving.at(time);
+      const positions = new Float64Array(there.positions.length);
+      partner.forEach((other, i) => {
+        const [x, y, z] = positionOf(there.positions, other);
+        positions.set([x, -y + double, z], 3 * i);
+      });
+      return { positions, visible: Uint8Array.from(partner, (other) => there.visible[other]!) };
+    };
+    return moving.with({ at });
+  },
+
+  /** Turn the figure about an axis through its middle, right-handed, by an angle and at a speed. */
+  rotate(moving, step, context) {
+    const axis = axisOf(step.axis, context);
+    const length = Math.sqrt(dot(axis, axis));
+    const unit: Vector = [axis[0] / length, axis[1] / length, axis[2] / length];
+    const { middle } = moving;
+    return mapPositions(moving, (position, time) => {
+      const angle = radians(step.angle_deg + step.speed_deg_s * time);
+      const turned = turn(minus(position, middle), unit, angle);
+      return [turned[0] + middle[0], turned[1] + middle[1], turned[2] + middle[2]];
     });
-    return { positions, visible: Uint8Array.from(partner, (other) => there.visible[other]!) };
-  };
-  return moving.with({ at });
-}
+  },
 
-/** Turn the figure about an axis through its middle, right-handed, by an angle and at a speed. */
-export function rotate(moving: MovingDots, context: TransformContext, step: Parameters<"rotate">): MovingDots {
-  const axis = axisOf(step.axis, context);
-  const length = Math.sqrt(dot(axis, axis));
-  const unit: Vector = [axis[0] / length, axis[1] / length, axis[2] / length];
-  const { middle } = moving;
-  return mapPositions(moving, (position, time) => {
-    const angle = radians(step.angle_deg + step.speed_deg_s * time);
-    const turned = turn(minus(position, middle), unit, angle);
-    return [turned[0] + middle[0], turned[1] + middle[1], turned[2] + middle[2]];
-  });
-}
+  /** Make the figure larger or smaller about the point of the floor below its middle. */
+  resize(moving, { factor }) {
+    const [x0, y0] = moving.middle;
+    return mapPositions(moving, ([x, y, z]) => [x0 + factor * (x - x0), y0 + factor * (y - y0), factor * z]);
+  },
+
+  /** Move the figure: `x + offset + velocity t`. */
+  translate(moving, step) {
+    const { offset_mm: offset, velocity_mm_s: velocity } = step;
+    return mapPositions(moving, ([x, y, z], time) => [
+      x + offset[0] + velocity[0] * time,
+      y + offset[1] + velocity[1] * time,
+      z + offset[2] + velocity[2] * time,
+    ]);
+  },
+};
 
 function axisOf(axis: Parameters<"rotate">["axis"], { observer }: TransformContext): Vector {
   if (axis === "sight") return observer[2];
@@ -65,20 +83,4 @@ function turn(arm: Vector, unit: Vector, angle: number): Vector {
     arm[1] * cosine + (unit[2] * arm[0] - unit[0] * arm[2]) * sine + unit[1] * along,
     arm[2] * cosine + (unit[0] * arm[1] - unit[1] * arm[0]) * sine + unit[2] * along,
   ];
-}
-
-/** Make the figure larger or smaller about the point of the floor below its middle. */
-export function resize(moving: MovingDots, _: TransformContext, { factor }: Parameters<"resize">): MovingDots {
-  const [x0, y0] = moving.middle;
-  return mapPositions(moving, ([x, y, z]) => [x0 + factor * (x - x0), y0 + factor * (y - y0), factor * z]);
-}
-
-/** Move the figure: `x + offset + velocity t`. */
-export function translate(moving: MovingDots, _: TransformContext, step: Parameters<"translate">): MovingDots {
-  const { offset_mm: offset, velocity_mm_s: velocity } = step;
-  return mapPositions(moving, ([x, y, z], time) => [
-    x + offset[0] + velocity[0] * time,
-    y + offset[1] + velocity[1] * time,
-    z + offset[2] + velocity[2] * time,
-  ]);
 }

@@ -2,7 +2,7 @@
 
 import type { Model } from "../model/model";
 import { make } from "../page/elements";
-import { note, section } from "./section";
+import { note, section } from "./parts";
 
 const IDEA =
   "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that " +

@@ -7,8 +7,8 @@ import { positionOf } from "../model/position";
 import { clamped, RANGES } from "../model/state";
 import { draw, freshId, make, setAttributes } from "../page/elements";
 import type { Axis } from "./axis";
-import { pick } from "./choice";
-import { note } from "./section";
+import { pick } from "./controls";
+import { note } from "./parts";
 import type { Now, Part, Store } from "./store";
 
 const WIDTH = 360;
@@ -154,7 +154,6 @@ const grid = (): SVGElement[] =>
     ];
   });
 
-/** Names at the ends of both axes. */
 function axisNames(x: Axis, y: Axis): SVGTextElement[] {
   const [[left, right], [below, above]] = [x, y].map(({ trait, ends, label }) =>
     trait ? ends : (["", label.toLowerCase()] as const),
@@ -181,7 +180,6 @@ function trailOf({ model, state, own }: Now, main: Axis, x: Axis, y: Axis): Reco
   };
 }
 
-/** The place of a pointer on the chart. */
 function placeInChart(chart: SVGSVGElement, event: MouseEvent): Place {
   const box = chart.getBoundingClientRect();
   const scale = WIDTH / chart.clientWidth;

@@ -3,13 +3,12 @@
 import { capitalised, endLabels } from "../model/axisLabels";
 import { componentName } from "../model/captions";
 import { RANGES } from "../model/state";
-import { button, make, signed } from "../page/elements";
-import { note } from "./section";
-import { slider } from "./slider";
+import { button, signed } from "../page/elements";
+import { bound, group, note } from "./parts";
+import { slider } from "./controls";
 import type { Part, Store } from "./store";
 import { leaveMeans } from "./traitSliders";
 
-/** One slider a component, and a button that shows it alone. */
 export function strengthControls(store: Store): Part {
   const [min, max] = RANGES.strength;
   const strengths = (): readonly number[] => store.state.strengths;
@@ -26,16 +25,13 @@ export function strengthControls(store: Store): Part {
     }, { class: "small", "aria-label": `${label} alone` });
     one.element.classList.add("solo");
     one.element.querySelector("output")?.after(alone);
-    return { one, alone };
+    const show = (strengths: readonly number[]): void => {
+      one.show(strengths[number] ?? 1);
+      alone.setAttribute("aria-pressed", String(isAlone(strengths, number)));
+    };
+    return bound({ element: one.element, show }, (state) => state.strengths);
   });
-  return {
-    element: make("div", { class: "sliders" }, ...rows.map(({ one }) => one.element)),
-    show: ({ state }) =>
-      rows.forEach(({ one, alone }, i) => {
-        one.show(state.strengths[i] ?? 1);
-        alone.setAttribute("aria-pressed", String(isAlone(state.strengths, i)));
-      }),
-  };
+  return group({ class: "sliders" }, ...rows);
 }
 
 const isAlone = (strengths: readonly number[], number: number): boolean =>
@@ -44,7 +40,7 @@ const isAlone = (strengths: readonly number[], number: number): boolean =>
 /** A slider of the bias for each trait of two classes. */
 export function biasControls(store: Store): Part {
   const [min, max] = RANGES.bias;
-  const rows = store.model.traits.filter(({ means }) => means !== null).map((trait) => {
+  const rows = store.model.traits.filter(({ means }) => means !== null).flatMap((trait) => {
     const means = `the mean ${endLabels(trait).join(" and the mean ")}`;
     const one = slider({
       label: `Bias of ${trait.label}`,
@@ -55,11 +51,10 @@ export function biasControls(store: Store): Part {
       onInput: (steps) =>
         store.change({ bias: steps === 0 ? null : { trait: trait.name, steps }, ...leaveMeans(store) }),
     });
-    return { trait, one, about: note(`Bias: 0 is as it is, \u00b11 half the way between ${means}.`) };
+    return [
+      note(`Bias: 0 is as it is, \u00b11 half the way between ${means}.`),
+      bound(one, ({ bias }) => (bias?.trait === trait.name ? bias.steps : 0)),
+    ];
   });
-  return {
-    element: make("div", { class: "sliders" }, ...rows.flatMap(({ one, about }) => [about, one.element])),
-    show: ({ state: { bias } }) =>
-      rows.forEach(({ trait, one }) => one.show(bias?.trait === trait.name ? bias.steps : 0)),
-  };
+  return group({ class: "sliders" }, ...rows);
 }

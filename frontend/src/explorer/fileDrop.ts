@@ -2,7 +2,6 @@
 
 import { find } from "../page/elements";
 
-/** Limit of the files in one drop. */
 const MAX_FILES = 500;
 
 /** Files of one drop, and the name of their folder, if it was one. */

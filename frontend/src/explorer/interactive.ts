@@ -1,11 +1,10 @@
 /** The interactive page: reads its model, assembles its parts, and opens files. */
 
-import { addressOf } from "../model/address";
+import { addressOf, stateOf } from "../model/address";
 import type { OwnWalker } from "../model/model";
 import type { State } from "../model/state";
 import { button, find, messageOf } from "../page/elements";
 import { populationLabel, warnings } from "./about";
-import { addressBar, stateAt } from "./addressBar";
 import { takeFiles, type DroppedFiles } from "./fileDrop";
 import { Notices } from "./notices";
 import { bundleName, bundles, modelSourceOf, openFiles, type ModelSource, type Opened } from "./openFile";
@@ -22,6 +21,8 @@ interface Session {
   readonly views: readonly View[];
 }
 
+/** The address changes after a pause of this length. */
+const ADDRESS_PAUSE_MS = 250;
 /** Elements that use the space bar themselves. */
 const USES_SPACE = "button, select, summary, textarea, a, [role=listbox], input:not([type=range])";
 
@@ -69,9 +70,24 @@ function show(opened: Opened, name: string): string {
   return people.endsWith(name) ? `${people}.` : `${name}: ${people}.`;
 }
 
-/** The state in an address; an address cannot contain a visitor's own capture. */
+function addressBar(): View {
+  let timer = 0;
+  return {
+    show({ state, model }) {
+      clearTimeout(timer);
+      timer = window.setTimeout(() => {
+        const address = addressOf(state, model);
+        history.replaceState(null, "", address ? `#${address}` : location.pathname + location.search);
+      }, ADDRESS_PAUSE_MS);
+    },
+    remove: () => clearTimeout(timer),
+  };
+}
+
+/** The state in an address; without the visitor's own capture, and paused if motion is to be reduced. */
 function stateFor(address: string, { model }: ModelSource, own: OwnWalker | null): State {
-  const state = stateAt(address, model);
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const state = { ...stateOf(address, model), ...(calm && { playing: false }) };
   if (state.from !== "own" || own) return state;
   notices.info(["The walker of this link was a capture of one's own, which a link does not hold: drop it again."]);
   return { ...state, from: "average" };

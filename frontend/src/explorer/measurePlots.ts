@@ -9,7 +9,7 @@ import { positionOf } from "../model/position";
 import { clamped, initialState, RANGES, type State } from "../model/state";
 import { draw, make, setAttributes, signed } from "../page/elements";
 import type { Axis } from "./axis";
-import { note } from "./section";
+import { note } from "./parts";
 import type { Now, Part, Store } from "./store";
 
 const WIDTH = 160;

@@ -28,7 +28,6 @@ const MAX_NAMED = 2;
 /** Files that belong to a capture. */
 const COMPANION = /\.asf$/i;
 
-/** The model in a parsed file, checked. */
 export function modelSourceOf(content: unknown): ModelSource {
   const population = content && typeof content === "object" && "population" in content ? content.population : "";
   return { model: readModel(content), population: typeof population === "string" ? population : "" };

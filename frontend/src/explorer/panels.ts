@@ -2,19 +2,17 @@
 
 import { find } from "../page/elements";
 import { about } from "./about";
-import { classifierControls } from "./classifierControls";
+import { classifierControls, eigenwalkerSliders, otherTraits } from "./traitSliders";
 import { cloud } from "./cloud";
 import { biasControls, strengthControls } from "./componentControls";
 import { measurePlots } from "./measurePlots";
 import type { Notices } from "./notices";
 import { plausibility } from "./plausibility";
-import { sceneSelect } from "./sceneSelect";
-import { note, section, type Section } from "./section";
+import { sceneSelect, walkerSelect } from "./walkerSelect";
+import { note, section } from "./parts";
 import { share } from "./share";
-import type { Store, View } from "./store";
-import { eigenwalkerSliders, otherTraits } from "./traitSliders";
+import type { Part, Store, View } from "./store";
 import { transformControls, viewControls } from "./viewControls";
-import { walkerSelect } from "./walkerSelect";
 
 /** Wide windows have a panel on the left as well, and more sections open. */
 const WIDE = window.matchMedia("(min-width: 100rem)");
@@ -41,12 +39,12 @@ export function panels(store: Store, notices: Notices, open: () => void): View {
 }
 
 /** On the left of wide windows, else after the first section of controls. */
-const plotSections = (store: Store): Section[] => [
+const plotSections = (store: Store): Part[] => [
   section("What changes", [plausibility(store), measurePlots(store)], true),
   section("Among the others", [cloud(store)], WIDE.matches),
 ];
 
-function controlSections(store: Store, notices: Notices, open: () => void): Section[] {
+function controlSections(store: Store, notices: Notices, open: () => void): Part[] {
   const { length } = store.model.traits;
   const varies = note("What varies most from walker to walker, whatever it means.");
   return [

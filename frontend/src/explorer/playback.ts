@@ -2,8 +2,8 @@
 
 import { RANGES, type State } from "../model/state";
 import { button, icon, make } from "../page/elements";
-import { choice, type Option } from "./choice";
-import { slider } from "./slider";
+import { choice, type Option, slider } from "./controls";
+import { bound, group } from "./parts";
 import type { Part, Store } from "./store";
 
 export interface Playback extends Part {
@@ -45,7 +45,6 @@ function playButton(store: Store): Part {
 }
 
 export function playback(store: Store): Playback {
-  const play = playButton(store);
   const scrub = make("input", {
     type: "range", min: 0, max: 1, step: 1 / N_STEPS, value: 0, class: "scrub",
     "aria-label": "Moment of the stride",
@@ -64,29 +63,26 @@ export function playback(store: Store): Playback {
     lastInput = time;
     scrub.value = String(phase);
   };
+  const [min, max] = RANGES.tempo;
   const tempo = slider({
-    label: "Speed", min: RANGES.tempo[0], max: RANGES.tempo[1], step: 0.05, initial: 1,
+    label: "Speed", min, max, step: 0.05, initial: 1,
     format: (value) => `${value.toFixed(2)}\u00d7`,
     onInput: (value) => store.change({ tempo: value }),
   });
   const view = choice("View", VIEWS, (azimuth_deg) => store.change({ azimuth_deg, elevation_deg: 0 }), { named: false });
   const style = choice("Drawn as", STYLES, (value) => store.change({ style: value }), { named: false });
+  const { element, show } = group({ class: "tools" },
+    playButton(store),
+    make("div", { class: "time" }, scrub, make("div", { class: "run", "aria-hidden": "true" }, fill, knob)),
+    bound(tempo, (state) => state.tempo),
+    bound(view, (state) => (state.elevation_deg === 0 ? Math.round(state.azimuth_deg) : NaN)),
+    bound(style, (state) => state.style));
   return {
-    element: make("div", { class: "tools" },
-      play.element,
-      make("div", { class: "time" }, scrub, make("div", { class: "run", "aria-hidden": "true" }, fill, knob)),
-      tempo.element,
-      view.element,
-      style.element,
-    ),
+    element,
     tick,
     show(now) {
-      const { state } = now;
-      play.show(now);
-      tempo.show(state.tempo);
-      view.show(state.elevation_deg === 0 ? Math.round(state.azimuth_deg) : NaN);
-      style.show(state.style);
-      if (!state.playing) tick(state.cycle);
+      show(now);
+      if (!now.state.playing) tick(now.state.cycle);
     },
   };
 }

@@ -12,7 +12,6 @@ export interface Population {
   readonly messages: readonly string[];
 }
 
-/** Whether the page comes from a server. */
 export const hasServer = (): boolean =>
   document.querySelector('meta[name="eigenwalker-server"]')?.getAttribute("content") === "1";
 
@@ -33,7 +32,6 @@ export async function readPopulation(files: readonly File[]): Promise<Population
   return { model, messages: isListOf(messages, isText) ? (messages as string[]) : [] };
 }
 
-/** A film of a stimulus. */
 export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif"): Promise<Blob> {
   return (await post("film", { format }, stimulus)).blob();
 }

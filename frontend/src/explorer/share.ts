@@ -5,7 +5,7 @@ import { pythonCode } from "../model/pythonCode";
 import { button, make } from "../page/elements";
 import { download, filmFile, pageFile, pictureFile, stimulusFile, type SavedFile, type Snapshot } from "../viewer/saving";
 import type { Notices } from "./notices";
-import { note } from "./section";
+import { note } from "./parts";
 import { hasServer, makeFilm } from "./server";
 import type { Part, Store } from "./store";
 

@@ -20,14 +20,12 @@ export interface Now {
   readonly measures: Measures;
 }
 
-/** A view of the store. */
 export interface View {
   show(now: Now): void;
   /** End: another store takes over. */
   remove?(): void;
 }
 
-/** A part of the page. */
 export interface Part extends View {
   readonly element: HTMLElement;
 }
@@ -70,7 +68,6 @@ export class Store {
     return this.#own;
   }
 
-  /** Show the visitor's own walker. */
   setOwn(own: OwnWalker): void {
     this.#own = own;
     this.change({ from: "own", scene: "one" });
@@ -129,7 +126,6 @@ export class Store {
     return (this.#now = { model, state, own, figures, position: positionOf(model, vector), measures });
   }
 
-  /** Call all listeners now. */
   publish(): void {
     cancelAnimationFrame(this.#request);
     this.#request = 0;

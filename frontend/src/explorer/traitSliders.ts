@@ -1,10 +1,14 @@
-/** Sliders of the traits, the first one large below the viewer, and of the eigenwalkers. */
+/** Sliders of the traits, the first one large below the viewer, and of the eigenwalkers; the direction of the traits. */
 
+import { capitalised } from "../model/axisLabels";
+import { partsOf } from "../model/mixing";
+import type { Kind } from "../model/model";
 import { clamped, RANGES, type State } from "../model/state";
 import { make, signed } from "../page/elements";
 import { rangeOf, type Axis } from "./axis";
 import { densityPlot } from "./densityPlot";
-import { slider, type Slider } from "./slider";
+import { bound, group, note } from "./parts";
+import { choice, pick, slider, type Option, type Slider } from "./controls";
 import type { Part, Store } from "./store";
 
 /** The walker has a mark of its own if it is at least this far from the thumb. */
@@ -18,8 +22,7 @@ const SCALE = [-6, -4.5, -3, 0, 3, 4.5, 6];
  */
 export function mainSlider(store: Store): Part {
   const [axis] = store.axes;
-  const element = make("div");
-  if (!axis) return { element, show: () => {} };
+  if (!axis) return group({});
   const one = axisSlider(store, axis);
   one.element.classList.add("large", "fresh");
   one.input.addEventListener("input", () => one.element.classList.remove("fresh"));
@@ -29,13 +32,11 @@ export function mainSlider(store: Store): Part {
   );
   const mark = make("i", { class: "mark", "aria-hidden": "true" }, make("span"));
   one.element.append(make("div", { class: "hill" }, densityPlot(store.model, axis), mark), scale);
-  element.append(one.element);
   return {
-    element,
-    show({ state, position }) {
-      one.show(axis.value(state));
-      one.element.classList.toggle("idle", state.scene === "four");
-      showMark(mark, axis.at(position), state.scene === "one" ? axis.value(state) : null);
+    element: one.element,
+    show(now) {
+      one.show(now);
+      showMark(mark, axis.at(now.position), now.state.scene === "one" ? axis.value(now.state) : null);
     },
   };
 }
@@ -49,11 +50,9 @@ function showMark(mark: HTMLElement, position: number, thumb: number | null): vo
   mark.firstElementChild!.textContent = `this walker ${signed(position)}`;
 }
 
-/** Sliders of all traits but the first. */
 export const otherTraits = (store: Store): Part =>
   sliders(store, store.axes.slice(1).filter(({ trait }) => trait !== null));
 
-/** Sliders of the eigenwalkers. */
 export function eigenwalkerSliders(store: Store): Part {
   const { eigenwalkers } = store.model;
   const axes = store.axes.filter(({ trait }) => trait === null);
@@ -62,24 +61,15 @@ export function eigenwalkerSliders(store: Store): Part {
 }
 
 /** A slider for each axis, with names of its ends, or with a label. */
-function sliders(store: Store, axes: readonly Axis[], labels: readonly string[] = []): Part {
-  const all = axes.map((axis, i) => axisSlider(store, axis, labels[i]));
-  return {
-    element: make("div", { class: "sliders" }, ...all.map(({ element }) => element)),
-    show: ({ state }) =>
-      all.forEach((one, i) => {
-        one.show(axes[i]!.value(state));
-        one.element.classList.toggle("idle", state.scene === "four");
-      }),
-  };
-}
+const sliders = (store: Store, axes: readonly Axis[], labels: readonly string[] = []): Part =>
+  group({ class: "sliders" }, ...axes.map((axis, i) => axisSlider(store, axis, labels[i])));
 
 /** Moving a slider leaves the mean walkers, which no slider changes. */
 export const leaveMeans = ({ state }: Store): Partial<State> => (state.scene === "four" ? { scene: "one" } : {});
 
-function axisSlider(store: Store, axis: Axis, label?: string): Slider {
+function axisSlider(store: Store, axis: Axis, label?: string): Part & Pick<Slider, "input"> {
   const [min, max] = RANGES.trait;
-  return slider({
+  const one = slider({
     label: label ?? axis.label,
     ...(label === undefined ? { ends: axis.ends } : {}),
     min, max, step: 0.05, initial: 0,
@@ -87,4 +77,51 @@ function axisSlider(store: Store, axis: Axis, label?: string): Slider {
     format: (value) => (value === 0 ? "0" : `${signed(value)} SD`),
     onInput: (value) => store.change({ ...axis.moved(store.state, value), ...leaveMeans(store) }),
   });
+  return {
+    ...one,
+    show({ state }) {
+      one.show(axis.value(state));
+      one.element.classList.toggle("idle", state.scene === "four");
+    },
+  };
+}
+
+const PARTS: Readonly<Record<string, Omit<Option<string>, "value">>> = {
+  all: { label: "Everything", hint: "All that a walk consists of" },
+  structure: { label: "Body only", hint: "The mean posture: how people are built" },
+  dynamics: { label: "Motion only", hint: "How they move, whatever their build" },
+  p1: { label: "Stride (p1)" },
+  p2: { label: "Sway (p2)" },
+  p3: { label: "Hop (p3)" },
+  p4: { label: "Bounce (p4)" },
+  frequency: { label: "Frequency" },
+  phases: { label: "Phases" },
+};
+const COMMON = ["all", "structure", "dynamics"];
+
+const KINDS: readonly Option<Kind>[] = [
+  { value: "discriminant", label: "Tells best", hint: "The discriminant: what a classifier looks for (Troje)" },
+  { value: "mean_difference", label: "Differs most", hint: "The difference between mean walkers (Moler)" },
+];
+
+/** The part of the features that traits change, and the kind of their direction. */
+export function classifierControls(store: Store): Part {
+  const options = partsOf(store.model).map((value): Option<string> => ({ value, ...(PARTS[value] ?? { label: capitalised(value) }) }));
+  const [common, rest] = [true, false].map((is) => options.filter(({ value }) => COMMON.includes(value) === is));
+  const choose = (part: string): void => store.change({ part: part || "all" });
+  const parts = choice("What the sliders may change", common!, choose);
+  const single = pick("or one part of the motion", [{ value: "", label: "\u2013" }, ...rest!], choose);
+  const kind = choice("Direction", KINDS, (value) => store.change({ kind: value }));
+  const about = note("");
+  const describe = (kind: Kind): void => {
+    about.textContent =
+      kind === "discriminant"
+        ? "The direction that tells people apart best: one step is one standard deviation of the walkers."
+        : "From the mean of one class to the mean of the other: shows best what goes along with a trait.";
+  };
+  return group({},
+    bound(parts, (state) => state.part),
+    ...(rest!.length > 0 ? [bound(single, ({ part }) => (COMMON.includes(part) ? "" : part))] : []),
+    bound(kind, (state) => state.kind),
+    bound({ element: about, show: describe }, (state) => state.kind));
 }

@@ -1,39 +1,34 @@
 /** Controls of the view and of the transforms. */
 
 import {
-  fieldsOf, initialSettings, RANGES, TRANSFORM_NAMES,
+  fieldsOf, initialSettings, initialState, RANGES, TRANSFORM_NAMES,
   type Field, type TransformName, type Transforms,
 } from "../model/state";
 import { make } from "../page/elements";
-import { pick, toggle, type Control } from "./choice";
-import { slider } from "./slider";
+import { type Control, pick, slider, toggle } from "./controls";
+import { bound, group } from "./parts";
 import type { Part, Store } from "./store";
 
 export function viewControls(store: Store): Part {
-  const trails = toggle("Trails", (on) => store.change({ trails: on }), "Where each point has been");
-  const perspective = toggle("Perspective", (on) => store.change({ perspective: on }), "What is near is larger");
-  const angle = (label: string, name: "azimuth_deg" | "elevation_deg" | "turning_deg_s", step: number, initial: number, unit = "") =>
-    slider({
-      label, min: RANGES[name][0], max: RANGES[name][1], step, initial,
+  const flag = (label: string, name: "trails" | "perspective", hint: string): Part =>
+    bound(toggle(label, (on) => store.change({ [name]: on }), hint), (state) => state[name]);
+  const angle = (label: string, name: "azimuth_deg" | "elevation_deg" | "turning_deg_s", step: number, unit = ""): Part => {
+    const [min, max] = RANGES[name];
+    const one = slider({
+      label, min, max, step, initial: initialState(store.model)[name],
       format: (value) => `${Math.round(value)}\u00b0`.replace("-", "\u2212") + unit,
       onInput: (value) => store.change({ [name]: value }),
     });
-  const azimuth = angle("Seen from", "azimuth_deg", 1, 30);
-  const elevation = angle("Height of the eye", "elevation_deg", 1, 0);
-  const turning = angle("Turns by itself", "turning_deg_s", 5, 0, " a second");
-  return {
-    element: make("div", {},
-      make("div", { class: "row switches" }, trails.element, perspective.element),
-      make("div", { class: "sliders" }, azimuth.element, elevation.element, turning.element),
-    ),
-    show({ state }) {
-      trails.show(state.trails);
-      perspective.show(state.perspective);
-      azimuth.show(state.azimuth_deg);
-      elevation.show(state.elevation_deg);
-      turning.show(state.turning_deg_s);
-    },
+    return bound(one, (state) => state[name]);
   };
+  return group({},
+    group({ class: "row switches" },
+      flag("Trails", "trails", "Where each point has been"),
+      flag("Perspective", "perspective", "What is near is larger")),
+    group({ class: "sliders" },
+      angle("Seen from", "azimuth_deg", 1),
+      angle("Height of the eye", "elevation_deg", 1),
+      angle("Turns by itself", "turning_deg_s", 5, " a second")));
 }
 
 const NAMES: Readonly<Record<TransformName, readonly [string, string]>> = {
@@ -62,13 +57,8 @@ const FIELDS: Readonly<Record<string, string>> = {
 const MAX_SEED = 99;
 
 /** A switch for each transform; its parameters are visible while it is on. */
-export function transformControls(store: Store): Part {
-  const all = TRANSFORM_NAMES.map((name) => transformControl(store, name));
-  return {
-    element: make("div", { class: "transforms" }, ...all.map(({ element }) => element)),
-    show: (now) => all.forEach((one) => one.show(now)),
-  };
-}
+export const transformControls = (store: Store): Part =>
+  group({ class: "transforms" }, ...TRANSFORM_NAMES.map((name) => transformControl(store, name)));
 
 function transformControl(store: Store, name: TransformName): Part {
   const [label, hint] = NAMES[name];

@@ -1,9 +1,10 @@
 /** The walker that the changes start from: the average, one of the population, or the visitor's own. */
 
-import { walkerLabel } from "../model/axisLabels";
-import type { State } from "../model/state";
+import { endLabels, walkerLabel } from "../model/axisLabels";
+import { MAX_IN_CROWD, type SceneName, type State } from "../model/state";
 import { button, make } from "../page/elements";
-import { pick, type Option } from "./choice";
+import { choice, pick, type Option } from "./controls";
+import { bound, group, note } from "./parts";
 import type { Part, Store } from "./store";
 
 /** `open` lets the visitor choose files. */
@@ -17,7 +18,6 @@ export function walkerSelect(store: Store, open: () => void): Part {
   const holder = make("div");
   let shown: string | null | undefined;
   let list = pick("Walker", options, select);
-  /** The list contains the visitor's own walker once there is one. */
   const update = (own: string | null): void => {
     if (own === shown) return;
     shown = own;
@@ -44,6 +44,42 @@ export function walkerSelect(store: Store, open: () => void): Part {
     show({ state, own }) {
       update(own?.name ?? null);
       list.show(state.from);
+    },
+  };
+}
+
+/** Several walkers at once: means of two classes and both tripled, four at one tempo, a crowd. */
+export function sceneSelect(store: Store): Part {
+  const { model } = store;
+  const trait = model.traits.find(({ means }) => means !== null);
+  const several = model.walkers.length > 1;
+  const crowd = Math.min(model.walkers.length, MAX_IN_CROWD);
+  const options: Option<SceneName>[] = [
+    { value: "one", label: "One" },
+    ...(trait ? [{ value: "four" as const, label: "Means" }] : []),
+    ...(several ? [{ value: "side" as const, label: "Side by side" }, { value: "crowd" as const, label: "All" }] : []),
+  ];
+  const scene = choice("Scene", options, (value) => store.change({ scene: value }), { named: false });
+  const texts: Record<SceneName, string> = {
+    one: "One walker, changed by all the sliders.",
+    four: trait ? `Mean ${endLabels(trait).join(" and mean ")}; then both with what sets them apart tripled. Sliders of traits change one walker: to move one leaves this.` : "",
+    side: "Walkers of the population, brought to one tempo.",
+    crowd: `${crowd} walkers of the population. Choose one to see it alone.`,
+  };
+  const about = note("");
+  const names = model.walkers.map(({ name }, value) => ({ value, label: name }));
+  const places = store.state.walkers.map((_, place) => {
+    const one = pick(`Place ${place + 1}`, names, (walker) => store.change({ walkers: store.state.walkers.with(place, walker) }));
+    return bound(one, ({ walkers }) => walkers[place] ?? 0);
+  });
+  const row = group({ class: "places" }, ...places);
+  return {
+    ...group({}, scene.element, about, row),
+    show(now) {
+      scene.show(now.state.scene);
+      about.textContent = texts[now.state.scene];
+      row.element.hidden = now.state.scene !== "side";
+      row.show(now);
     },
   };
 }

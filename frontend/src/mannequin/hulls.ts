@@ -13,7 +13,6 @@ import { figureOf } from "../core/scene";
 import type { Stimulus, View } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 
-/** Numbers a hull. */
 export const HULL = 9;
 /** Nothing nearer to the eye than this is visible. */
 const NEAREST_MM = 1;
@@ -33,7 +32,6 @@ interface Ball {
   readonly radiusMm: number;
 }
 
-/** The pieces of one figure. */
 export type Mannequin = readonly { readonly balls: readonly [Ball, Ball]; readonly tone: number }[];
 
 /** The picture that hulls are drawn in. */

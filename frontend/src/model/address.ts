@@ -84,7 +84,6 @@ const CODES: { readonly [Part in CodedPart]: Code<State[Part]> } = {
 
 const CODED_PARTS = Object.keys(CODES) as CodedPart[];
 
-/** The fragment without "#"; empty for the initial state. */
 export function addressOf(state: State, model: Model): string {
   const initial = initialState(model);
   const words = CODED_PARTS.flatMap((part) => {

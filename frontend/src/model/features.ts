@@ -2,14 +2,14 @@
 
 import type { Walker } from "../core/stimulus";
 import type { Vector } from "../core/vector";
-import type { Model, Span } from "./model";
+import type { Model } from "./model";
 
 /** The lowest frequency of a walker: a caricature whose frequency would be lower gets this one. */
 export const MIN_FREQUENCY_HZ = 0.05;
 
 type HasLayout = Pick<Model, "layout">;
 
-export const blockOf = ({ layout }: HasLayout, block: string): Span | undefined =>
+export const blockOf = ({ layout }: HasLayout, block: string): Model["layout"][string] | undefined =>
   Object.hasOwn(layout, block) ? layout[block] : undefined;
 
 const cache = new WeakMap<Model["layout"], Map<string, readonly number[]>>();

@@ -66,7 +66,6 @@ function pathOf(markers: readonly string[], postures: readonly Float64Array[], n
   return Float64Array.from(postures, (positions) => positions[3 * marker + axis] ?? NaN);
 }
 
-/** The range of the mean of some paths. */
 function rangeOf(paths: readonly Path[]): number {
   const middles = paths[0]!.map((_, moment) => mean(paths.map((path) => path[moment]!)));
   return Math.max(...middles) - Math.min(...middles);

@@ -1,90 +1,130 @@
-/** The model of a page: a population, the variation in it, and the directions of its traits. */
+/** The model of a page: a population, the variation in it, and the directions of its traits; schemas and types. */
 
-import type { Link } from "../core/stimulus";
+import type { Checked, Schema } from "../core/schema";
 
 /** The direction that tells a trait best, or the difference between the means of its two ends. */
 export type Kind = "discriminant" | "mean_difference";
-
 export type Numbers = readonly number[];
 
-/** Columns of the features: from the first to before the second. */
-export type Span = readonly [number, number];
+const MAX_MARKERS = 200;
+const MAX_POSTURES = 32;
+const MAX_POINTS = 5000;
+const MAX_POPULATION = 10_000_000;
+/** Limit of the walkers that a page holds. */
+export const MAX_WALKERS = 100;
 
-export interface Eigenwalker {
-  /** One standard deviation of the walkers along it. */
-  readonly vector: Numbers;
-  readonly sd: number;
-  /** Share of the variance of standardised features. */
-  readonly share: number;
+const number = (minimum = -1e9, maximum = 1e9): Schema<number> => ({ type: "number", minimum, maximum });
+const integer = (minimum: number, maximum: number): Schema<number> => ({ type: "integer", minimum, maximum });
+const list = <T>(items: Schema<T>, minItems: number, maxItems = minItems): Schema<readonly T[]> => ({
+  type: "array", items, minItems, maxItems,
+});
+const pair = <T>(items: Schema<T>): Schema<readonly [T, T]> => ({ type: "array", items, minItems: 2, maxItems: 2 });
+export const numbers = (length: number): Schema<Numbers> => list(number(), length);
+const map = <T>(additionalProperties: Schema<T>): Schema<Readonly<Record<string, T>>> => ({
+  type: "object", additionalProperties, maxProperties: 1000,
+});
+const orNull = <T>(schema: Schema<T>): Schema<T | null> => ({ anyOf: [schema, { type: "null" }], default: null });
+const record = <Fields extends Record<string, Schema>>(
+  properties: Fields,
+): Schema<{ readonly [Name in keyof Fields]: Checked<Fields[Name]> }> => ({
+  type: "object",
+  properties,
+  required: Object.keys(properties).filter((name) => !("default" in properties[name]!)),
+});
+const positive = number(Number.MIN_VALUE);
+/** Text to show, never HTML. */
+const text: Schema<string> = { type: "string", maxLength: 2000 };
+const flag: Schema<boolean> = { type: "boolean" };
+
+export const HEAD = record({
+  format: { const: "eigenwalker model" } as Schema<"eigenwalker model">,
+  version: { const: 1 } as Schema<1>,
+  program: text,
+  title: text,
+  /** File of the population; empty for the built-in population. */
+  source: text,
+  simulated: flag,
+  provenance: map(text),
+  n_walkers: integer(1, MAX_POPULATION),
+  /** Walkers of doubtful captures, which are left out. */
+  n_flagged: integer(0, MAX_POPULATION),
+  markers: list(text, 1, MAX_MARKERS),
+  form: { enum: ["eigenposture", "fourier"] } as Schema<"eigenposture" | "fourier">,
+  harmonics: list(integer(1, 64), 1, MAX_POSTURES),
+});
+
+export function bodySchema({ markers, harmonics }: Checked<typeof HEAD>) {
+  const marker: Schema<string> = { enum: markers };
+  const links = list(pair(marker), 0, 1000);
+  return record({
+    segments: links,
+    pairs: links,
+    groups: map(list(marker, 0, 100_000)),
+    /** For each posture its phase; null if the phase is a feature. */
+    fixed_phases: list(orNull(number(-1000, 1000)), harmonics.length),
+    /** For each block of the features, its columns from the first to before the second. */
+    layout: map(pair(integer(0, 100_000))),
+  });
 }
 
-export interface KnownWalker {
-  readonly name: string;
-  /** Its number in the population. */
-  readonly row: number;
-  readonly vector: Numbers;
-  readonly traits: Readonly<Record<string, string | number | boolean | null>>;
+export function featureSchema(size: number) {
+  const vector = numbers(size);
+  const steps = map({} as Schema<Numbers>);
+  const trait = record({
+    /** As an argument of Python's `trait_axis`. */
+    name: text,
+    /** Its column in the traits of the walkers. */
+    column: text,
+    label: text,
+    unit: text,
+    negative: text,
+    positive: text,
+    two_classes: flag,
+    /** One standard deviation of the walkers along the trait, for the columns of each part. */
+    steps: record({ discriminant: steps, mean_difference: steps }),
+    /** The position of a walker along the trait: offset + gradient . vector. */
+    projection: record({ gradient: vector, offset: number() }),
+    /** Mean walkers of two classes. */
+    means: orNull(record({ negative: vector, positive: vector })),
+  });
+  const traitValue = { anyOf: [flag, { type: "null" }, number(), text] } as Schema<string | number | boolean | null>;
+  /** The vector is one standard deviation of the walkers; share is that of the standardised variance. */
+  const eigenwalker = record({ vector, sd: positive, share: number(0, 1) });
+  /** Row is the number in the population. */
+  const walker = record({ name: text, row: integer(0, MAX_POPULATION), vector, traits: map(traitValue) });
+  return record({
+    average: vector,
+    scale: list(positive, size),
+    eigenwalkers: list(eigenwalker, 0, 100),
+    /** Root mean square distance from the average; the distances of the walkers in units of it. */
+    spread: record({ rms: number(0), distances: list(number(0), 1, MAX_POINTS) }),
+    walkers: list(walker, 0, MAX_WALKERS),
+    traits: list(trait, 0, 100),
+  });
 }
 
-export interface Trait {
-  /** As an argument of Python's `trait_axis`. */
-  readonly name: string;
-  /** Its column in the traits of the walkers. */
-  readonly column: string;
-  readonly label: string;
-  readonly unit: string;
-  readonly negative: string;
-  readonly positive: string;
-  readonly two_classes: boolean;
-  /** One standard deviation of the walkers along the trait, for the columns of each part. */
-  readonly steps: Readonly<Record<Kind, Readonly<Record<string, Numbers>>>>;
-  /** The position of a walker along the trait: offset + gradient . vector. */
-  readonly projection: { readonly gradient: Numbers; readonly offset: number };
-  /** Mean walkers of two classes. */
-  readonly means: { readonly negative: Numbers; readonly positive: Numbers } | null;
-}
+export const COUNT = record({ cloud: record({ n: integer(0, MAX_POINTS) }) });
 
 /** The walkers of the population as points; at most as many as the page has room for. */
-export interface Cloud {
-  readonly n: number;
-  /** For each point, its scores on the eigenwalkers in standard deviations. */
-  readonly scores: readonly Numbers[];
-  /** For each point, its number among the model's walkers; -1 if it is not one of them. */
-  readonly walker: Numbers;
-}
+export const cloudSchema = (n: number, { eigenwalkers, walkers }: Checked<ReturnType<typeof featureSchema>>) =>
+  record({
+    cloud: record({
+      n: integer(n, n),
+      /** For each point, its scores on the eigenwalkers in standard deviations. */
+      scores: list(numbers(eigenwalkers.length), n),
+      /** For each point, its number among the model's walkers; -1 if it is not one of them. */
+      walker: list(integer(-1, walkers.length - 1), n),
+    }),
+  });
 
-export interface Model {
-  readonly format: "eigenwalker model";
-  readonly version: 1;
-  readonly program: string;
-  readonly title: string;
-  /** File of the population; empty for the built-in population. */
-  readonly source: string;
+type Part<F extends (...values: never[]) => Schema> = Checked<ReturnType<F>>;
+
+export type Model = Checked<typeof HEAD> & Part<typeof bodySchema> & Part<typeof featureSchema> & Part<typeof cloudSchema> & {
   /** Name of the captures that the server has just made into this population. */
   readonly captures?: string;
-  readonly simulated: boolean;
-  readonly provenance: Readonly<Record<string, string>>;
-  readonly n_walkers: number;
-  /** Walkers of doubtful captures, which are left out. */
-  readonly n_flagged: number;
-  readonly markers: readonly string[];
-  readonly segments: readonly Link[];
-  readonly pairs: readonly Link[];
-  readonly groups: Readonly<Record<string, readonly string[]>>;
-  readonly form: "eigenposture" | "fourier";
-  readonly harmonics: Numbers;
-  /** For each posture its phase; null if the phase is a feature. */
-  readonly fixed_phases: readonly (number | null)[];
-  readonly layout: Readonly<Record<string, Span>>;
-  readonly average: Numbers;
-  readonly scale: Numbers;
-  readonly eigenwalkers: readonly Eigenwalker[];
-  /** Root mean square distance from the average; the distances of the walkers in units of it. */
-  readonly spread: { readonly rms: number; readonly distances: Numbers };
-  readonly walkers: readonly KnownWalker[];
-  readonly cloud: Cloud;
-  readonly traits: readonly Trait[];
-}
+};
+export type Trait = Model["traits"][number];
+export type KnownWalker = Model["walkers"][number];
 
 /** A walker that is not in the population: a visitor's own capture or stimulus. */
 export interface OwnWalker {

@@ -4,7 +4,7 @@
  * A state is never changed in place: `{ ...state, tempo: 2 }` is the next one.
  */
 
-import type { Kind, Model } from "./model";
+import { MAX_WALKERS, type Kind, type Model } from "./model";
 
 /** One walker; the means of two classes and both tripled; four at one tempo; up to a hundred. */
 export type SceneName = "one" | "four" | "side" | "crowd";
@@ -66,7 +66,7 @@ export const RANGES = {
 } as const satisfies Record<string, readonly [number, number]>;
 
 export const MAX_SIDE_BY_SIDE = 4;
-export const MAX_IN_CROWD = 100;
+export const MAX_IN_CROWD = MAX_WALKERS;
 
 /** A parameter of a transform that a visitor can set. */
 export type Field =
@@ -121,15 +121,12 @@ export const TRANSFORM_NAMES = Object.keys(TRANSFORMS) as TransformName[];
 
 type Setting<F> = F extends { readonly choices: readonly (infer Choice)[] } ? Choice : number;
 
-/** The parameters of one transform. */
 export type Settings<Name extends TransformName> = {
   readonly [F in keyof (typeof TRANSFORMS)[Name]]: Setting<(typeof TRANSFORMS)[Name][F]>;
 };
 
-/** The transforms that are switched on, with their parameters. */
 export type Transforms = { readonly [Name in TransformName]?: Settings<Name> };
 
-/** The fields of a transform, without their exact types. */
 export const fieldsOf = (name: TransformName): Readonly<Record<string, Field>> => TRANSFORMS[name];
 
 /** The parameters of a transform when it is switched on. */
@@ -138,7 +135,6 @@ export function initialSettings<Name extends TransformName>(name: Name): Setting
   return Object.fromEntries(fields.map(([field, { initial }]) => [field, initial])) as Settings<Name>;
 }
 
-/** The state of a new page. */
 export function initialState(model: Model): State {
   return {
     traits: {},

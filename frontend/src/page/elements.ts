@@ -16,7 +16,6 @@ export function make<Tag extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** An SVG element. */
 export function draw<Tag extends keyof SVGElementTagNameMap>(
   tag: Tag,
   attributes: Attributes = {},
@@ -62,7 +61,6 @@ export function signed(value: number, digits = 1): string {
   return (value < 0 ? "\u2212" : "+") + size;
 }
 
-/** The message of anything thrown. */
 export const messageOf = (error: unknown): string =>
   error instanceof Error && error.message ? error.message : String(error);
 

@@ -2,14 +2,14 @@
 
 import { framesOf } from "../canvas/figureFrames";
 import type { MannequinPainter } from "../canvas/mannequinLoader";
-import { drawingOf } from "../canvas/painter";
+import { drawDots, drawingOf, drawSticks, linksOf } from "../canvas/painter";
 import type { Step } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import type { State } from "../model/state";
 import type { Arrangement, Size } from "./arrangement";
-import { clear, drawDots, drawGround, drawSticks, drawTrails, paletteOf, type Brush } from "./drawing";
+import { clear, drawGround, drawTrails, paletteOf, type Brush } from "./drawing";
 import { isPlain } from "./transformChain";
 import { arrangedStimulus, DURATION_S } from "./viewedStimulus";
 import { WalkerBatch, type ViewPoint } from "./walkerBatch";
@@ -65,7 +65,7 @@ function plainAnimation(spec: AnimationSpec): ViewerAnimation {
     batch.rates[i] = rate;
     batch.starts[i] = spec.phases[i]! - rate * spec.time;
   });
-  const links = Uint16Array.from(segments.flat().map((name) => markers.indexOf(name)));
+  const links = linksOf(markers, segments);
   const few = figures.length <= MAX_WITH_TRAILS;
   let { arrangement } = spec;
   let { azimuth_deg, elevation_deg } = state;
@@ -87,8 +87,9 @@ function plainAnimation(spec: AnimationSpec): ViewerAnimation {
       if (few) drawGround(brush, arrangement, view, size);
       if (few && state.trails) drawTrails(brush, project, time, batch.places.length);
       project(time, batch.places);
-      if (state.style !== "dots") drawSticks(brush, batch.places, links, batch.nDots);
-      drawDots(brush, batch.places, batch.nDots);
+      context.fillStyle = context.strokeStyle = brush.palette.colour;
+      if (state.style !== "dots") drawSticks(context, batch.places, batch.nDots, links, brush.dotPx);
+      drawDots(context, batch.places, batch.nDots, brush.dotPx);
     },
   };
 }

@@ -1,6 +1,5 @@
-/** Dots, sticks, trails and the ground of many walkers, with few calls to the canvas. */
+/** Background, trails and ground of the viewer. */
 
-import { STICK_WIDTH } from "../canvas/painter";
 import { dot, type Vector } from "../core/vector";
 import type { Arrangement, Size } from "./arrangement";
 import type { ViewPoint } from "./walkerBatch";
@@ -37,41 +36,6 @@ export function clear({ context, palette }: Brush, { width_px, height_px }: Size
   context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   context.fillStyle = palette.background;
   context.fillRect(0, 0, width_px, height_px);
-}
-
-/** One path for each walker: a single path of all dots is slower to fill. */
-export function drawDots({ context, palette, dotPx }: Brush, places: Float64Array, nDots: number): void {
-  const radius = dotPx / 2;
-  context.fillStyle = palette.colour;
-  for (let from = 0; from < places.length; from += 2 * nDots) {
-    context.beginPath();
-    for (let i = from; i < from + 2 * nDots; i += 2) {
-      context.moveTo(places[i]! + radius, places[i + 1]!);
-      context.arc(places[i]!, places[i + 1]!, radius, 0, 2 * Math.PI);
-    }
-    context.fill();
-  }
-}
-
-/** `segments` has pairs of numbers of dots. */
-export function drawSticks(
-  { context, palette, dotPx }: Brush,
-  places: Float64Array,
-  segments: Uint16Array,
-  nDots: number,
-): void {
-  context.strokeStyle = palette.colour;
-  context.lineWidth = Math.max(STICK_WIDTH * dotPx, 1);
-  context.lineCap = "round";
-  for (let from = 0; from < places.length; from += 2 * nDots) {
-    context.beginPath();
-    for (let i = 0; i < segments.length; i += 2) {
-      const [one, other] = [from + 2 * segments[i]!, from + 2 * segments[i + 1]!];
-      context.moveTo(places[one]!, places[one + 1]!);
-      context.lineTo(places[other]!, places[other + 1]!);
-    }
-    context.stroke();
-  }
 }
 
 /** The paths of the dots in the last moments, fading; `project` gives the places at a time. */

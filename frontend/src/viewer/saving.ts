@@ -73,7 +73,6 @@ function mannequinScript({ display }: Stimulus): string {
   return `<script id="mannequin" type="text/plain">${module}</script>`;
 }
 
-/** A text that the page holds as JSON. */
 function textInPage(id: string): string | null {
   const content = document.querySelector(`script#${id}`)?.textContent?.trim() ?? "";
   const text: unknown = content === "" ? null : JSON.parse(content);
@@ -144,7 +143,6 @@ function fileName({ figures, state }: Snapshot): string {
   return whole.replace(/[^\p{L}\p{N}+._-]+/gu, "-").slice(0, 80).replace(/^[-.]+/, "") || "walker";
 }
 
-/** Save a file with the browser. */
 export function download({ name, blob }: SavedFile): void {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

@@ -59,7 +59,6 @@ const STEPS: { readonly [Name in TransformName]: MakeStep<Name> } = {
   }),
 };
 
-/** Whether no transform is switched on. */
 export const isPlain = ({ transforms }: Pick<State, "transforms">): boolean =>
   Object.keys(transforms).length === 0;
 

@@ -13,7 +13,6 @@ import { watchGestures } from "./dragging";
 import { extentFor } from "./viewedStimulus";
 import { watchSize, watchVisibility } from "./visibility";
 
-/** Functions that the viewer calls. */
 export interface ViewerEvents {
   /** It was turned by dragging. */
   turned?(azimuth_deg: number, elevation_deg: number): void;
@@ -34,7 +33,6 @@ export interface ViewerEvents {
 
 type View = Pick<State, "azimuth_deg" | "elevation_deg">;
 
-/** What is shown. */
 interface Shown {
   readonly model: Model;
   readonly figures: readonly SceneFigure[];
@@ -112,7 +110,6 @@ export class Viewer {
     return strides - Math.floor(strides);
   }
 
-  /** The mannequin painter, once it is loaded. */
   get mannequin(): MannequinPainter | null {
     return this.#mannequin;
   }
@@ -127,54 +124,47 @@ export class Viewer {
     if (state.turning_deg_s === 0) this.#keepTurned();
     const scrubbed = before && !state.playing && before.state.cycle !== state.cycle;
     if (scrubbed) this.#rebuild(state.cycle - this.phase);
-    else if (!this.#built || !sameAnimation(this.#built, this.#shown)) this.#rebuild();
-    else if (!sameView(this.#built.state, state)) this.#changeView();
-    else this.#wake();
+    else this.#update();
   }
 
-  /** Stop for good. */
   remove(): void {
     this.#sleep();
     for (const end of this.#endings) end();
     this.#shown = null;
   }
 
+  /** Follow the state: with the present animation if possible, else with a new one. */
+  #update(): void {
+    const [shown, built] = [this.#shown, this.#built];
+    if (!shown || !built || !sameAnimation(built, shown)) return this.#rebuild();
+    const { azimuth_deg, elevation_deg } = { ...shown.state, ...this.#hand };
+    if (built.state.azimuth_deg === azimuth_deg && built.state.elevation_deg === elevation_deg) return this.#wake();
+    const arrangement = this.#arrange(shown, elevation_deg);
+    if (!this.#animation?.turn(azimuth_deg, elevation_deg, arrangement)) return this.#rebuild();
+    this.#built = { ...built, state: { ...built.state, azimuth_deg, elevation_deg } };
+    this.#wake();
+  }
+
   /** Make a new animation; each walker keeps its phase, or moves on by a number of strides. */
   #rebuild(strides = 0): void {
     const shown = this.#shown;
     if (!shown || this.#size.width_px === 0 || this.#size.height_px === 0) return;
-    const { model, figures } = shown;
     const state = { ...shown.state, ...this.#hand };
-    const arrangement = this.#arrange(shown, state);
-    const [size, time, mannequin] = [this.#size, this.#time, this.#mannequin];
-    const phases = figures.map((_, i) => strides + this.#phaseOf(i, shown.state));
-    const turned_deg = this.#turnedBy(time);
-    this.#animation = animationOf({ model, figures, state, size, arrangement, phases, time, turned_deg, mannequin });
-    this.#built = { model, figures, state, time, turned_deg };
-    this.#setArrangement(arrangement);
+    const arrangement = this.#arrange(shown, state.elevation_deg);
+    const phases = shown.figures.map((_, i) => strides + this.#phaseOf(i, shown.state));
+    const [time, turned_deg] = [this.#time, this.#turnedBy(this.#time)];
+    this.#built = { ...shown, state, time, turned_deg };
+    this.#animation = animationOf({ ...this.#built, size: this.#size, arrangement, phases, mannequin: this.#mannequin });
+    this.#wake();
   }
 
-  /** Show the same animation from another view. */
-  #changeView(): void {
-    const [shown, built] = [this.#shown, this.#built];
-    if (!shown || !built) return;
-    const { azimuth_deg, elevation_deg } = { ...shown.state, ...this.#hand };
-    const state = { ...built.state, azimuth_deg, elevation_deg };
-    const arrangement = this.#arrange(shown, state);
-    if (!this.#animation?.turn(azimuth_deg, elevation_deg, arrangement)) return this.#rebuild();
-    this.#built = { ...built, state };
-    this.#setArrangement(arrangement);
-  }
-
-  #arrange({ model, figures }: Shown, { elevation_deg }: State): Arrangement {
+  /** Arrange the figures, and report their cells. */
+  #arrange({ model, figures }: Shown, elevationDeg: number): Arrangement {
     if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(model, figures) };
-    return arrange(figures.length, this.#extent.extent, this.#size, elevation_deg);
-  }
-
-  #setArrangement(arrangement: Arrangement): void {
+    const arrangement = arrange(figures.length, this.#extent.extent, this.#size, elevationDeg);
     this.#boxes = boxesOf(arrangement, this.#size);
     this.#events.arranged?.(this.#boxes);
-    this.#wake();
+    return arrangement;
   }
 
   /** The angle by which it has turned by itself. */
@@ -259,7 +249,7 @@ export class Viewer {
     const from = this.#hand ?? this.#shown?.state;
     if (!from) return;
     this.#hand = viewFrom(from.azimuth_deg + DEGREES_PER_PX * right, from.elevation_deg + DEGREES_PER_PX * down);
-    this.#changeView();
+    this.#update();
     this.#reportHand();
   }
 
@@ -280,7 +270,6 @@ export class Viewer {
     });
   }
 
-  /** Report the walker in whose cell a place is. */
   #pick(x: number, y: number): void {
     const figures = this.#shown?.figures ?? [];
     const number = this.#boxes.findIndex(
@@ -299,7 +288,6 @@ export class Viewer {
     this.#animation?.draw(this.#context, this.#time, this.#pixelRatio);
   }
 
-  /** Draw only while visible. */
   #setVisible(visible: boolean): void {
     this.#visible = visible;
     if (visible) this.#wake();
