@@ -195,12 +195,12 @@ def test_a_damaged_checkpoint_costs_time_and_nothing_else(folder, tmp_path, dama
 
 
 def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:
-    def killed(where: Path, name: str, settings: dict, made=fitting._attempt):
+    def killed(where: Path, name: str, settings: dict, made=fitting._outcome):
         if name == "men/male_4.c3d":
             os.kill(os.getpid(), signal.SIGKILL)
         return made(where, name, settings)
 
-    monkeypatch.setattr(fitting, "_attempt", killed)
+    monkeypatch.setattr(fitting, "_outcome", killed)
     found = fit_folder(folder, n_jobs=2)
     reasons = found.refused.set_index("file")["reason"]
     assert reasons.index.tolist() == ["female_1.c3d", "female_2.c3d", "men/male_4.c3d"]

@@ -50,34 +50,25 @@ def walker_measures(walker: Walker) -> pd.Series:
     True
 
     """
-    stride = walker.trajectories(np.arange(N_MOMENTS) * walker.period_s / N_MOMENTS).values
-    trunk = ("pelvis",) if "pelvis" in walker.markers else ("left_hip", "right_hip")
-    apart = {part: _apart(walker, part) for part in ("shoulder", "hip", "elbow")}
+    stride = walker.trajectories(np.arange(N_MOMENTS) * walker.period_s / N_MOMENTS)
+    trunk = ["pelvis"] if "pelvis" in walker.markers else ["left_hip", "right_hip"]
+
+    def apart(part: str) -> np.ndarray:
+        pair = walker.mean_posture.reindex(marker=[f"left_{part}", f"right_{part}"])
+        return pair.values[0] - pair.values[1]
+
+    def span(names: list[str], axis: str) -> float:
+        path = stride.reindex(marker=names).sel(axis=axis).mean("marker", skipna=False)
+        return float(np.ptp(path.values))
+
     return pd.Series(
         {
-            "shoulder_width_mm": float(np.linalg.norm(apart["shoulder"])),
-            "hip_width_mm": float(np.linalg.norm(apart["hip"])),
-            "elbow_distance_mm": float(apart["elbow"][1]),
-            "lateral_sway_mm": _range(walker, stride, ("left_shoulder", "right_shoulder"), axis=1),
-            "vertical_movement_mm": _range(walker, stride, trunk, axis=2),
+            "shoulder_width_mm": float(np.linalg.norm(apart("shoulder"))),
+            "hip_width_mm": float(np.linalg.norm(apart("hip"))),
+            "elbow_distance_mm": float(apart("elbow")[1]),
+            "lateral_sway_mm": span(["left_shoulder", "right_shoulder"], "y"),
+            "vertical_movement_mm": span(trunk, "z"),
             "frequency_hz": walker.frequency_hz,
             "stride_length_mm": ground_speed(walker) / walker.frequency_hz,
         }
     )
-
-
-def _apart(walker: Walker, part: str) -> np.ndarray:
-    """Return the vector from the right joint to the left one in the mean posture, or NaN."""
-    sides = [f"{side}_{part}" for side in ("left", "right")]
-    if not set(sides) <= set(walker.markers):
-        return np.full(3, np.nan)
-    left, right = (walker.p0[walker.markers.index(name)] for name in sides)
-    return left - right
-
-
-def _range(walker: Walker, stride: np.ndarray, names: tuple[str, ...], *, axis: int) -> float:
-    """Return the range of the middle of some markers along an axis over a stride, or NaN."""
-    if not set(names) <= set(walker.markers):
-        return float("nan")
-    places = [walker.markers.index(name) for name in names]
-    return float(np.ptp(stride[:, places, axis].mean(axis=1)))

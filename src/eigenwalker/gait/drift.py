@@ -21,17 +21,7 @@ N_HARMONICS = 4
 def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     """Return the constant velocity of a movement that otherwise repeats with every stride.
 
-    Parameters
-    ----------
-    path : array of shape (time, axis)
-        Positions of the body.
-    cycles : array of shape (time,)
-        Time in strides.
-
-    Returns
-    -------
-    array of shape (axis,)
-        Millimetres a stride.
+    Shapes: path (time, axis); cycles (time,); returns (axis,).
 
     Examples
     --------
@@ -53,18 +43,7 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
     four harmonics of the stride, to which the drift therefore does not add.
 
-    Parameters
-    ----------
-    path : array of shape (time, axis)
-        Positions of the body.
-    cycles : array of shape (time,)
-        Time in strides, evenly spaced.
-
-    Returns
-    -------
-    array of shape (time, axis)
-        The drift; its mean is that of the path without its harmonics.
-
+    Shapes: path (time, axis); cycles (time,); returns (time, axis).
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         line = np.multiply.outer(cycles - cycles.mean(), _velocity_of_one_stride(path, cycles))

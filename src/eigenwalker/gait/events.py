@@ -9,8 +9,8 @@ from scipy.ndimage import maximum_filter1d
 
 from eigenwalker.core.smoothing import parabola_vertex
 from eigenwalker.core.trajectories import check_trajectories
+from eigenwalker.gait.body_points import SIDES, pelvis_path
 from eigenwalker.gait.frequency import fundamental_frequency
-from eigenwalker.gait.heading import SIDES
 
 HEEL_STRIKE = "heel_strike"
 TOE_OFF = "toe_off"
@@ -79,7 +79,7 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
             f"{sorted(place)}; map the markers with virtual_markers()."
         )
     frequency_hz = fundamental_frequency(walk)
-    forward = walk.values[:, :, 0] - _pelvis(walk.values, place)[:, :1]
+    forward = walk.values[:, :, 0] - pelvis_path(walk.values, list(place))[:, :1]
     time = walk.time.values
     separation = max(1, round(_SEPARATION / frequency_hz / np.diff(time).mean()))
     events = [
@@ -90,14 +90,6 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
         for moment in _peak_times(sign * forward[:, place[marker]], time, separation)
     ]
     return pd.DataFrame(sorted(events), columns=["time_s", "side", "event", "marker"])
-
-
-def _pelvis(positions: np.ndarray, place: dict[str, int]) -> np.ndarray:
-    """Return the path of the pelvis, else of the middle of the hips, else of all markers."""
-    for names in (["pelvis"], ["left_hip", "right_hip"]):
-        if set(names) <= set(place):
-            return positions[:, [place[name] for name in names]].mean(axis=1)
-    return positions.mean(axis=1)
 
 
 def _peak_times(values: np.ndarray, time: np.ndarray, separation: int) -> list[float]:

@@ -18,23 +18,7 @@ def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.n
 
     A Butterworth filter of second order, run forwards and backwards.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        NaN where missing; each marker is filtered between its gaps.
-    rate_hz : float
-        Frames a second.
-    cut_off_hz : float
-        Below half the rate; 6 Hz is usual for walking.
-
-    Returns
-    -------
-    array of shape (time, marker, axis)
-
-    Raises
-    ------
-    ValueError
-        If the cut-off is not between 0 and half the rate.
+    Shapes: positions (time, marker, axis); returns (time, marker, axis).
 
     References
     ----------

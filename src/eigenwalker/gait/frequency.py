@@ -152,15 +152,7 @@ def frequency_of_centred(
 ) -> float:
     """Return the same as `frequency_of_scores`, of columns whose mean is 0.
 
-    Parameters
-    ----------
-    centred : array of shape (time, component)
-        Evenly sampled.
-    rate_hz, n_harmonics, bounds_hz, trend
-        As there.
-    least : float
-        Root mean square below which nothing moves.
-
+    Shapes: centred (time, component).
     """
     n_frames = len(centred)
     if n_harmonics < 1:

@@ -42,19 +42,7 @@ def fill_short_gaps(
 
     Gaps at the ends of the capture are never filled.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        NaN where a marker was not seen.
-    rate_hz : float
-        Frames a second.
-    max_gap_s : float
-        Longest gap that is filled, in seconds.
-
-    Returns
-    -------
-    filled : array of shape (time, marker, axis)
-    left : list of Gap
+    Shapes: positions (time, marker, axis); filled (time, marker, axis).
 
     Examples
     --------

@@ -10,8 +10,7 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker
-
-SIDES = ("left", "right")
+from eigenwalker.gait.body_points import SIDES, facing_by_names, legs_of, paths_of
 
 STANCE_SHARE = 0.35
 """Share of the cycle in which an ankle is lowest: foot flat, hardly moving on the ground."""
@@ -60,19 +59,7 @@ def find_heading(
     on the belt; where feet are not known, hips and shoulders show the direction. Someone who walks
     backwards or sideways still faces +x: the speed along it is then negative, or small.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        Whole strides without progress.
-    markers : sequence of str
-        Their names.
-    progress : array of shape (2,)
-        Horizontal velocity of the progress, in mm/s.
-    frequency_hz : float
-        Strides a second.
-    rate_hz : float
-        Frames a second.
-
+    Shapes: positions (time, marker, axis); progress (2,).
     """
     facing = _facing(positions, markers)
     ground = ground_velocity(positions, markers, rate_hz)
@@ -115,13 +102,10 @@ def ground_velocity(
 
     The mean over both ankles of their velocity while they are low and move with the ground.
     """
-    names = list(markers)
-    ankles = [f"{side}_ankle" for side in SIDES]
-    if not set(ankles) <= set(names):
+    ankles = paths_of(positions, markers, [f"{side}_ankle" for side in SIDES])
+    if ankles is None:
         return None
-    return np.mean(
-        [_while_standing(positions[:, names.index(ankle)], rate_hz) for ankle in ankles], axis=0
-    )
+    return np.mean([_while_standing(path, rate_hz) for path in ankles.swapaxes(0, 1)], axis=0)
 
 
 def _while_standing(path: np.ndarray, rate_hz: float) -> np.ndarray:
@@ -198,8 +182,11 @@ def ground_speed(walker: Walker) -> float:
 
 def sides_swapped(positions: np.ndarray, markers: Sequence[str]) -> bool:
     """Return whether knees bend backwards if the hips and shoulders called left are on the left."""
-    facing, bend = _facing_by_names(positions, markers), _knee_bend(positions, markers)
-    return facing is not None and bend is not None and bool(facing @ bend < -STRAIGHT_KNEE_MM)
+    facing, legs = _facing_by_names(positions, markers), legs_of(positions, markers)
+    if facing is None or not legs:
+        return False
+    bends = [leg[:, 1] - (leg[:, 0] + leg[:, 2]) / 2 for leg in legs]
+    return bool(facing @ np.mean(bends, axis=(0, 1))[:2] < -STRAIGHT_KNEE_MM)
 
 
 def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
@@ -212,31 +199,8 @@ def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
 
 
 def _facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return the unit vector square to the lines through both hips and both shoulders."""
-    place = {name: index for index, name in enumerate(markers)}
-    pairs = [
-        (place[f"left_{part}"], place[f"right_{part}"])
-        for part in ("hip", "shoulder")
-        if f"left_{part}" in place and f"right_{part}" in place
-    ]
-    if not pairs:
+    facing = facing_by_names(positions, markers)
+    if facing is None:
         return None
-    posture = positions.mean(axis=0)[:, :2]
-    to_left = np.sum([posture[left] - posture[right] for left, right in pairs], axis=0)
-    return np.array([to_left[1], -to_left[0]]) / max(_length(to_left), 1e-9)
-
-
-def _knee_bend(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return the mean horizontal vector to the knees from the middle between hips and ankles."""
-    place = {name: index for index, name in enumerate(markers)}
-    legs = [
-        [place[f"{side}_{joint}"] for joint in ("hip", "knee", "ankle")]
-        for side in SIDES
-        if all(f"{side}_{joint}" in place for joint in ("hip", "knee", "ankle"))
-    ]
-    if not legs:
-        return None
-    posture = positions.mean(axis=0)[:, :2]
-    return np.mean(
-        [posture[knee] - (posture[hip] + posture[ankle]) / 2 for hip, knee, ankle in legs], axis=0
-    )
+    mean = facing.mean()
+    return np.array([mean.real, mean.imag]) / max(abs(mean), 1e-9)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-from typing import NamedTuple
-
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Walker
+from eigenwalker.gait.body_points import SIDES
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF, gait_events
 from eigenwalker.gait.frequency import fundamental_frequency
-from eigenwalker.gait.heading import SIDES, stance_speed
+from eigenwalker.gait.heading import stance_speed
 from eigenwalker.gait.in_place import in_place
 
 _STRIDES_PLAYED = 3
@@ -95,28 +93,23 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     speed = float(speed if speed_mm_s is None else speed_mm_s)
     if not np.isfinite(speed):
         speed = stance_speed(walk)
-    times = {
-        (side, event): events.query("side == @side and event == @event").time_s.to_numpy()
-        for side in SIDES
-        for event in (HEEL_STRIKE, TOE_OFF)
-    }
-    steps = _steps(walk, times, speed)
-    stance = [
-        _stance(times[side, HEEL_STRIKE], times[side, TOE_OFF], frequency_hz) for side in SIDES
-    ]
-    stride_times = np.concatenate([np.diff(times[side, HEEL_STRIKE]) for side in SIDES])
+    times = {key: rows.to_numpy() for key, rows in events.groupby(["side", "event"])["time_s"]}
+    strikes = [times.get((side, HEEL_STRIKE), np.empty(0)) for side in SIDES]
+    offs = [times.get((side, TOE_OFF), np.empty(0)) for side in SIDES]
+    left_mm, right_mm, width_mm = _steps(walk, events[events["event"] == HEEL_STRIKE], speed)
+    stance = [_stance(*each, frequency_hz) for each in zip(strikes, offs, strict=True)]
     return pd.Series(
         {
             "frequency_hz": frequency_hz,
             "cadence_steps_min": 120 * frequency_hz,
             "speed_mm_s": speed,
             "stride_time_s": 1 / frequency_hz,
-            "stride_time_cv": _variation(stride_times),
+            "stride_time_cv": _variation(np.concatenate([np.diff(each) for each in strikes])),
             "stride_length_mm": speed / frequency_hz,
-            "step_length_left_mm": steps.left_mm,
-            "step_length_right_mm": steps.right_mm,
-            "step_width_mm": steps.width_mm,
-            "step_asymmetry": _asymmetry(steps.left_mm, steps.right_mm),
+            "step_length_left_mm": left_mm,
+            "step_length_right_mm": right_mm,
+            "step_width_mm": width_mm,
+            "step_asymmetry": _asymmetry(left_mm, right_mm),
             "stance_share_left": stance[0],
             "stance_share_right": stance[1],
             "stance_asymmetry": _asymmetry(*stance),
@@ -126,52 +119,39 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     )
 
 
-class _Steps(NamedTuple):
-    left_mm: float
-    right_mm: float
-    width_mm: float
-
-
-def _steps(walk: xr.DataArray, times: dict[tuple[str, str], np.ndarray], speed: float) -> _Steps:
-    """Return mean step lengths and width, from the places of the ankles at heel strikes."""
-    time = walk.time.values
-    strikes = []
-    for side in SIDES:
-        path = walk.sel(marker=f"{side}_ankle").values
-        for moment in times[side, HEEL_STRIKE]:
-            forward, sideways = (np.interp(moment, time, path[:, axis]) for axis in (0, 1))
-            strikes.append((moment, side, forward + speed * moment, sideways))
-    strikes.sort()
-    lengths: dict[str, list[float]] = {side: [] for side in SIDES}
-    widths = []
-    for (_, before, start, there), (_, side, stop, here) in pairwise(strikes):
-        if side != before:
-            lengths[side].append(stop - start)
-            widths.append(here - there if side == "left" else there - here)
-    return _Steps(_mean(lengths["left"]), _mean(lengths["right"]), _mean(widths))
+def _steps(walk: xr.DataArray, strikes: pd.DataFrame, speed: float) -> tuple[float, float, float]:
+    """Return mean lengths of left and right steps and mean width, in mm, from heel strikes."""
+    side, moments = strikes["side"].to_numpy(), strikes["time_s"].to_numpy()
+    ankles = {name: walk.sel(marker=f"{name}_ankle").values for name in SIDES}
+    x, y = (
+        [
+            np.interp(moment, walk.time.values, ankles[name][:, axis])
+            for name, moment in zip(side, moments, strict=True)
+        ]
+        for axis in (0, 1)
+    )
+    forward, to_left = np.diff(x + speed * moments), np.diff(y)
+    left, is_step = side[1:] == "left", side[1:] != side[:-1]
+    lengths = (_mean(forward[is_step & (left == is_left)]) for is_left in (True, False))
+    return *lengths, _mean(np.where(left, to_left, -to_left)[is_step])
 
 
 def _stance(strikes: np.ndarray, offs: np.ndarray, frequency_hz: float) -> float:
     """Return the mean share of the stride from each heel strike to the toe off that follows."""
-    shares = [
-        (offs[offs > strike][0] - strike) * frequency_hz
-        for strike in strikes
-        if (offs > strike).any()
-    ]
-    return _mean([share for share in shares if share < 1])
+    next_off = np.searchsorted(offs, strikes, side="right")
+    known = next_off < len(offs)
+    shares = (offs[next_off[known]] - strikes[known]) * frequency_hz
+    return _mean(shares[shares < 1])
 
 
 def _vertical_range(walk: xr.DataArray, frequency_hz: float) -> float:
     """Return the mean over strides of the vertical range of the pelvis, or of the hips' middle."""
-    names = set(walk.marker.values.tolist())
-    trunk = ["pelvis"] if "pelvis" in names else ["left_hip", "right_hip"]
-    if not set(trunk) <= names:
-        return float("nan")
-    height = walk.sel(marker=trunk, axis="z").mean("marker").values
+    trunk = ["pelvis"] if "pelvis" in walk.marker else ["left_hip", "right_hip"]
+    height = walk.reindex(marker=trunk).sel(axis="z").mean("marker", skipna=False).values
     time = walk.time.values
     stride = ((time - time[0]) * frequency_hz + 1e-6).astype(int)
     whole = np.arange(max(1, round((time[-1] - time[0]) * frequency_hz)))
-    return _mean([np.ptp(height[stride == number]) for number in whole])
+    return _mean(np.array([np.ptp(height[stride == number]) for number in whole]))
 
 
 def _variation(values: np.ndarray) -> float:
@@ -183,5 +163,5 @@ def _asymmetry(left: float, right: float) -> float:
     return 2 * (left - right) / both if both else float("nan")
 
 
-def _mean(values: list[float]) -> float:
-    return float(np.mean(values)) if values else float("nan")
+def _mean(values: np.ndarray) -> float:
+    return float(values.mean()) if len(values) else float("nan")

@@ -81,22 +81,7 @@ def find_steady_strides(movement: np.ndarray, rate_hz: float) -> SteadyStrides:
     every half-stride that its own cycle predicts and drops those that it does not predict, until
     nothing changes. A capture that is steady throughout is taken whole.
 
-    Parameters
-    ----------
-    movement : array of shape (time, feature)
-        Positions relative to the body, as `body_relative` returns them.
-    rate_hz : float
-        Frames a second.
-
-    Returns
-    -------
-    SteadyStrides
-
-    Raises
-    ------
-    ValueError
-        If nothing moves, or for less than a stride.
-
+    Shapes: movement (time, feature).
     """
     block = max(1, int(rate_hz / SEARCH_RATE_HZ))
     n_blocks = len(movement) // block

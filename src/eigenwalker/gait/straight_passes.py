@@ -42,22 +42,7 @@ def find_straight_pass(
     Where the heading changes, the straight pass with most strides is taken if it has two or
     more, or half as many as the whole walk with its curves; otherwise the heading is unwound.
 
-    Parameters
-    ----------
-    walk : DataArray of shape (time, marker, axis)
-        The capture, for its names and times.
-    positions : array of shape (time, marker, axis)
-        Its positions, short gaps filled.
-    gaps : list of Gap
-        Gaps that are left.
-    rate_hz : float
-        Frames a second.
-
-    Raises
-    ------
-    ValueError
-        If there is less than about a stride, or a gap between the strides.
-
+    Shapes: walk (time, marker, axis); positions (time, marker, axis).
     """
     complete = np.isfinite(positions).all(axis=(1, 2))
     heading = slow_heading(positions, walk.marker.values.tolist(), rate_hz)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eigenwalker.core.kinematics import rotate_z
-from eigenwalker.gait.heading import SIDES
+from eigenwalker.gait.body_points import facing_by_names
 from eigenwalker.gait.steady_strides import find_steady_strides
 
 TURNED = np.deg2rad(25)
@@ -35,19 +35,7 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
     It is square to the lines through both hips and both shoulders; without these names, it is the
     turn that brings the markers nearest to their mean posture.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        Gaps filled where they are short.
-    markers : sequence of str
-        Their names.
-    rate_hz : float
-        Frames a second.
-
-    Returns
-    -------
-    array of shape (time,)
-        Radians, without jumps of a full turn; all 0 where it is unknown or hardly changes.
+    Shapes: positions (time, marker, axis); returns (time,).
 
     Examples
     --------
@@ -89,17 +77,7 @@ def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
     The body is turned back by its slow heading, and so is each step of its path: progress along a
     curve becomes progress along a line.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        In the room; where a marker is missing in a frame, all are missing in the result.
-    heading : array of shape (time,)
-        As `slow_heading` returns it.
-
-    Returns
-    -------
-    array of shape (time, marker, axis)
-
+    Shapes: positions (time, marker, axis); heading (time,); returns (time, marker, axis).
     """
     turn = heading[0] - heading
     centre = positions.mean(axis=1, keepdims=True)
@@ -116,14 +94,10 @@ def straight_frames(heading: np.ndarray, stride: float) -> np.ndarray:
 
 def _facing(positions: np.ndarray, names: list[str]) -> np.ndarray:
     """Return the horizontal direction that the body faces in each frame, as a complex number."""
+    facing = facing_by_names(positions, names)
+    if facing is not None:
+        return facing
     flat = positions[..., 0] + 1j * positions[..., 1]
-    to_left = [
-        flat[:, names.index(f"left_{part}")] - flat[:, names.index(f"right_{part}")]
-        for part in ("hip", "shoulder")
-        if {f"{side}_{part}" for side in SIDES} <= set(names)
-    ]
-    if to_left:
-        return -1j * np.sum(to_left, axis=0)
     flat = flat[:, np.isfinite(flat).all(axis=0)]
     if flat.shape[1] < FEWEST_MARKERS:
         return np.full(len(positions), np.nan + 0j)

@@ -1,2 +1,2 @@
 from .assessment import assess as assess
-from .quality import Finding as Finding, Quality as Quality, Verdict as Verdict
+from .quality import Quality as Quality, Verdict as Verdict

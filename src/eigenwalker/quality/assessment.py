@@ -10,7 +10,8 @@ import xarray as xr
 from eigenwalker.core.fourier import share_explained
 from eigenwalker.core.smoothing import running_mean
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
-from eigenwalker.gait.heading import SIDES, sides_swapped
+from eigenwalker.gait.body_points import SIDES
+from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import body_relative
 from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
@@ -88,15 +89,7 @@ def judge(
 ) -> Quality:
     """Return what is known of a capture and of the walk that was made of it.
 
-    Parameters
-    ----------
-    capture, repaired : DataArray of shape (time, marker, axis)
-        As captured, and with repaired labels.
-    walk : DataArray of shape (time, marker, axis) or None
-        Its steady strides, as `in_place` returns them; None if there are none.
-    problem : str
-        Why there are none.
-
+    Shapes: capture, repaired (time, marker, axis); walk (time, marker, axis).
     """
     names = capture.marker.values.tolist()
     missing = np.isnan(capture.values).any(axis=2).mean(axis=0)

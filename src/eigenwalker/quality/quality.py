@@ -55,39 +55,8 @@ LEVEL_CLIMB = 0.10
 """Rise over run of a path that is no longer level: the steepest ramps built for wheelchairs have
 0.08, stairs 0.5; floors of laboratories that were set up askew 0.02."""
 
-Finding = Literal[
-    "head_below_feet",
-    "leaning",
-    "impossible_height",
-    "small_body",
-    "no_steady_walk",
-    "not_level",
-    "hardly_periodic",
-    "not_periodic",
-    "cadence",
-    "one_stride",
-    "unsteady",
-    "filled_gaps",
-    "elastic_limbs",
-    "sides_swapped",
-    "repeated_names",
-    "swapped_labels",
-    "flicker",
-    "jumps",
-]
-"""What may speak against a capture; `eigenwalker.study.reasons` says it in sentences."""
-
-RULES_OUT = frozenset[Finding](
-    {
-        "head_below_feet",
-        "leaning",
-        "impossible_height",
-        "no_steady_walk",
-        "not_level",
-        "not_periodic",
-        "sides_swapped",
-    }
-)
+RULES_OUT = {"head_below_feet", "leaning", "impossible_height", "sides_swapped"}
+RULES_OUT |= {"no_steady_walk", "not_level", "not_periodic"}
 """Findings after which a capture is not to be used."""
 
 
@@ -174,14 +143,16 @@ class Quality:
     @property
     def verdict(self) -> Verdict:
         """What to do with the walk."""
-        if RULES_OUT & set(self.findings):
+        if RULES_OUT & {*self.findings}:
             return "do not use"
         return "use with care" if self.findings else "use"
 
     @property
-    def findings(self) -> tuple[Finding, ...]:
+    def findings(self) -> tuple[str, ...]:
         """Codes of all that speaks against the capture; empty for "use"."""
-        return (*_of_body(self), *_of_walk(self), *_of_limbs(self), *_of_labels(self))
+        walk = _of_walk(self) if self.n_strides else {"no_steady_walk": True}
+        checks = _of_body(self) | walk | _of_labels(self)
+        return tuple(code for code, holds in checks.items() if holds)
 
     @property
     def level(self) -> bool:
@@ -209,61 +180,42 @@ class Quality:
         return sum(repair.kind == "swap" for repair in self.repairs)
 
 
-def _of_body(quality: Quality) -> list[Finding]:
-    """Return what speaks against an upright person in this unit of length."""
+def _of_body(quality: Quality) -> dict[str, bool]:
+    """Return whether this is an upright person in this unit of length; the first problem counts."""
     smallest, tallest = HEIGHTS_MM
     if np.isnan(quality.lean_deg):
-        return []
+        return {}
     if np.isnan(quality.height_mm):
-        return ["head_below_feet"]
+        return {"head_below_feet": True}
     if quality.lean_deg > MOST_LEAN_DEG:
-        return ["leaning"]
-    if not smallest <= quality.height_mm <= tallest:
-        return ["impossible_height"]
-    return ["small_body"] if quality.height_mm < CHILD_MM else []
+        return {"leaning": True}
+    impossible = not smallest <= quality.height_mm <= tallest
+    return {
+        "impossible_height": impossible,
+        "small_body": quality.height_mm < CHILD_MM and not impossible,
+    }
 
 
-def _of_walk(quality: Quality) -> list[Finding]:
-    """Return what speaks against a steady walk on level ground."""
-    if not quality.n_strides:
-        return ["no_steady_walk"]
-    slowest, fastest = FREQUENCIES_HZ
-    findings: list[Finding] = []
-    if not quality.level:
-        findings.append("not_level")
-    if not quality.r2 >= STEADY_R2:
-        findings.append("hardly_periodic" if quality.r2 >= HOPELESS_R2 else "not_periodic")
-    if not slowest <= quality.frequency_hz <= fastest:
-        findings.append("cadence")
-    few = quality.n_strides < ENOUGH_STRIDES and quality.straight_passes <= 1
-    if quality.n_strides < FEWEST_STRIDES:
-        findings.append("one_stride")
-    elif quality.steady_share < STEADY_SHARE and few:
-        findings.append("unsteady")
-    if quality.filled_share > MISSING_SHARE:
-        findings.append("filled_gaps")
-    return findings
+def _of_walk(quality: Quality) -> dict[str, bool]:
+    n_strides, r2 = quality.n_strides, quality.r2
+    few = n_strides < ENOUGH_STRIDES and quality.straight_passes <= 1
+    return {
+        "not_level": not quality.level,
+        "hardly_periodic": HOPELESS_R2 <= r2 < STEADY_R2,
+        "not_periodic": not r2 >= HOPELESS_R2,
+        "cadence": not FREQUENCIES_HZ[0] <= quality.frequency_hz <= FREQUENCIES_HZ[1],
+        "one_stride": n_strides < FEWEST_STRIDES,
+        "unsteady": few and n_strides >= FEWEST_STRIDES and quality.steady_share < STEADY_SHARE,
+        "filled_gaps": quality.filled_share > MISSING_SHARE,
+    }
 
 
-def _of_limbs(quality: Quality) -> list[Finding]:
-    """Return what speaks against the limbs of a body."""
-    findings: list[Finding] = []
-    if max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION:
-        findings.append("elastic_limbs")
-    if quality.sides_swapped:
-        findings.append("sides_swapped")
-    return findings
-
-
-def _of_labels(quality: Quality) -> list[Finding]:
-    """Return what speaks against the labels of the markers."""
-    findings: list[Finding] = []
-    if quality.repeated:
-        findings.append("repeated_names")
-    if quality.left_right_swaps:
-        findings.append("swapped_labels")
-    if max(quality.removed_share.values(), default=0) > FLICKER_SHARE:
-        findings.append("flicker")
-    if any(repair.kind == "jump" for repair in quality.repairs):
-        findings.append("jumps")
-    return findings
+def _of_labels(quality: Quality) -> dict[str, bool]:
+    return {
+        "elastic_limbs": max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
+        "sides_swapped": quality.sides_swapped,
+        "repeated_names": bool(quality.repeated),
+        "swapped_labels": quality.left_right_swaps > 0,
+        "flicker": max(quality.removed_share.values(), default=0) > FLICKER_SHARE,
+        "jumps": any(repair.kind == "jump" for repair in quality.repairs),
+    }

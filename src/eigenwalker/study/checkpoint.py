@@ -20,13 +20,6 @@ from eigenwalker.core.walker import CaptureFit, Walker
 class Checkpoint:
     """The walkers that were made so far, by the names of their captures.
 
-    Parameters
-    ----------
-    path : Path
-        The file; it is made when the first walker is added.
-    settings : mapping
-        What a walker depends on beside its file. Walkers with other settings are ignored.
-
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
@@ -61,20 +54,7 @@ class Checkpoint:
         return len(self._known)
 
     def get(self, name: str, state: list[int]) -> tuple[Walker, dict[str, Any]] | None:
-        """Return the walker of a capture and its row of `Study.files`, if they are there.
-
-        Parameters
-        ----------
-        name : str
-            Of the capture.
-        state : list of int
-            Numbers that change with its files, such as sizes and times.
-
-        Returns
-        -------
-        (Walker, dict) or None
-
-        """
+        """Return the walker of a capture and its row of `Study.files`, if they are there."""
         entry = self._known.get(name)
         if entry is None or entry["state"] != state:
             return None

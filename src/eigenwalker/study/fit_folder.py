@@ -24,7 +24,7 @@ from eigenwalker.study.checkpoint import Checkpoint
 from eigenwalker.study.messages import flag_of, summarise
 from eigenwalker.study.process_capture import CaptureResult, process_capture
 
-_Attempt = tuple[Walker | None, dict[str, Any]]
+_Outcome = tuple[Walker | None, dict[str, Any]]
 """The walker of a capture, None where it was refused, and its row of `Study.files`."""
 
 
@@ -138,9 +138,9 @@ def fit_folder(
     earlier = None
     if checkpoint is not None:
         earlier = Checkpoint(Path(checkpoint), settings | {"version": __version__})
-    done: dict[str, _Attempt] = {}
-    for name, attempt in _attempts(folder, names, settings, n_jobs, earlier):
-        done[name] = attempt
+    done: dict[str, _Outcome] = {}
+    for name, outcome in _outcomes(folder, names, settings, n_jobs, earlier):
+        done[name] = outcome
         if progress:
             progress(len(done), len(names))
     unlisted = sorted(set(captures_in(folder)) - set(names)) if traits is not None else ()
@@ -148,17 +148,17 @@ def fit_folder(
 
 
 def _study(
-    table: pd.DataFrame, attempts: list[_Attempt], form: Form, unlisted: tuple[str, ...]
+    table: pd.DataFrame, outcomes: list[_Outcome], form: Form, unlisted: tuple[str, ...]
 ) -> Study:
-    rows = pd.DataFrame([row for _, row in attempts])
+    rows = pd.DataFrame([row for _, row in outcomes])
     files = pd.concat([table[[FILE]], rows.drop(columns=FLAG, errors="ignore")], axis=1)
-    read = [number for number, (walker, _) in enumerate(attempts) if walker is not None]
+    read = [number for number, (walker, _) in enumerate(outcomes) if walker is not None]
     if not read:
         return Study(None, files, unlisted)
     traits = table.iloc[read].reset_index(drop=True)
     flags = join_flags(flags_of(traits), rows[FLAG].iloc[read])
     population = Population(
-        tuple(walker for walker, _ in attempts if walker is not None),
+        tuple(walker for walker, _ in outcomes if walker is not None),
         traits.assign(**{FLAG: flags}),
         provenance={"source": f"{len(read)} captures", "form": form}
         | _filter(rows.iloc[read])
@@ -190,13 +190,13 @@ def _guesses(rows: pd.DataFrame) -> dict[str, str]:
     }
 
 
-def _attempts(
+def _outcomes(
     folder: Path,
     names: list[str],
     settings: Mapping[str, Any],
     n_jobs: int,
     checkpoint: Checkpoint | None,
-) -> Iterator[tuple[str, _Attempt]]:
+) -> Iterator[tuple[str, _Outcome]]:
     """Yield the outcome of each capture by name, first of those that are in the checkpoint."""
     waiting = []
     for name in names:
@@ -212,16 +212,16 @@ def _attempts(
 
 def _in_processes(
     folder: Path, names: list[str], settings: Mapping[str, Any], n_jobs: int
-) -> Iterator[tuple[str, _Attempt]]:
+) -> Iterator[tuple[str, _Outcome]]:
     """Process captures in parallel; where the system ends a process, some one by one."""
     done = 0
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(names))
     while done < len(names):
-        tasks = [joblib.delayed(_attempt)(folder, name, settings) for name in names[done:]]
+        tasks = [joblib.delayed(_outcome)(folder, name, settings) for name in names[done:]]
         try:
-            attempts: Any = joblib.Parallel(n_processes, return_as="generator")(tasks)
-            for attempt in attempts:
-                yield names[done], attempt
+            outcomes: Any = joblib.Parallel(n_processes, return_as="generator")(tasks)
+            for outcome in outcomes:
+                yield names[done], outcome
                 done += 1
         except TerminatedWorkerError:
             for name in names[done : done + 2 * n_processes]:  # one of these was being read
@@ -229,19 +229,19 @@ def _in_processes(
                 done += 1
 
 
-def _alone(folder: Path, name: str, settings: Mapping[str, Any]) -> _Attempt:
+def _alone(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
     """Process one capture in a process that the system may end."""
     try:
-        attempts: Any = joblib.Parallel(2)([joblib.delayed(_attempt)(folder, name, settings)])
+        outcomes: Any = joblib.Parallel(2)([joblib.delayed(_outcome)(folder, name, settings)])
     except TerminatedWorkerError:
         return _refused(
             "the system ended the process that read it, as it does when memory runs out; look "
             "whether the file is far larger than the others, or use fewer processes"
         )
-    return attempts[0]
+    return outcomes[0]
 
 
-def _attempt(folder: Path, name: str, settings: Mapping[str, Any]) -> _Attempt:
+def _outcome(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
     """Process one capture; errors become its row."""
     try:
         path = _within(folder, name)
@@ -257,7 +257,7 @@ def _attempt(folder: Path, name: str, settings: Mapping[str, Any]) -> _Attempt:
         )
 
 
-def _refused(reason: str) -> _Attempt:
+def _refused(reason: str) -> _Outcome:
     return None, {"status": "refused", "reason": reason}
 
 

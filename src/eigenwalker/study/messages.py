@@ -12,7 +12,6 @@ from eigenwalker.quality.quality import (
     FLICKER_SHARE,
     FREQUENCIES_HZ,
     STEADY_R2,
-    Finding,
     Quality,
 )
 from eigenwalker.study.process_capture import CaptureResult
@@ -130,7 +129,7 @@ def _not_periodic(quality: Quality) -> str:
     )
 
 
-_SENTENCES: dict[Finding, Callable[[Quality], str]] = {
+_SENTENCES: dict[str, Callable[[Quality], str]] = {
     "head_below_feet": lambda q: "The head is not above the feet: the wrong axis points up.",
     "leaning": lambda q: (
         f"From feet to head the body leans by {q.lean_deg:.0f} degrees: the frame is tilted, or "
@@ -192,19 +191,6 @@ _SUMMARY = {
 
 def summary_in_words(files: pd.DataFrame) -> dict[str, str]:
     """Return medians, ranges and counts of the captures of a study.
-
-    Parameters
-    ----------
-    files : DataFrame
-        ``Study.files``: one row a capture.
-
-    Returns
-    -------
-    dict of str to str
-
-    See Also
-    --------
-    summarise : the same medians and ranges as numbers.
 
     Examples
     --------
@@ -301,16 +287,6 @@ _INSPECTION = {
 
 def inspection_in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
     """Return what `inspect_file` finds, in words and with units.
-
-    Parameters
-    ----------
-    facts : mapping
-        As `inspect_file` returns them.
-
-    Returns
-    -------
-    dict of str to str or list of str
-        Lists hold one sentence or one name an entry.
 
     Examples
     --------
