@@ -3,6 +3,8 @@
 Neither needs to be installed, as both use plain xarray objects.
 """
 
+# xarray is not wholly typed, and what other packages hand over is checked:
+# pyright: reportUnknownMemberType=false, reportUnnecessaryIsInstance=false
 from __future__ import annotations
 
 from collections.abc import Hashable
@@ -56,7 +58,7 @@ def to_movement(trajectories: xr.DataArray, *, individual: str = "walker") -> xr
     walk = check_trajectories(trajectories)
     confidence = np.full(walk.shape[:2], np.nan)
     if "confidence" in walk.coords:
-        confidence = walk.coords["confidence"].transpose("time", "marker").values
+        confidence = walk["confidence"].transpose("time", "marker").values
     dims = ("time", "space", "keypoints", "individuals")
     position = walk.values.transpose(0, 2, 1)[..., None]
     return xr.Dataset(

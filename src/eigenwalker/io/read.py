@@ -183,7 +183,8 @@ def _of_subject(trajectories: xr.DataArray, subject: str) -> xr.DataArray:
         known = subjects(names) or [trajectories.attrs.get("subject", "")]
         raise ValueError(f"subject={subject!r} is not in the capture; give one of {known}.")
     markers = [names[i].rpartition(":")[2] for i in own]
-    chosen = trajectories.isel(marker=own).assign_coords(marker=markers)
+    chosen = trajectories.isel(marker=own)
+    chosen["marker"] = markers
     return chosen.assign_attrs(subject=subject)
 
 

@@ -60,7 +60,7 @@ def cells(line: str, separator: str | None) -> list[str]:
     """Return the cells of a line without blanks and quotation marks around them."""
     if separator and '"' in line:
         try:
-            row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+            row = next(csv.reader([line], delimiter=separator, skipinitialspace=True), list[str]())
             return [cell.strip() for cell in row]
         except csv.Error:  # cells that are too long, or a mark in a wrong place
             pass

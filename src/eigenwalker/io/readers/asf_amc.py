@@ -5,6 +5,8 @@ and M from its channels, ``R = R_parent C M C^-1``, and it reaches from the end 
 ``R (direction * length)`` (Schafer 1995). All turns are about fixed axes, one after the other.
 """
 
+# SciPy is not typed:
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
 from __future__ import annotations
 
 import re

@@ -175,8 +175,8 @@ def _axes(described: _Description) -> np.ndarray | None:
 def _table(file: CaptureFile, described: _Description) -> tuple[list[str], TableValues]:
     """Return names, positions and times of the points, in the layout of the description."""
     lines = lines_of(file.content, file.name)
-    n_above = described.get("header_lines", 0 if "names" in described else 1)
-    skip = described.get("skip_columns", 0)
+    n_above: int = described.get("header_lines", 0 if "names" in described else 1)
+    skip: int = described.get("skip_columns", 0)
     if not 0 <= n_above < len(lines) or not 0 <= skip < 10_000:
         got = f"{n_above} and {skip}, with {len(lines)} lines in the table"
         raise described.error("header_lines and skip_columns that leave a table", got)

@@ -116,7 +116,7 @@ def _positions(
 ) -> tuple[list[str], np.ndarray]:
     """Return names and positions of the points of all frames."""
     points_by_frame = [_points(file, frame) for frame in frames]
-    first = next((points for points in points_by_frame if points), {})
+    first = next((points for points in points_by_frame if points), points_by_frame[0])
     names = next((top[key] for key in ("names", "keypoint_names", "markers") if key in top), None)
     if names is not None and not (
         _is_list(names) and len(names) == len(first) and all(map(str, names))

@@ -7,8 +7,9 @@ written in C.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import xarray as xr
@@ -45,16 +46,17 @@ def _dataset(walk: Any) -> Any:
     return dataset
 
 
-def _storable(value: Any) -> str | int | float | None:
+def _storable(value: object) -> str | int | float | None:
     """Return an attribute as NetCDF holds it: a word, a number, names in one line, or JSON."""
-    if isinstance(value, bool | np.bool_):
-        return str(bool(value))
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, bool):
+        return str(value)
     if isinstance(value, str | int | float):
         return value
-    if isinstance(value, np.number):
-        return value.item()
-    if value and isinstance(value, tuple) and all(isinstance(entry, Repair) for entry in value):
-        return json.dumps(value)
-    if isinstance(value, list | tuple):
-        return ", ".join(map(str, value))
-    return None
+    if not isinstance(value, list | tuple):
+        return None
+    entries = list(cast("Sequence[object]", value))
+    if entries and all(isinstance(entry, Repair) for entry in entries):
+        return json.dumps(entries)
+    return ", ".join(map(str, entries))
