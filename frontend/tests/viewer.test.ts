@@ -12,7 +12,7 @@ import { readModel } from "../src/model/readModel";
 import { initialState, initialSettings, type State } from "../src/model/state";
 import { animationOf, strideRates, type AnimationSpec } from "../src/viewer/animation";
 import { Viewer, type ViewerEvents } from "../src/viewer/viewer";
-import { boxesOf, arrange } from "../src/viewer/arrangement";
+import { arrange } from "../src/viewer/arrangement";
 import { extentFor, arrangedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
 import { WalkerBatch } from "../src/viewer/walkerBatch";
 
@@ -76,7 +76,7 @@ describe("walkers stay in their boxes", () => {
         elevation_deg: 120 * elevation - 30,
       });
       const places = batchPlaces(spec, 3 * time);
-      const boxes = boxesOf(spec.arrangement, SIZE);
+      const boxes = spec.arrangement.boxes;
       const perWalker = places.length / boxes.length;
       boxes.forEach(({ left, top, width, height }, i) => {
         const own = places.subarray(i * perWalker, (i + 1) * perWalker);
@@ -91,7 +91,7 @@ describe("walkers stay in their boxes", () => {
 
   it("and the boxes fill the picture without overlap", () => {
     for (let count = 1; count <= 100; count++) {
-      const boxes = boxesOf(arrange(count, { radius: 450, height: 1750 }, SIZE, 10), SIZE);
+      const boxes = arrange(count, { radius: 450, height: 1750 }, SIZE, 10).boxes;
       expect(boxes.length).toBe(count);
       const area = boxes.reduce((sum, { width, height }) => sum + width * height, 0);
       expect(area).toBeLessThanOrEqual(SIZE.width_px * SIZE.height_px * 1.000001);

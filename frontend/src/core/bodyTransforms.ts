@@ -1,6 +1,6 @@
 /** Transforms of the body: hidden parts, larger or smaller movements, planted cues. */
 
-import { outward, type Transforms } from "./movingDots";
+import type { Transforms } from "./movingDots";
 import { radians } from "./vector";
 
 const SIDES = ["left", "right"] as const;
@@ -39,15 +39,13 @@ export const bodyTransforms: Transforms<"occlude" | "gain" | "conflict" | "ellip
    * move along.
    */
   gain(moving, step) {
-    const parents = moving.parents();
-    const order = outward(parents);
+    const order = moving.outward();
     const factors = [..."xyz"].map((axis) => (step.axes.includes(axis) ? step.factor : 1));
     const named = moving.named(step.markers);
     const { mean } = moving;
     return moving.map(({ positions }) => {
       const before = positions.slice();
-      for (const dot of order) {
-        const parent = parents[dot]!;
+      for (const [dot, parent] of order) {
         for (let axis = 0; axis < 3; axis++) {
           const [here, there] = [3 * dot + axis, 3 * parent + axis];
           let from = before[here]! - (parent < 0 ? 0 : before[there]!);

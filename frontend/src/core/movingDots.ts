@@ -1,7 +1,7 @@
 /** A figure as named dots that are a function of time, which transforms change. */
 
 import { coefficientsOf, posture } from "./posture";
-import type { Link, Parameters, Trajectories, TransformName, Walker } from "./stimulus";
+import type { Figure, Link, Parameters, Trajectories, TransformName, Walker } from "./stimulus";
 import type { Axes, Vector } from "./vector";
 
 /** Moments of the period over which means are taken. */
@@ -119,24 +119,23 @@ export class MovingDots {
   }
 
   /**
-   * For each dot its parent along the segments from the root outwards; -1 for the root and for dots
-   * that are not joined to it. The root is `pelvis`, or the first dot where there is none.
+   * Each dot with its parent along the segments, parents first; -1 for the root and for dots that are
+   * not joined to it. The root is `pelvis`, or the first dot where there is none.
    */
-  parents(): number[] {
-    const { dots, segments } = this.body;
-    const root = dots.includes("pelvis") ? "pelvis" : dots[0]!;
-    const parent = new Map([[root, -1]]);
-    const queue = [root];
-    for (const carrier of queue) {
-      for (const [one, other] of segments) {
-        if (one !== carrier && other !== carrier) continue;
-        const far = one === carrier ? other : one;
-        if (parent.has(far)) continue;
-        parent.set(far, dots.indexOf(carrier));
-        queue.push(far);
+  outward(): (readonly [dot: number, parent: number])[] {
+    const links = this.body.segments.map((ends) => ends.map((name) => this.index(name)));
+    const order: [number, number][] = [[Math.max(this.index("pelvis"), 0), -1]];
+    const reached = new Set([order[0]![0]]);
+    for (const [carrier] of order) {
+      for (const [one, other] of links) {
+        const far = one === carrier ? other! : one!;
+        if ((one !== carrier && other !== carrier) || reached.has(far)) continue;
+        reached.add(far);
+        order.push([far, carrier]);
       }
     }
-    return dots.map((dot) => parent.get(dot) ?? -1);
+    const loose = [...this.body.dots.keys()].filter((dot) => !reached.has(dot));
+    return [...order, ...loose.map((dot) => [dot, -1] as const)];
   }
 }
 
@@ -150,12 +149,6 @@ export const positionOf = (positions: Float64Array, dot: number): Vector => [
   positions[3 * dot + 1]!,
   positions[3 * dot + 2]!,
 ];
-
-/** The dots in an order in which each comes after its parent. */
-export function outward(parents: readonly number[]): number[] {
-  const depth = (dot: number): number => (parents[dot]! < 0 ? 0 : 1 + depth(parents[dot]!));
-  return parents.map((_, dot) => dot).sort((a, b) => depth(a) - depth(b));
-}
 
 /** One moment of dots that come from several moments, each by its number there. */
 export function gathered(sources: readonly (readonly [Moment, number])[]): Moment {
@@ -207,4 +200,10 @@ export function sampled(
   };
   const nIntervals = repeat ? nFrames : Math.max(nFrames - 1, 1);
   return new MovingDots({ dots: markers, segments, pairs }, at, nIntervals / rate_hz);
+}
+
+/** The dots of a figure of a stimulus, before its transforms. */
+export function figureOf({ walker, trajectories, segments, pairs }: Figure): MovingDots {
+  if (walker) return walking(walker, segments, pairs);
+  return sampled(trajectories!, segments, pairs);
 }

@@ -1,6 +1,6 @@
 /** The positions of all dots of a stimulus at any moment, in the scene and in the picture. */
 
-import { isKnown, MovingDots, positionOf, sampled, walking } from "./movingDots";
+import { figureOf, isKnown, MovingDots, positionOf } from "./movingDots";
 import { mapPositions } from "./spatialTransforms";
 import type { Figure, Stimulus, View } from "./stimulus";
 import { addsFigure, transformed } from "./transforms";
@@ -31,11 +31,6 @@ export function scene({ figures, transforms, view }: Stimulus): MovingDots[] {
     }
   }
   return [...moving.map((dots, number) => placed(dots, figures[number]!)), ...masks];
-}
-
-export function figureOf({ walker, trajectories, segments, pairs }: Figure): MovingDots {
-  if (walker) return walking(walker, segments, pairs);
-  return sampled(trajectories!, segments, pairs);
 }
 
 /** A figure turned by its heading and moved to its position in the scene. */

@@ -8,8 +8,7 @@
  */
 
 import shape from "../../../src/eigenwalker/stimulus/mannequin.json";
-import type { Body } from "../core/movingDots";
-import { figureOf } from "../core/scene";
+import { figureOf, type Body } from "../core/movingDots";
 import type { Stimulus, View } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 

@@ -4,6 +4,8 @@ import { coefficientsOf, posture } from "../core/posture";
 import type { Walker } from "../core/stimulus";
 
 const N_SAMPLES = 200;
+const SHOULDERS = ["left_shoulder", "right_shoulder"];
+const ANKLES = ["left_ankle", "right_ankle"];
 /** Share of the stride in which an ankle is in its stance phase: when it is lowest. */
 const STANCE_SHARE = 0.35;
 /** A low ankle stands if it moves with the ground at least at this share of the median speed. */
@@ -25,25 +27,32 @@ export type Measures = Readonly<Record<MeasureName, number>>;
 
 /** The measures of a walker; NaN if it lacks the markers. */
 export function measuresOf(walker: Walker): Measures {
-  const { markers, frequency_hz } = walker;
-  const one = sampled(walker, (i) => i / N_SAMPLES);
-  const two = sampled(walker, (i) => (2 * i) / (N_SAMPLES - 1));
+  const { frequency_hz } = walker;
+  const trunk = walker.markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
+  const moving = withMarkers(walker, [...SHOULDERS, ...trunk, ...ANKLES]);
+  const { markers } = moving;
+  const one = sampled(moving, (i) => i / N_SAMPLES);
+  const two = sampled(moving, (i) => (2 * i) / (N_SAMPLES - 1));
   const rateHz = ((N_SAMPLES - 1) * frequency_hz) / 2;
-  const trunk = markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
-  const ankles = ["left_ankle", "right_ankle"].map((name) =>
-    [0, 1, 2].map((axis) => pathOf(markers, two, name, axis)),
-  );
+  const ankles = ANKLES.map((name) => [0, 1, 2].map((axis) => pathOf(markers, two, name, axis)));
   const range = (names: readonly string[], axis: number): number =>
     rangeOf(names.map((name) => pathOf(markers, one, name, axis)));
   return {
     shoulder_width_mm: Math.hypot(...sideDistance(walker, "shoulder")),
     hip_width_mm: Math.hypot(...sideDistance(walker, "hip")),
     elbow_distance_mm: sideDistance(walker, "elbow")[1]!,
-    lateral_sway_mm: range(["left_shoulder", "right_shoulder"], 1),
+    lateral_sway_mm: range(SHOULDERS, 1),
     vertical_movement_mm: range(trunk, 2),
     frequency_hz,
     stride_length_mm: stanceSpeed(ankles, rateHz) / frequency_hz,
   };
+}
+
+/** The walker with fewer markers, which is faster to sample. */
+function withMarkers(walker: Walker, names: readonly string[]): Walker {
+  const used = [...walker.markers.keys()].filter((i) => names.includes(walker.markers[i]!));
+  const pick = <T>(values: readonly T[]): T[] => used.map((i) => values[i]!);
+  return { ...walker, markers: pick(walker.markers), p0: pick(walker.p0), p: walker.p.map(pick) };
 }
 
 /** From the right joint to the left one in the mean posture. */
@@ -63,7 +72,9 @@ type Path = Float64Array;
 /** One coordinate of one marker, moment by moment. */
 function pathOf(markers: readonly string[], postures: readonly Float64Array[], name: string, axis: number): Path {
   const marker = markers.indexOf(name);
-  return Float64Array.from(postures, (positions) => positions[3 * marker + axis] ?? NaN);
+  const path = new Float64Array(postures.length);
+  for (let i = 0; i < path.length; i++) path[i] = postures[i]![3 * marker + axis] ?? NaN;
+  return path;
 }
 
 function rangeOf(paths: readonly Path[]): number {

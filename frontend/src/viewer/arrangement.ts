@@ -28,9 +28,15 @@ export interface Size {
   readonly height_px: number;
 }
 
+/** The cell of a walker in the picture, in pixels. */
+export interface Box {
+  readonly left: number;
+  readonly top: number;
+  readonly width: number;
+  readonly height: number;
+}
+
 export interface Arrangement {
-  readonly columns: number;
-  readonly rows: number;
   readonly pxPerMm: number;
   readonly dotPx: number;
   /** Height in the middle of the picture. */
@@ -38,6 +44,7 @@ export interface Arrangement {
   readonly eyeMm: number;
   /** For each walker, from the middle of the picture to the right and up, in mm. */
   readonly offsets: readonly (readonly [number, number])[];
+  readonly boxes: readonly Box[];
 }
 
 /** The centre of a walker's mean posture on the floor: the middle of its extent. */
@@ -88,38 +95,24 @@ export function arrange(count: number, extent: Extent, size: Size, elevationDeg:
   const columns = choices.reduce((best, n) => (scaleOf(n) > scaleOf(best) * 1.0001 ? n : best), 1);
   const rows = Math.ceil(count / columns);
   const pxPerMm = Math.max(scaleOf(columns), 1e-4);
-  const [width, height] = [size.width_px / pxPerMm / columns, size.height_px / pxPerMm / rows];
+  const [width, height] = [size.width_px / columns, size.height_px / rows];
   const offsets = Array.from({ length: count }, (_, i) => {
     const [row, column] = [Math.floor(i / columns), i % columns];
     const inRow = Math.min(columns, count - row * columns);
-    return [(column - (inRow - 1) / 2) * width, ((rows - 1) / 2 - row) * height] as const;
+    return [((column - (inRow - 1) / 2) * width) / pxPerMm, (((rows - 1) / 2 - row) * height) / pxPerMm] as const;
   });
-  const pictureMm = Math.max(size.width_px, size.height_px) / pxPerMm;
-  return {
-    columns,
-    rows,
-    pxPerMm,
-    dotPx: Math.max(DOT_MM * pxPerMm, MIN_DOT_PX),
-    middleMm: extent.height / 2,
-    eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, 1.5 * pictureMm),
-    offsets,
-  };
-}
-
-/** The cell of a walker in the picture, in pixels. */
-export interface Box {
-  readonly left: number;
-  readonly top: number;
-  readonly width: number;
-  readonly height: number;
-}
-
-export function boxesOf({ columns, rows, offsets, pxPerMm }: Arrangement, size: Size): Box[] {
-  const [width, height] = [size.width_px / columns, size.height_px / rows];
-  return offsets.map(([right, up]) => ({
+  const boxes = offsets.map(([right, up]) => ({
     left: size.width_px / 2 + right * pxPerMm - width / 2,
     top: size.height_px / 2 - up * pxPerMm - height / 2,
     width,
     height,
   }));
+  return {
+    pxPerMm,
+    dotPx: Math.max(DOT_MM * pxPerMm, MIN_DOT_PX),
+    middleMm: extent.height / 2,
+    eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, (1.5 * Math.max(size.width_px, size.height_px)) / pxPerMm),
+    offsets,
+    boxes,
+  };
 }

@@ -15,9 +15,8 @@ const TAP_PX = 6;
 /** The speed of a throw is measured over this time before the release. */
 const THROW_MS = 80;
 
-/** Report gestures until the returned function is called. */
-export function watchGestures(element: HTMLElement, gestures: Gestures): () => void {
-  const ending = new AbortController();
+/** Report gestures until the signal is aborted. */
+export function watchGestures(element: HTMLElement, signal: AbortSignal, gestures: Gestures): void {
   let held: { id: number; x: number; y: number; far: number } | null = null;
   let trail: { time: number; x: number; y: number }[] = [];
 
@@ -53,13 +52,8 @@ export function watchGestures(element: HTMLElement, gestures: Gestures): () => v
   const cancel = (event: PointerEvent): void => {
     if (event.pointerId === held?.id) held = null;
   };
-  for (const [type, listener] of [
-    ["pointerdown", down],
-    ["pointermove", move],
-    ["pointerup", up],
-    ["pointercancel", cancel],
-  ] as const) {
-    element.addEventListener(type, listener, { signal: ending.signal });
-  }
-  return () => ending.abort();
+  element.addEventListener("pointerdown", down, { signal });
+  element.addEventListener("pointermove", move, { signal });
+  element.addEventListener("pointerup", up, { signal });
+  element.addEventListener("pointercancel", cancel, { signal });
 }

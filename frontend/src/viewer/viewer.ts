@@ -8,7 +8,7 @@ import type { SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import { clamped, RANGES, wrappedDegrees, type State } from "../model/state";
 import { animationOf, phaseOffset, type ViewerAnimation } from "./animation";
-import { arrange, boxesOf, type Arrangement, type Box, type Extent, type Size } from "./arrangement";
+import { arrange, type Arrangement, type Box, type Extent, type Size } from "./arrangement";
 import { watchGestures } from "./dragging";
 import { extentFor } from "./viewedStimulus";
 import { watchSize, watchVisibility } from "./visibility";
@@ -74,7 +74,7 @@ export class Viewer {
   readonly #canvas: HTMLCanvasElement;
   readonly #context: CanvasRenderingContext2D;
   readonly #events: ViewerEvents;
-  readonly #endings: (() => void)[];
+  readonly #ending = new AbortController();
   #shown: Shown | null = null;
   #animation: ViewerAnimation | null = null;
   #built: Built | null = null;
@@ -97,11 +97,10 @@ export class Viewer {
     this.#canvas = canvas;
     this.#context = contextOf(canvas, { alpha: false });
     this.#events = events;
-    this.#endings = [
-      watchSize(canvas, (size, pixelRatio) => this.#resize(size, pixelRatio)),
-      watchVisibility(canvas, (visible) => this.#setVisible(visible)),
-      this.#watchHand(),
-    ];
+    const { signal } = this.#ending;
+    watchSize(canvas, signal, (size, pixelRatio) => this.#resize(size, pixelRatio));
+    watchVisibility(canvas, signal, (visible) => this.#setVisible(visible));
+    this.#watchHand(signal);
   }
 
   /** The phase of the first walker, from 0 to below 1. */
@@ -129,7 +128,7 @@ export class Viewer {
 
   remove(): void {
     this.#sleep();
-    for (const end of this.#endings) end();
+    this.#ending.abort();
     this.#shown = null;
   }
 
@@ -162,7 +161,7 @@ export class Viewer {
   #arrange({ model, figures }: Shown, elevationDeg: number): Arrangement {
     if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(model, figures) };
     const arrangement = arrange(figures.length, this.#extent.extent, this.#size, elevationDeg);
-    this.#boxes = boxesOf(arrangement, this.#size);
+    this.#boxes = arrangement.boxes;
     this.#events.arranged?.(this.#boxes);
     return arrangement;
   }
@@ -253,9 +252,9 @@ export class Viewer {
     this.#reportHand();
   }
 
-  #watchHand(): () => void {
+  #watchHand(signal: AbortSignal): void {
     const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
-    return watchGestures(this.#canvas, {
+    watchGestures(this.#canvas, signal, {
       begun: () => {
         this.#throw = NO_THROW;
         this.#keepTurned();

@@ -5,9 +5,12 @@ import type { Size } from "./arrangement";
 /** A higher resolution does not look better, and heats a phone. */
 const MAX_PIXEL_RATIO = 2;
 
-/** Report the size now and on every change, until the returned function is called. */
-export function watchSize(canvas: HTMLCanvasElement, onSize: (size: Size, pixelRatio: number) => void): () => void {
-  const ending = new AbortController();
+/** Report the size now and on every change, until the signal is aborted. */
+export function watchSize(
+  canvas: HTMLCanvasElement,
+  signal: AbortSignal,
+  onSize: (size: Size, pixelRatio: number) => void,
+): void {
   let last = "";
   const measure = (): void => {
     const { clientWidth: width_px, clientHeight: height_px } = canvas;
@@ -19,17 +22,13 @@ export function watchSize(canvas: HTMLCanvasElement, onSize: (size: Size, pixelR
   };
   const observer = new ResizeObserver(measure);
   observer.observe(canvas);
-  window.addEventListener("resize", measure, { signal: ending.signal });
+  signal.addEventListener("abort", () => observer.disconnect());
+  window.addEventListener("resize", measure, { signal });
   measure();
-  return () => {
-    observer.disconnect();
-    ending.abort();
-  };
 }
 
-/** Report on every change whether an element is visible, until the returned function is called. */
-export function watchVisibility(element: HTMLElement, onChange: (visible: boolean) => void): () => void {
-  const ending = new AbortController();
+/** Report on every change whether an element is visible, until the signal is aborted. */
+export function watchVisibility(element: HTMLElement, signal: AbortSignal, onChange: (visible: boolean) => void): void {
   let onScreen = true;
   const report = (): void => onChange(onScreen && !document.hidden);
   const observer = new IntersectionObserver((entries) => {
@@ -37,9 +36,6 @@ export function watchVisibility(element: HTMLElement, onChange: (visible: boolea
     report();
   });
   observer.observe(element);
-  document.addEventListener("visibilitychange", report, { signal: ending.signal });
-  return () => {
-    observer.disconnect();
-    ending.abort();
-  };
+  signal.addEventListener("abort", () => observer.disconnect());
+  document.addEventListener("visibilitychange", report, { signal });
 }
