@@ -84,8 +84,8 @@ class LeaveOutSVD:
         """Prepare walkers `X` of shape (walker, feature) and targets `R` (walker, trait)."""
         varying = ~constant_features(X)
         scale_of_all = divisors(X, scale)[varying]
-        Y = (X - X.mean(axis=0))[:, varying] / scale_of_all
-        Y -= Y.mean(axis=0)  # the mean of a feature far from 0 is rounded
+        scaled = (X - X.mean(axis=0))[:, varying] / scale_of_all
+        Y = scaled - scaled.mean(axis=0)  # the mean of a feature far from 0 is rounded
         rounding = 10 * np.finfo(float).eps * np.abs(X).max() / scale_of_all
         return cls(
             Y=Y,

@@ -186,7 +186,7 @@ class Regression:
             without the walker), ``p``.
 
         """
-        rows = []
+        rows: list[dict[str, object]] = []
         for result in self.results:
             curves, nested, best = result.curves, result.nested, result.curves.best_n - 1
             rows.append(

@@ -1,5 +1,8 @@
 """The linear discriminant ``c K = r`` of two classes, or of a trait that is a number."""
 
+# scikit-learn has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
 from typing import Literal, Self, get_args
@@ -10,7 +13,9 @@ from numpy.typing import ArrayLike
 from sklearn.base import BaseEstimator, ClassifierMixin, RegressorMixin
 from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
-from sklearn.utils.validation import check_is_fitted, validate_data
+from sklearn.utils.validation import check_is_fitted
+
+from eigenwalker.core.sklearn_validation import validate_data
 
 Order = Literal["standardised", "raw", "variance"]
 
@@ -272,7 +277,7 @@ def two_classes(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def refuse_missing(y: ArrayLike, what: str = "value of the trait") -> None:
     """Raise a ValueError that says which walkers lack what they should have."""
     missing = np.flatnonzero(pd.isna(np.asarray(y, dtype=object)))
-    if y is not None and missing.size:
+    if y is not None and missing.size:  # pyright: ignore[reportUnnecessaryComparison] - sklearn's
         rows = ", ".join(str(row) for row in missing[:10]) + (", ..." if missing.size > 10 else "")
         raise ValueError(
             f"{missing.size} of {len(np.asarray(y, dtype=object))} walkers have no {what} "

@@ -1,5 +1,8 @@
 """How well a discriminant separates walkers, and how well it predicts walkers left out."""
 
+# scipy and scikit-learn have no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
 import warnings

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from eigenwalker.analysis.walker_space import WalkerSpace
-from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.population.population import Population
 
 LIMBS = {
@@ -81,23 +79,18 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
 def _limb_lengths(population: Population, vector: np.ndarray) -> pd.DataFrame:
     """Length of each limb over a stride in mm, sides averaged: a table (time, limb)."""
     walker = population.walker(vector)
-    stride = walker.trajectories(np.linspace(0, walker.period_s, 100, endpoint=False))
-    joints = set(walker.markers) & set(JOINTS.markers)
-    lengths = {}
+    stride = walker.trajectories(np.linspace(0, walker.period_s, 100, endpoint=False)).values
+    places = dict(zip(walker.markers, np.moveaxis(stride, 1, 0), strict=True))
+    lengths: dict[str, np.ndarray] = {}
     for limb, (upper, lower) in LIMBS.items():
         sides = [
-            _distance(stride, f"{side}_{upper}", f"{side}_{lower}")
+            np.linalg.norm(places[f"{side}_{upper}"] - places[f"{side}_{lower}"], axis=-1)
             for side in ("left", "right")
-            if {f"{side}_{upper}", f"{side}_{lower}"} <= joints
+            if {f"{side}_{upper}", f"{side}_{lower}"} <= set(places)
         ]
         if sides:
             lengths[limb] = np.mean(sides, axis=0)
     return pd.DataFrame(lengths)
-
-
-def _distance(walk: xr.DataArray, one: str, other: str) -> np.ndarray:
-    between = walk.sel(marker=one).values - walk.sel(marker=other).values
-    return np.linalg.norm(between, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,8 @@
 """Errors that no choice makes too small: nested leave-one-out, and a permutation test."""
 
+# scipy and scikit-learn have no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
 from dataclasses import dataclass

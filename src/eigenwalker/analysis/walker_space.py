@@ -1,5 +1,8 @@
 """The space that walkers span: standardised principal components."""
 
+# scikit-learn has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
 from typing import Self
@@ -7,7 +10,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
-from sklearn.utils.validation import check_is_fitted, validate_data
+from sklearn.utils.validation import check_is_fitted
+
+from eigenwalker.core.sklearn_validation import validate_data
 
 Scale = str | None | ArrayLike
 
@@ -130,13 +135,13 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
     def inverse_transform(self, K: ArrayLike) -> np.ndarray:
         """Return the walkers (walker, feature) of scores (walker, component): eq. 6."""
         check_is_fitted(self)
-        K = np.asarray(K, dtype=float)
-        if K.ndim != 2 or K.shape[1] != len(self.eigenwalkers_):
+        scores = np.asarray(K, dtype=float)
+        if scores.ndim != 2 or scores.shape[1] != len(self.eigenwalkers_):
             raise ValueError(
                 f"Scores must have shape (walker, {len(self.eigenwalkers_)}), one column an "
-                f"eigenwalker; got {K.shape}."
+                f"eigenwalker; got {scores.shape}."
             )
-        return self.average_walker_ + K @ self.eigenwalkers_
+        return self.average_walker_ + scores @ self.eigenwalkers_
 
     def get_feature_names_out(self, input_features: ArrayLike | None = None) -> np.ndarray:
         """Return "eigenwalker1", "eigenwalker2" ... as names of the scores."""

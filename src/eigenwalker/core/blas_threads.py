@@ -1,5 +1,7 @@
 """One BLAS thread for products of small matrices, which more threads slow down."""
 
+# threadpoolctl has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 from __future__ import annotations
 
 from contextlib import AbstractContextManager

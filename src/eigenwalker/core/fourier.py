@@ -6,6 +6,8 @@ sin 2, cos 2 ...
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 
@@ -85,8 +87,8 @@ def fit_harmonics(
     shifted = postures - postures[0]
     rows = centred_harmonics(len(postures), cycles_per_frame, n_harmonics)
     products = rows @ shifted
-    coefficients = np.linalg.solve(rows @ rows.T, products)
-    residual = float(np.vdot(shifted, shifted) - np.vdot(coefficients, products))
+    coefficients = cast("np.ndarray", np.linalg.solve(rows @ rows.T, products))
+    residual = float(shifted.ravel() @ shifted.ravel() - coefficients.ravel() @ products.ravel())
     coefficients[0] += postures[0]
     return coefficients, max(residual, 0.0)
 
@@ -119,8 +121,8 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     centred = movement - movement.mean(axis=0)
     basis = harmonic_basis(cycles, n_harmonics)
     residual = centred - basis @ fit_basis(basis, centred)
-    total = np.vdot(centred, centred)
-    return float(1 - np.vdot(residual, residual) / total) if total > 0 else 0.0
+    total = float(centred.ravel() @ centred.ravel())
+    return 1 - float(residual.ravel() @ residual.ravel()) / total if total > 0 else 0.0
 
 
 def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:

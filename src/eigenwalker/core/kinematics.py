@@ -1,5 +1,7 @@
 """Jointed bodies: the places of joints when bones turn."""
 
+# scipy has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 from __future__ import annotations
 
 from collections.abc import Sequence

@@ -1,5 +1,7 @@
 """Rotations between frames, and between two clips: normalised sums of quaternions."""
 
+# scipy has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 from __future__ import annotations
 
 import numpy as np

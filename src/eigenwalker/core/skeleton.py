@@ -39,7 +39,7 @@ class Skeleton:
     markers: tuple[str, ...]
     segments: tuple[Segment, ...] = ()
     pairs: tuple[Segment, ...] = ()
-    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
 
     def __post_init__(self) -> None:
         known = set(self.markers)

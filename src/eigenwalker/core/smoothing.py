@@ -1,5 +1,7 @@
 """Extrema between samples."""
 
+# scipy has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 from __future__ import annotations
 
 import numpy as np

@@ -82,7 +82,7 @@ def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) 
     time = np.asarray(time, dtype=float)
     values = np.asarray(values, dtype=float)
     names = [str(marker) for marker in markers]
-    problems = []
+    problems: list[str] = []
     if values.shape != (len(time), len(names), 3):
         problems.append(
             f"values have shape {values.shape}, where {len(time)} times and {len(names)} markers "
@@ -113,15 +113,16 @@ def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.Data
 
     If they are to be complete, missing samples are refused too.
     """
-    if not isinstance(walk, xr.DataArray):
+    if not isinstance(walk, xr.DataArray):  # pyright: ignore[reportUnnecessaryIsInstance] - callers err
         raise TypeError(
             f"Expected trajectories (a DataArray with dims {DIMS}), got "
             f"{type(walk).__name__}; make them with label_trajectories()."
         )
-    if set(walk.dims) != set(DIMS) or not set(DIMS) <= set(walk.coords):
+    coords = sorted(map(str, walk.coords))  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
+    if set(walk.dims) != set(DIMS) or not set(DIMS) <= set(coords):
         raise ValueError(
             f"Expected trajectories with labelled dims {DIMS}, got dims {walk.dims} with "
-            f"coordinates {sorted(map(str, walk.coords))}; make them with label_trajectories()."
+            f"coordinates {coords}; make them with label_trajectories()."
         )
     if walk.dims != DIMS:
         walk = walk.transpose(*DIMS)

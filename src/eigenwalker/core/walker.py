@@ -178,7 +178,7 @@ class Walker:
 
     def _problems(self) -> list[str]:
         n_markers, n_components = len(self.markers), len(self.harmonics)
-        problems = []
+        problems: list[str] = []
         if len(set(self.markers)) < n_markers:
             problems.append("marker names come more than once")
         if not n_markers:

@@ -4,6 +4,9 @@ The two share the stride frequency, which is the only unknown that is not linear
 on the scores of the components.
 """
 
+# BLAS and LAPACK have no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
 from dataclasses import dataclass

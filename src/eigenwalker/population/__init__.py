@@ -1,5 +1,6 @@
 """Walkers with their traits, in correspondence, and the file that holds them."""
 
-import lazy_loader
+import lazy_loader  # pyright: ignore[reportMissingTypeStubs] - untyped
 
+# pyright: reportUnknownVariableType=false, reportUnknownMemberType=false
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -107,15 +107,17 @@ def correspond(
         trusted = ~np.asarray(leave_out, dtype=bool)
     coefficients, clocks = _canonical(walkers, _n_harmonics(walkers[0]))
     reference = _average_axes(coefficients[trusted], walkers[0])
-    for _ in range(_MAX_ROUNDS):
+    rounds = 0
+    while True:
+        rounds += 1
         aligned, shifts = _align(coefficients, reference)
-        coefficients = _shift_origins(coefficients, shifts)
-        clocks = clocks + shifts
+        coefficients, clocks = _shift_origins(coefficients, shifts), clocks + shifts
         flags = _flags(aligned, reference)
         unflagged = trusted & np.array([not flag for flag in flags])
         trusted = unflagged if unflagged.any() else trusted
         previous, reference = reference, _average_axes(coefficients[trusted], walkers[0])
-        if np.abs(reference.axes - previous.axes).max() < _CONVERGED:
+        change = np.abs(reference.axes - previous.axes).max()
+        if change < _CONVERGED or rounds == _MAX_ROUNDS:
             break
     aligned_walkers = tuple(
         _with_postures(walker, aligned, number, clocks[number])
@@ -198,7 +200,7 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     array of shape (walker, component, marker, axis)
 
     """
-    postures = []
+    postures: list[np.ndarray] = []
     for walker in walkers:
         p, harmonics = walker.p, walker.harmonics
         if walker.fit is not None:
@@ -238,7 +240,8 @@ def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray,
 
     Returns arrays of shape (walker, 2 * harmonic, feature) and (walker,), the latter in radians.
     """
-    coefficients, clocks = [], []
+    coefficients: list[np.ndarray] = []
+    clocks: list[float] = []
     for walker in walkers:
         known = _movement(walker, n_harmonics)
         clock = origin_angle(known, walker.markers)
@@ -271,7 +274,7 @@ def _average_axes(coefficients: np.ndarray, walker: Walker) -> ReferenceWalker:
     Troje (2002).
     """
     average = coefficients.mean(axis=0)
-    axes = []
+    axes: list[np.ndarray] = []
     for harmonic, pair in enumerate(average.reshape(-1, 2, average.shape[-1])):
         scores, _, unit = np.linalg.svd(pair, full_matrices=False)
         anatomy = walker.markers if harmonic == 0 else ()
@@ -337,7 +340,7 @@ def _flags(aligned: _Aligned, reference: ReferenceWalker) -> tuple[str, ...]:
 def _with_postures(walker: Walker, aligned: _Aligned, number: int, clock: float) -> Walker:
     """Return the walker with its postures in correspondence, its clock shifted by an angle."""
     n_components = aligned.postures.shape[1]
-    later_s = wrap_phase(np.array(clock)) / (2 * np.pi * walker.frequency_hz)
+    later_s = wrap_phase(np.array(clock)).item() / (2 * np.pi * walker.frequency_hz)
     fit = walker.fit
     if fit is not None:
         fit = replace(fit, fourier=shift_origin(fit.fourier, clock))
@@ -346,6 +349,6 @@ def _with_postures(walker: Walker, aligned: _Aligned, number: int, clock: float)
         p=aligned.postures[number].reshape(n_components, -1, 3),
         harmonics=np.repeat(np.arange(1, n_components // 2 + 1), 2),
         phases=aligned.phases[number],
-        time_origin_s=walker.time_origin_s + float(later_s),
+        time_origin_s=walker.time_origin_s + later_s,
         fit=fit,
     )

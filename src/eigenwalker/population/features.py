@@ -127,8 +127,8 @@ class FeatureLayout:
                 f"The walker has {_describe(FeatureLayout.of(walker))}, where "
                 f"{_describe(self)} are expected; decompose it the same way."
             )
-        free = walker.phases[1:] if self.form == "eigenposture" else []
-        wrapped = wrap_phase(np.asarray(free, dtype=float))
+        free = walker.phases[1:] if self.form == "eigenposture" else np.zeros(0)
+        wrapped = wrap_phase(free)
         return np.concatenate([walker.p0.ravel(), walker.p.ravel(), [walker.frequency_hz], wrapped])
 
     def walker(self, vector: np.ndarray, *, speed_mm_s: float = float("nan")) -> Walker:

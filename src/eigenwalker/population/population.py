@@ -67,7 +67,7 @@ class Population:
     walkers: Sequence[Walker]
     traits: pd.DataFrame
     correspondence: Correspondence | None = None
-    provenance: Mapping[str, str] = field(default_factory=dict)
+    provenance: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def __post_init__(self) -> None:
         walkers, traits = tuple(self.walkers), pd.DataFrame(self.traits).reset_index(drop=True)
@@ -273,8 +273,8 @@ class Population:
 
     def select(self, rows: Sequence[bool] | Sequence[int] | pd.Series | np.ndarray) -> Population:
         """Return some of the walkers, by a mask or by their numbers; correspondence stays."""
-        numbers = np.arange(len(self))[np.asarray(rows)]
-        if not len(numbers):
+        numbers: list[int] = np.arange(len(self))[np.asarray(rows)].tolist()
+        if not numbers:
             raise ValueError("No walker is left; a population needs one or more.")
         before = self._correspondence
         flags = tuple(before.flags[number] for number in numbers)
@@ -309,15 +309,15 @@ class Population:
         traits = pd.DataFrame(traits).reset_index(drop=True)
         if len(traits) != len(aligned):
             raise ValueError(f"There are {len(aligned)} walkers and {len(traits)} rows of traits.")
-        more, similarity, flags = zip(*aligned, strict=True)
+        flags = [flag for _, _, flag in aligned]
         traits = traits.assign(**{FLAG: join_flags(flags_of(traits), flags)})
         return replace(
             self,
-            walkers=(*self.walkers, *more),
+            walkers=(*self.walkers, *(each for each, _, _ in aligned)),
             traits=pd.concat([self.traits, traits], ignore_index=True),
             correspondence=replace(
                 before,
-                similarity=np.concatenate([before.similarity, np.stack(similarity)]),
+                similarity=np.vstack([before.similarity, *(each for _, each, _ in aligned)]),
                 flags=(*before.flags, *flags),
             ),
         )
@@ -332,7 +332,7 @@ class Population:
             correspondence.
 
         """
-        walkers = [self.walkers[number] for number in np.flatnonzero(self.in_average)]
+        walkers = [self.walkers[number] for number in np.flatnonzero(self.in_average).tolist()]
         mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
         eigenpostures = {
             "sign and order": match_sign_and_order(walkers),

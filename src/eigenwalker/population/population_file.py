@@ -71,7 +71,7 @@ def write_population(content: Stored, path: Path) -> Path:
         "provenance": json.dumps(dict(content.provenance)),
     }
     with atomic_write(path) as unfinished:
-        dataset.to_netcdf(unfinished, engine="scipy", format="NETCDF3_64BIT")
+        dataset.to_netcdf(unfinished, engine="scipy", format="NETCDF3_64BIT")  # pyright: ignore[reportUnknownMemberType]
     return path
 
 

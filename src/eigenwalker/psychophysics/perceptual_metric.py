@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 from sklearn.base import BaseEstimator, RegressorMixin
-from sklearn.utils import Tags, validation
+from sklearn.utils import Tags, check_consistent_length, column_or_1d
 from sklearn.utils.validation import check_is_fitted
 
-_validated: Callable[..., Any] = validation.validate_data
-"""scikit-learn's, typed by hand: its default values make type checkers take X for a str."""
+from eigenwalker.core.sklearn_validation import validate_data
 
 
 class PerceptualMetric(RegressorMixin, BaseEstimator):
@@ -87,7 +85,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         """
         plain = _is_plain(X, 2) and _is_plain(y, 1) and np.shape(X)[0] == np.shape(y)[0]
         checks = {"skip_check_array": True} if plain else {"dtype": np.float64, "y_numeric": True}
-        table, differences = _validated(self, X, y, **checks)
+        table, differences = validate_data(self, X, y, **checks)
         self.weights_, self.constant_ = non_negative_fit(
             table,
             differences,
@@ -102,7 +100,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
     def predict(self, X: ArrayLike) -> np.ndarray:
         """Return the perceived difference of each pair, of shape (pair,)."""
         check_is_fitted(self)
-        table = _validated(self, X, dtype=np.float64, reset=False)
+        table = validate_data(self, X, dtype=np.float64, reset=False)
         return self.constant_ + table @ self.weights_
 
     def __sklearn_tags__(self) -> Tags:
@@ -130,8 +128,8 @@ def _is_plain(values: ArrayLike, n_dimensions: int) -> bool:
 
 
 def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
-    counts = validation.column_or_1d(np.asarray(sample_weight, dtype=float))
-    validation.check_consistent_length(counts, X)
+    counts = column_or_1d(np.asarray(sample_weight, dtype=float))
+    check_consistent_length(counts, X)
     if counts.ndim != 1 or counts.min() < 0 or not counts.sum() > 0:
         raise ValueError(
             f"sample_weight must be one number a pair, 0 or more and not all zero; got shape "
