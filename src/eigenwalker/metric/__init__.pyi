@@ -6,7 +6,7 @@ from .clip_distances import (
 )
 from .clips import Clip as Clip, Clips as Clips, Loop as Loop, PreparedClip as PreparedClip
 from .comparison import Comparison as Comparison, compare_walks as compare_walks
-from .comparison_pipeline import full_joints as full_joints, prepare_walk as prepare_walk
+from .comparison_pipeline import prepare_walk as prepare_walk
 from .cycles import CYCLE_FRAMES as CYCLE_FRAMES, common_clock as common_clock
 from .frame_metrics import (
     FrameMetric as FrameMetric,

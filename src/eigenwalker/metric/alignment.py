@@ -59,17 +59,7 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
         (s_x, s_y) = (\langle x \rangle, \langle y \rangle)
         - R_\theta\, (\langle x' \rangle, \langle y' \rangle)
 
-    Parameters
-    ----------
-    a, b : array of shape (frame, point, axis)
-        Positions in mm, none missing.
-    half : int
-        Frames of the window on either side of each frame; fewer at the ends of the clips.
-
-    Returns
-    -------
-    Alignment
-        Of shape (frame, other frame).
+    Shapes: a, b (frame, point, axis).
 
     References
     ----------
@@ -101,17 +91,7 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
 def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
     """Return how the frames of one clip are laid over those of another, step by step.
 
-    Parameters
-    ----------
-    a, b : array of shape (step, point, axis)
-        Corresponding positions in mm, none missing.
-    half : int
-        Steps on either side that count too (`align_windows`); fewer at the ends.
-
-    Returns
-    -------
-    Alignment
-        Of shape (step,).
+    Shapes: a, b (step, point, axis).
 
     Examples
     --------
@@ -171,22 +151,7 @@ def aligned_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of all pairs of frames, the second clip aligned to the first.
 
-    Parameters
-    ----------
-    a, b : array of shape (frame, point, axis)
-        Positions in mm or velocities in mm/s, none missing.
-    alignment : Alignment
-        Of shape (frame, other frame).
-    weights : array of shape (point,)
-    shape, parameter
-        F, as in `point_map`.
-    translate : bool
-        Whether points are translated as well as rotated: positions are, velocities are not.
-
-    Returns
-    -------
-    array of shape (frame, other frame)
-
+    Shapes: a, b (frame, point, axis); weights (point,); returns (frame, other frame).
     """
     rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
     moves = np.zeros((4, len(a), len(b)))

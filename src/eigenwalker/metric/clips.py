@@ -118,20 +118,7 @@ Clips = Mapping[str, Clip] | Sequence[Clip]
 def as_trajectories(clip: Clip) -> xr.DataArray:
     """Return the trajectories of any clip.
 
-    Parameters
-    ----------
-    clip : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
-        A walker is played for `N_STRIDES` strides at `RATE_HZ`; of a loop the one cycle is taken.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        Positions in mm.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is none of these, or not in millimetres.
+    Shapes: clip (time, marker, axis); returns (time, marker, axis).
 
     Examples
     --------

@@ -67,18 +67,7 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
 def full_joints(capture: Clip) -> xr.DataArray:
     """Return the joints of a capture with feet, hands and captured rotations, where it has them.
 
-    Parameters
-    ----------
-    capture : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
-        A capture of markers or joints.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        The 15 joints and those of feet, hands, neck and clavicles that were not hidden for longer
-        than gaps are filled (`MAX_GAP_S`); ``attrs["hidden_markers"]`` names the others. A
-        coordinate ``rotation`` as `with_rotations` adds it.
-
+    Shapes: capture (time, marker, axis); returns (time, marker, axis).
     """
     capture = as_trajectories(capture)
     joints = with_rotations(virtual_markers(capture, joints="full"), capture)
@@ -94,19 +83,8 @@ def with_rotations(joints: xr.DataArray, capture: xr.DataArray) -> xr.DataArray:
     A bone turns like the body of the capture in whose frame both its ends stay most nearly fixed
     (`RIGID_MM`). Names and rest postures, which differ between formats, do not matter.
 
-    Parameters
-    ----------
-    joints : DataArray of shape (time, marker, axis)
-        The joints of the capture (`virtual_markers`).
-    capture : DataArray of shape (time, marker, axis)
-        The capture, on the same clock.
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        With a coordinate ``rotation``: rotation vectors in the frame of the room of the bone that
-        begins at each joint (of the head at the head), NaN where none is known. Unchanged if the
-        capture has no rotation of a bone.
+    Shapes: joints (time, marker, axis); capture (time, marker, axis); returns (time,
+    marker, axis).
 
     Examples
     --------

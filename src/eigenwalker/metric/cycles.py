@@ -80,17 +80,7 @@ def common_clock(loop: Loop) -> xr.DataArray:
 class RegisteredPairs(NamedTuple):
     """Registered pairs of cycles.
 
-    Parameters
-    ----------
-    pairs : array of int of shape (pair, 2)
-        Indices of the cycles.
-    angles : array of shape (pair,)
-        Rotations of the second cycle about the vertical in radians.
-    steps : array of int of shape (pair, step, 2)
-        Frames of both cycles along the closed path.
-    lengths : array of int of shape (pair,)
-        Steps of each path.
-
+    Shapes: pairs (pair, 2); angles (pair,); steps (pair, step, 2); lengths (pair,).
     """
 
     pairs: np.ndarray
@@ -109,17 +99,7 @@ def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
     The sums over frames and points of its second step are correlations, computed from the first
     `N_HARMONICS` Fourier coefficients.
 
-    Parameters
-    ----------
-    cycles : array of shape (cycle, frame, point, axis)
-        Strides on the common clock (`common_clock`), in mm.
-    pairs : array of int of shape (pair, 2)
-        Indices of the cycles of each pair.
-
-    Returns
-    -------
-    RegisteredPairs
-
+    Shapes: cycles (cycle, frame, point, axis); pairs (pair, 2).
     """
     centred = cycles.copy()
     centred[..., :2] -= centred[..., :2].mean(axis=(1, 2), keepdims=True)
@@ -143,18 +123,7 @@ def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
 def mean_distances(points: np.ndarray, registered: RegisteredPairs, metric: Metric) -> np.ndarray:
     """Return the mean of F(d) along the path of each pair of cycles, for each point.
 
-    Parameters
-    ----------
-    points : array of shape (cycle, frame, point, part)
-        What is compared: positions, velocities or orientations.
-    registered : RegisteredPairs
-    metric : FrameMetric or GroupMetric
-        Of which `by` and F are used.
-
-    Returns
-    -------
-    array of shape (pair, point)
-
+    Shapes: points (cycle, frame, point, part); returns (pair, point).
     """
     if metric.by == "positions":
         points = points.copy()

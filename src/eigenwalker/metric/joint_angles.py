@@ -206,17 +206,7 @@ def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]
     The y axis is the line of the hips for the pelvis, of the shoulders for the trunk; z is the
     direction from pelvis to sternum, made orthogonal to y.
 
-    Parameters
-    ----------
-    place : mapping of str to array of shape (time, 3)
-        Positions of the joints ``pelvis``, ``sternum``, and hips or shoulders, by name.
-    part : {"pelvis", "trunk"}
-        Part of the body.
-
-    Returns
-    -------
-    array of shape (time, 3, 3)
-        Rotation matrices with the axes as columns; NaN where joints are missing.
+    Shapes: place (time, 3); returns (time, 3, 3).
 
     Examples
     --------

@@ -159,17 +159,7 @@ def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
     ``DEPTH_RATIO * lowest + DEPTH_MARGIN``; minima are refined by parabolas. As strides differ in
     duration, the result is the mean of :math:`\tau_k / k` over the minima near all multiples k.
 
-    Parameters
-    ----------
-    movement : array of shape (time, feature)
-        Positions, evenly sampled, in place.
-    rate_hz : float
-        Frames a second.
-
-    Returns
-    -------
-    float or None
-        None if no minimum is below `REPEATS_BELOW`.
+    Shapes: movement (time, feature).
 
     Examples
     --------

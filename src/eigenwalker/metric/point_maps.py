@@ -30,23 +30,8 @@ def point_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of every frame of one clip with every frame of another.
 
-    Parameters
-    ----------
-    a : array of shape (frame, point, part)
-        Three parts are a position or velocity, compared by Euclidean distance; four are a unit
-        quaternion, compared by the angle between orientations (`angle_between`).
-    b : array of shape (other frame, point, part)
-    weights : array of shape (point,)
-    shape : {"absolute", "squared", "sigmoid", "power"}
-        F (`SHAPES`).
-    parameter : float
-        Scale of the sigmoid, exponent of the power.
-
-    Returns
-    -------
-    array of shape (frame, other frame)
-        Points with a missing part (NaN) in either frame are left out and the weights of the others
-        grow; NaN where no point is left.
+    Shapes: a (frame, point, part); b (other frame, point, part); weights (point,); returns
+    (frame, other frame).
 
     Examples
     --------
@@ -152,14 +137,7 @@ def _point_by_point(
 def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the distance of each point of one clip from the same point of another, frame by frame.
 
-    Parameters
-    ----------
-    a, b : array of shape (step, point, part)
-        As for `point_map`.
-
-    Returns
-    -------
-    array of shape (step, point)
+    Shapes: a, b (step, point, part); returns (step, point).
 
     Examples
     --------

@@ -26,23 +26,7 @@ FEW_SHARED = 0.5
 def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str], np.ndarray]:
     """Return what is compared of a clip, as an unlabelled array.
 
-    Parameters
-    ----------
-    clip : DataArray of shape (time, marker, axis)
-        Positions in mm.
-    by : {"positions", "velocities", "angles"}
-        Velocities are central differences; of a cycle, the derivatives of its first
-        `VELOCITY_HARMONICS` harmonics. Angles are orientations of bones (`joint_quaternions`).
-    periodic : bool
-        Whether the first frame follows the last, as in a cycle.
-
-    Returns
-    -------
-    names : list of str
-        Markers or bones.
-    values : array of shape (time, point, part)
-        Three parts in mm or mm/s, or the four of a unit quaternion.
-
+    Shapes: clip (time, marker, axis); values (time, point, part).
     """
     if by == "angles":
         orientations = joint_quaternions(clip)
@@ -82,14 +66,7 @@ def select_points(names: list[str], values: np.ndarray, selected: list[str]) -> 
 
 
 def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
-    """Return the names in both, sorted, so that neither order matters.
-
-    Raises
-    ------
-    ValueError
-        If there are none, or a clip has a name twice.
-
-    """
+    """Return the names in both, sorted, so that neither order matters."""
     for names in (first, second):
         refuse_duplicate_names(names)
     names = sorted({str(name) for name in first} & {str(name) for name in second})
@@ -124,14 +101,7 @@ def _abbreviated(names: Sequence[str], n_shown: int = 6) -> str:
 
 
 def common_positions(a: xr.DataArray, b: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions of the markers that are seen in all frames of both clips.
-
-    Raises
-    ------
-    ValueError
-        If there are none.
-
-    """
+    """Return positions of the markers that are seen in all frames of both clips."""
     names = common_names(a.marker.values, b.marker.values)
     values_a, values_b = a.sel(marker=names).values, b.sel(marker=names).values
     seen_a, seen_b = (np.isfinite(values).all(axis=(0, 2)) for values in (values_a, values_b))

@@ -70,19 +70,6 @@ def prepare_together(
     """Return clips prepared to be compared with each other, with the points that all have.
 
     Points that only some clips have then influence nothing. Prepared clips stay as they are.
-
-    Parameters
-    ----------
-    clips : mapping of str to clip, sequence of clips, or Population
-        Clips in a sequence are named "0", "1" and so on.
-    done : callable, optional
-        Called after each clip.
-
-    Raises
-    ------
-    ValueError
-        If they have no points in common.
-
     """
     clips = getattr(clips, "walkers", clips)
     if not isinstance(clips, Mapping):
