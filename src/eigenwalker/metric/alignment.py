@@ -44,10 +44,9 @@ class Alignment(NamedTuple):
 def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
     r"""Return how each window of frames of one clip is laid over each window of another.
 
-    The rotation :math:`\theta` about the vertical and translation :math:`(s_x, s_y)` that minimise
-    the summed squared distance between the points of both windows. With means
-    :math:`\langle\cdot\rangle` over all points and frames of the windows, and primes for the
-    second clip:
+    The rotation :math:`\theta` about the vertical and the shift that minimise the summed squared
+    distance between the points of both windows (Kovar, Gleicher & Pighin 2002, section 3.1). With
+    means over all points and frames of the windows, and primes for the second clip:
 
     .. math::
 
@@ -56,14 +55,10 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
         + \langle x \rangle\langle y' \rangle}
         {\langle x x' + y y' \rangle - \langle x \rangle\langle x' \rangle
         - \langle y \rangle\langle y' \rangle}, \qquad
-        (s_x, s_y) = (\langle x \rangle, \langle y \rangle)
-        - R_\theta\, (\langle x' \rangle, \langle y' \rangle)
+        s = \langle (x, y) \rangle - R_\theta\, \langle (x', y') \rangle
 
-    Shapes: a, b (frame, point, axis).
-
-    References
-    ----------
-    Kovar, Gleicher & Pighin (2002), Motion graphs, section 3.1.
+    Positions are of shape (frame, point, axis), none missing; `half` is the number of frames of the
+    window on either side, fewer at the ends. The alignment is of shape (frame, other frame).
 
     Examples
     --------
@@ -89,17 +84,9 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
 
 
 def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
-    """Return how the frames of one clip are laid over those of another, step by step.
+    """Return how corresponding positions of shape (step, point, axis) are aligned, step by step.
 
-    Shapes: a, b (step, point, axis).
-
-    Examples
-    --------
-    >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
-    >>> alignment = align_steps(posture, posture + np.array([30.0, 0, 0]))
-    >>> alignment.angles.tolist(), alignment.shifts.tolist()
-    ([0.0], [[-30.0, 0.0]])
-
+    Up to `half` steps on either side count too.
     """
     middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)
     (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
@@ -151,7 +138,8 @@ def aligned_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of all pairs of frames, the second clip aligned to the first.
 
-    Shapes: a, b (frame, point, axis); weights (point,); returns (frame, other frame).
+    a, b: positions or velocities of shape (frame, point, axis), none missing; `translate` is False
+    for velocities, which are only rotated. The map is of shape (frame, other frame).
     """
     rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
     moves = np.zeros((4, len(a), len(b)))

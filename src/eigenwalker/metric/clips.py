@@ -39,15 +39,11 @@ class Loop:
     seam_mm : float
         Distance between the two postures that a plain cut would join, mean over markers.
     mismatch_mm : float
-        Distance between corresponding postures of the two blended periods, mean over markers and
-        time. Blending averages this difference away.
+        Distance between corresponding postures of both periods, mean over markers and time, which
+        blending averages away.
     n_periods : int
         2 if two periods were blended; 1 if the clip holds a single period, whose seam was
         distributed over it.
-
-    See Also
-    --------
-    loop : Makes a loop of a clip.
 
     """
 
@@ -86,7 +82,7 @@ class Loop:
 
 @dataclass(frozen=True, eq=False)
 class PreparedClip:
-    """A clip with its stride on the common clock, ready to be compared with many others.
+    """A clip with its stride on the common clock (`prepare`).
 
     Parameters
     ----------
@@ -96,10 +92,6 @@ class PreparedClip:
         One stride on the common clock (`common_clock`); None if the clip does not repeat.
     not_periodic_reason : str
         Why there is no stride; empty if there is one.
-
-    See Also
-    --------
-    prepare : Makes one.
 
     """
 
@@ -116,17 +108,7 @@ Clips = Mapping[str, Clip] | Sequence[Clip]
 
 
 def as_trajectories(clip: Clip) -> xr.DataArray:
-    """Return the trajectories of any clip.
-
-    Shapes: clip (time, marker, axis); returns (time, marker, axis).
-
-    Examples
-    --------
-    >>> walker = ew.load_population().walkers[0]
-    >>> float(as_trajectories(walker).time[-1].round(1)) == round(3 * walker.period_s, 1)
-    True
-
-    """
+    """Return the trajectories of any clip; of a walker `N_STRIDES` strides, of a loop one cycle."""
     if isinstance(clip, Walker):
         return clip.trajectories(np.arange(0, N_STRIDES * clip.period_s, 1 / RATE_HZ))
     if isinstance(clip, Loop):

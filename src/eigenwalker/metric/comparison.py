@@ -32,7 +32,6 @@ class Comparison:
     a, b : PreparedClip
         The walks.
     metric : FrameMetric or GroupMetric
-        The metric.
     registration : Registration
         Corresponding moments: the path along which everything here is measured.
     distance : float
@@ -78,11 +77,6 @@ def compare_walks(a: Clip, b: Clip, *, metric: str | Metric = "positions-sigmoid
     Returns
     -------
     Comparison
-
-    See Also
-    --------
-    clip_distance : The distance alone.
-    motion_maps : When each group differs.
 
     References
     ----------

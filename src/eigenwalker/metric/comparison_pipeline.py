@@ -22,9 +22,9 @@ RIGID_MM = 1.0
 def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
     """Return the steady strides of a capture as a walk that can be compared with others.
 
-    1. `full_joints`: joints, feet, hands and captured rotations.
-    2. `in_place`: the steady strides, facing +x, without progress and drift.
-    3. `retarget`: the neutral mannequin, so that differences are of movement and not of build.
+    1. The joints of its markers, with feet, hands and captured rotations (`virtual_markers`).
+    2. The steady strides in place, facing +x (`in_place`).
+    3. The neutral mannequin (`retarget`), so that differences are of movement and not of build.
 
     Parameters
     ----------
@@ -44,11 +44,6 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
     ValueError
         As `virtual_markers` and `in_place` do.
 
-    See Also
-    --------
-    compare_walks, clip_distance : Compare such walks.
-    prepare : The stride of a walk, for many comparisons.
-
     References
     ----------
     Pražák et al. (2010), section 3.
@@ -67,7 +62,7 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
 def full_joints(capture: Clip) -> xr.DataArray:
     """Return the joints of a capture with feet, hands and captured rotations, where it has them.
 
-    Shapes: capture (time, marker, axis); returns (time, marker, axis).
+    Those hidden for longer than gaps are filled are left out (``attrs["hidden_markers"]``).
     """
     capture = as_trajectories(capture)
     joints = with_rotations(virtual_markers(capture, joints="full"), capture)
@@ -78,20 +73,12 @@ def full_joints(capture: Clip) -> xr.DataArray:
 
 
 def with_rotations(joints: xr.DataArray, capture: xr.DataArray) -> xr.DataArray:
-    """Return joints with the captured rotations of their bones.
+    """Return joints with the captured rotations of their bones as a coordinate ``rotation``.
 
-    A bone turns like the body of the capture in whose frame both its ends stay most nearly fixed
-    (`RIGID_MM`). Names and rest postures, which differ between formats, do not matter.
-
-    Shapes: joints (time, marker, axis); capture (time, marker, axis); returns (time,
-    marker, axis).
-
-    Examples
-    --------
-    >>> walk = ew.simulate_walk(seed=1, duration_s=1)
-    >>> "rotation" in with_rotations(walk, walk).coords
-    False
-
+    These are rotation vectors in the frame of the room of the bone that begins at each joint (of
+    the head at the head), NaN where none is known. A bone turns like the body of the capture in
+    whose frame both its ends stay most nearly fixed (`RIGID_MM`); names and rest postures, which
+    differ between formats, do not matter. Joints and capture have one clock.
     """
     if "rotation" not in capture.coords or capture.sizes["time"] != joints.sizes["time"]:
         return joints

@@ -35,24 +35,22 @@ _PAIRS = 16
 def common_clock(loop: Loop) -> xr.DataArray:
     r"""Return a loop in `CYCLE_FRAMES` frames that begins at a phase given by its own movement.
 
-    With :math:`X_h` the Fourier coefficients of all coordinates over the cycle, the cycle begins at
-    the phase
+    Uniform time scaling: every stride gets the same number of frames, while its times keep its
+    duration. It is resampled by its Fourier coefficients X and begins at the phase
 
     .. math:: \theta = -\tfrac12 \arg \sum_{marker, axis} X_1^2
 
     at which the fundamental of all markers together is farthest from its mean (one of two such
-    phases, half a stride apart), and is resampled by its Fourier series. Every stride gets the same
-    number of frames (uniform time scaling); its times keep its duration.
+    phases, half a stride apart).
 
     Parameters
     ----------
     loop : Loop
-        A seamless cycle.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        Positions in mm, `CYCLE_FRAMES` frames from 0 s.
+        Positions in mm, from 0 s.
 
     Examples
     --------
@@ -80,7 +78,9 @@ def common_clock(loop: Loop) -> xr.DataArray:
 class RegisteredPairs(NamedTuple):
     """Registered pairs of cycles.
 
-    Shapes: pairs (pair, 2); angles (pair,); steps (pair, step, 2); lengths (pair,).
+    pairs: indices of both cycles, (pair, 2); angles: rotations of the second about the vertical in
+    radians, (pair,); steps: frames of both along the closed path, (pair, step, 2); lengths: steps
+    of each path, (pair,).
     """
 
     pairs: np.ndarray
@@ -96,10 +96,8 @@ class RegisteredPairs(NamedTuple):
 def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
     """Return how pairs of cycles correspond in phase, heading and place, as in `register_walks`.
 
-    The sums over frames and points of its second step are correlations, computed from the first
-    `N_HARMONICS` Fourier coefficients.
-
-    Shapes: cycles (cycle, frame, point, axis); pairs (pair, 2).
+    cycles: strides on the common clock, (cycle, frame, point, axis), mm; pairs: indices, (pair, 2).
+    The sums of its second step are correlations, computed from `N_HARMONICS` Fourier coefficients.
     """
     centred = cycles.copy()
     centred[..., :2] -= centred[..., :2].mean(axis=(1, 2), keepdims=True)
@@ -121,9 +119,9 @@ def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
 
 
 def mean_distances(points: np.ndarray, registered: RegisteredPairs, metric: Metric) -> np.ndarray:
-    """Return the mean of F(d) along the path of each pair of cycles, for each point.
+    """Return the mean of F(d) along the path of each pair of cycles, of shape (pair, point).
 
-    Shapes: points (cycle, frame, point, part); returns (pair, point).
+    points: positions, velocities or orientations of shape (cycle, frame, point, part).
     """
     if metric.by == "positions":
         points = points.copy()

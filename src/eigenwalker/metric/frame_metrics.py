@@ -31,8 +31,7 @@ class FrameMetric:
     .. math:: D(i, j) = \sum_k w_k F(d_k), \qquad w_k \ge 0, \quad \sum_k w_k = 1
 
     with :math:`d_k` the distance of point k in frame i of one clip from the same point in frame j
-    of the other, over the points that both have. The constant c of the paper is left out: a frame
-    has no distance from itself.
+    of the other. The constant c of the paper is left out: a frame has no distance from itself.
 
     Parameters
     ----------
@@ -48,17 +47,7 @@ class FrameMetric:
         For "power".
     weights : mapping of str to float, optional
         Weight of each point, 0 or more; other points have none. Left out, all are equal. Weights
-        are divided by their sum over the points that are compared.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is unknown, missing or negative.
-
-    See Also
-    --------
-    GroupMetric : A weight for each joint group.
-    PUBLISHED : Metrics of the literature.
+        are divided by their sum over the points that both clips have.
 
     References
     ----------
@@ -98,14 +87,7 @@ class FrameMetric:
             raise ValueError("This is no metric of frames: " + "; ".join(problems) + ".")
 
     def weights_for(self, names: Sequence[str]) -> np.ndarray:
-        """Return a weight for each named point, 0 or more; they sum to 1.
-
-        Raises
-        ------
-        ValueError
-            If all weights are 0.
-
-        """
+        """Return a weight for each named point, 0 or more; they sum to 1."""
         given = dict.fromkeys(names, 1.0) if self.weights is None else self.weights
         weights = np.array([given.get(name, 0.0) for name in names])
         if not weights.sum() > 0:
@@ -133,16 +115,6 @@ class GroupMetric:
     group_weights : mapping of str to float
         Weight of each of `GROUPS`, 0 or more; other groups have none. The points of a group, left
         and right (`group_points`), share its weight.
-
-    Raises
-    ------
-    ValueError
-        If a group is unknown, a weight negative, or what the shape needs is missing.
-
-    See Also
-    --------
-    FrameMetric : A weight for each point.
-    PUBLISHED : Metrics of the literature.
 
     References
     ----------
@@ -177,12 +149,6 @@ class GroupMetric:
         """Return a weight for each named point; they sum to 1.
 
         The weight of a group without points falls to the others.
-
-        Raises
-        ------
-        ValueError
-            If no group with a weight has points among these.
-
         """
         names = [str(name) for name in names]
         weights = dict.fromkeys(names, 0.0)
@@ -199,15 +165,7 @@ class GroupMetric:
         return np.array([weights[name] for name in names]) / total
 
     def missing_groups(self, names: Sequence[str]) -> list[str]:
-        """Return the groups that have a weight and no points among these.
-
-        Examples
-        --------
-        >>> metric = ew.metric.PUBLISHED["angles-absolute"]
-        >>> metric.missing_groups(["head", "left_thigh", "left_calf"])
-        ['clavicle', 'upper_arm']
-
-        """
+        """Return the groups that have a weight and no points among these."""
         present = group_points(names, self.by)
         return [g for g, weight in self.group_weights.items() if weight > 0 and g not in present]
 

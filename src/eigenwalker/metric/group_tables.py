@@ -25,13 +25,11 @@ def group_table(
 
     Parameters
     ----------
-    clips
-        As in `pair_table`, best from `prepare_walk`.
+    clips, progress
+        As in `pair_table`; walks best from `prepare_walk`.
     *metrics : str, FrameMetric or GroupMetric
-        One or several, of which `by` and F are used; weights are not. With several, such as
-        positions and velocities, a fit weighs these components too.
-    progress : callable, optional
-        Called with the number of clips and pairs that are done, and of all, for each metric.
+        One or several; their weights are not used. With several, such as positions and velocities,
+        a fit weighs these components too.
 
     Returns
     -------
@@ -43,8 +41,7 @@ def group_table(
 
     See Also
     --------
-    missing_groups : Groups that a table lacks.
-    collinear_groups : Columns whose weights a fit can hardly separate.
+    missing_groups, collinear_groups : What a fit cannot determine.
 
     References
     ----------
@@ -71,7 +68,7 @@ def group_table(
 
 
 def missing_groups(table: pd.DataFrame) -> list[str]:
-    """Return the joint groups that a table of groups lacks.
+    """Return the joint groups that a table of groups lacks, named like its columns.
 
     Parameters
     ----------
@@ -81,13 +78,11 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
     Returns
     -------
     list of str
-        Named like the columns.
 
     Examples
     --------
-    >>> walks = [ew.metric.retarget(ew.simulate_walk(seed=seed, rate_hz=60)) for seed in (1, 2)]
-    >>> missing_groups(group_table(walks, "positions-absolute"))
-    ['clavicle']
+    >>> missing_groups(pd.DataFrame(columns=[group for group in GROUPS if group != "toe"]))
+    ['toe']
 
     """
     prefixes = dict.fromkeys(str(name).rpartition(" ")[0] for name in table.columns)
@@ -96,10 +91,7 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
 
 
 def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
-    """Return pairs of columns whose weights a fit can hardly separate.
-
-    Such columns correlate above `COLLINEAR`. A fit can give the weight of one to the other, and
-    determines only their sum.
+    """Return pairs of columns of which a fit determines only the sum of both weights.
 
     Parameters
     ----------
@@ -109,7 +101,7 @@ def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns ``first``, ``second`` and ``correlation``.
+        Columns ``first``, ``second`` and ``correlation``, where that is above `COLLINEAR`.
 
     Examples
     --------

@@ -64,16 +64,15 @@ def joint_quaternions(
 ) -> xr.DataArray:
     r"""Return the orientation of each bone as a unit quaternion: the q of Pražák et al., eq. 1.
 
-    Orientations count from a rest posture in which arms and legs hang down. From positions, the
-    orientation of a bone is its swing, the shortest rotation from rest to its direction, preceded
-    by a twist about its own axis. For thighs and upper arms the twist turns the axis of knee or
-    elbow, :math:`h` at rest, towards the normal of the plane of the limb, :math:`n` (as long as
-    the sine of the bend): it is the angle about the bone from :math:`h` to
-    :math:`n + h \sin 15°`, so that a straight limb has no twist. Other bones have none.
+    Orientations count from a rest posture in which arms and legs hang down. From positions, a bone
+    first twists about its own axis and then swings by the shortest rotation from rest to its
+    direction. Thighs and upper arms twist by the angle about the bone from the axis of knee or
+    elbow at rest, :math:`h`, to :math:`n + h \sin 15°`, with :math:`n` the normal of the plane of
+    the limb, as long as the sine of the bend: a straight limb has no twist. Nor have other bones.
 
-    Captured rotations are taken instead where the clip has them, multiplied by a constant rotation
-    for each bone so that their mean agrees with the orientations from positions: the rest posture
-    of the file does not matter.
+    Captured rotations are taken instead where the clip has them, multiplied for each bone by the
+    constant rotation that makes their mean that of the orientations from positions: the rest
+    posture of the file does not matter.
 
     Parameters
     ----------
@@ -98,10 +97,6 @@ def joint_quaternions(
     ------
     ValueError
         If pelvis, sternum, a hip or a shoulder is missing.
-
-    See Also
-    --------
-    angle_between : The distance between orientations.
 
     References
     ----------
@@ -201,21 +196,11 @@ def _carrier(part: Literal["pelvis", "trunk"], place: Mapping[str, np.ndarray]) 
 
 
 def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> np.ndarray:
-    """Return the axes of pelvis or trunk in the room: x forward, y left, z up along the spine.
+    """Return the axes of pelvis or trunk in the room as the columns of rotation matrices.
 
-    The y axis is the line of the hips for the pelvis, of the shoulders for the trunk; z is the
-    direction from pelvis to sternum, made orthogonal to y.
-
-    Shapes: place (time, 3); returns (time, 3, 3).
-
-    Examples
-    --------
-    >>> place = {"pelvis": [[0, 0, 900]], "sternum": [[0, 0, 1400]]}
-    >>> place |= {"left_hip": [[-90, 0, 900]], "right_hip": [[90, 0, 900]]}
-    >>> place = {name: np.array(position, dtype=float) for name, position in place.items()}
-    >>> body_frame(place, "pelvis")[0, :, 0].tolist()
-    [0.0, 1.0, 0.0]
-
+    x is forward, y the line of the hips for the pelvis, of the shoulders for the trunk, z the
+    direction from pelvis to sternum, made orthogonal to y. Positions are of shape (time, 3) by
+    name, matrices of shape (time, 3, 3); NaN where joints are missing.
     """
     joint = {"pelvis": "hip", "trunk": "shoulder"}[part]
     left, right = (place[f"{side}_{joint}"] for side in SIDES)

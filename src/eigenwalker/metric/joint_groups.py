@@ -33,11 +33,10 @@ def group_points(
 ) -> dict[str, tuple[str, ...]]:
     """Return the points of each joint group, among those that a clip has.
 
-    Figure 5 of Pražák et al. (2010) names bones, while their eqs. 2 and 3 take joint positions. By
-    positions and velocities a bone is its proximal joint, since "the most important feature of the
-    arm is the elbow" and the forearm has the highest weight: upper arm is shoulder, forearm elbow,
-    hand wrist, thigh hip, calf knee. The clavicle is its own joint, or else the sternum; the toe
-    is the toe, or else the ankle. By angles a bone is itself.
+    Figure 5 names bones, while eqs. 2 and 3 take joint positions. By positions and velocities a
+    bone is its proximal joint, since "the most important feature of the arm is the elbow" and the
+    forearm has the highest weight. The clavicle is its own joint, or else the sternum; the toe is
+    the toe, or else the ankle. By angles a bone is itself.
 
     Parameters
     ----------
@@ -47,7 +46,7 @@ def group_points(
         What is compared.
     mannequin : bool
         Whether the clip is of the mannequin (`is_mannequin`), whose shoulders are fixed to its
-        sternum: there the sternum does not stand for clavicles, as it moves with the shoulders.
+        sternum, so that the sternum does not stand for clavicles.
 
     Returns
     -------
@@ -62,7 +61,7 @@ def group_points(
 
     References
     ----------
-    Pražák et al. (2010), fig. 5.
+    Pražák et al. (2010), fig. 5 and section 5.
 
     Examples
     --------
@@ -94,21 +93,17 @@ def _members(group: str, present: set[str], by: By) -> tuple[str, ...]:
 
 
 def group_means(points: pd.DataFrame, by: By, *, mannequin: bool = False) -> pd.DataFrame:
-    """Return a table of joint groups from one of points.
+    """Return the means of a table of points over the points of each joint group.
 
     Parameters
     ----------
     points : DataFrame of pairs by points
-        Mean F(d_k) of each point, from `pair_components`.
-    by : {"positions", "velocities", "angles"}
-        What was compared.
-    mannequin : bool
+    by, mannequin
         As in `group_points`.
 
     Returns
     -------
     DataFrame of pairs by groups
-        Mean over the points of each group, left and right; groups without points are left out.
 
     Examples
     --------

@@ -36,15 +36,10 @@ def rows_of_map(rows, columns, weights, code, parameter, first, result):
         for k in range(rows.shape[1]):
             x, y, z, weight = rows[i, k, 0], rows[i, k, 1], rows[i, k, 2], weights[k]
             xs, ys, zs = columns[k, 0, first:], columns[k, 1, first:], columns[k, 2, first:]
-            if code == 0:
-                for j in range(row.size):
-                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    row[j] += weight * np.sqrt(dx * dx + dy * dy + dz * dz)
-            else:
-                for j in range(row.size):
-                    dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
-                    distance = np.sqrt(dx * dx + dy * dy + dz * dz)
-                    row[j] += weight * (distance / (distance + scale))
+            for j in range(row.size):
+                dx, dy, dz = x - xs[j], y - ys[j], z - zs[j]
+                distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+                row[j] += weight * (distance if code == 0 else distance / (distance + scale))
         result[i, first:] = row
 
 

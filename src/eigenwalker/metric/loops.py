@@ -147,7 +147,7 @@ def _moving(values: np.ndarray) -> np.ndarray:
 
 
 def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
-    r"""Return the period of a movement in frames, or None if it does not repeat.
+    r"""Return the period of a movement of shape (time, feature) in frames; None if nothing repeats.
 
     The mean of the squared self map along the diagonal of lag :math:`\tau`, relative to the mean
     over all pairs of frames,
@@ -158,15 +158,6 @@ def period_of(movement: np.ndarray, rate_hz: float) -> float | None:
     stride frequency and half the clip, with a minimum of at most
     ``DEPTH_RATIO * lowest + DEPTH_MARGIN``; minima are refined by parabolas. As strides differ in
     duration, the result is the mean of :math:`\tau_k / k` over the minima near all multiples k.
-
-    Shapes: movement (time, feature).
-
-    Examples
-    --------
-    >>> angles = 2 * np.pi * np.arange(100) / 33.3
-    >>> round(period_of(np.stack([np.sin(angles), np.cos(2 * angles)], axis=1), 30), 1)
-    33.3
-
     """
     n_frames = len(movement)
     heights = _diagonal_means(movement)

@@ -51,7 +51,7 @@ LENGTHS_MM = {part: HEIGHT_MM * share for part, share in SHARES.items()}
 
 
 def is_mannequin(clip: xr.DataArray) -> bool:
-    """Return whether a clip is of the neutral mannequin, by the lengths of its trunk and legs.
+    """Return whether a clip is of the neutral mannequin (`retarget`), by its trunk and legs.
 
     Parameters
     ----------
@@ -61,11 +61,7 @@ def is_mannequin(clip: xr.DataArray) -> bool:
     Returns
     -------
     bool
-        False if fewer than three of these lengths can be measured.
-
-    See Also
-    --------
-    retarget : Shows a walk on the mannequin.
+        False if fewer than three lengths can be measured.
 
     Examples
     --------

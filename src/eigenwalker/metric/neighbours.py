@@ -38,16 +38,11 @@ def nearest_walks(
     Returns
     -------
     Series of walks
-        Clip distances. Of each pair those points are compared that both have.
 
     Raises
     ------
     ValueError
         If there are no walks to search.
-
-    See Also
-    --------
-    pair_table : The distances of all pairs.
 
     Examples
     --------
@@ -72,7 +67,7 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     Parameters
     ----------
     table : DataFrame of walks by walks
-        Distances, from `pair_table`.
+        Distances (`pair_table`).
     labels : mapping of str to str
         Label of each walk; walks without one are left out.
 
@@ -82,10 +77,6 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
         ``walks``, their number; the mean distances ``within`` the label (NaN for one walk) and to
         ``others``; ``nearest``, the share of its walks whose nearest walk has the same label; and
         ``by_chance``, the expected share if labels were assigned at random.
-
-    See Also
-    --------
-    nearest_walks : The walks nearest to one.
 
     Examples
     --------

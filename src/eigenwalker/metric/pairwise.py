@@ -39,10 +39,9 @@ def pair_table(
     Parameters
     ----------
     clips : mapping of str to clip, or sequence of clips
-        Two or more clips by name, or in order, such as ``population.walkers``; each a DataArray of
-        shape (time, marker, axis), Walker, Loop or PreparedClip. Points are compared that all have.
-        If one clip does not repeat, all are registered from end to end, so that all distances mean
-        the same.
+        Two or more clips (DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip) by
+        name, or in order, such as ``population.walkers``. The points that all have are compared. If
+        one clip does not repeat, all are registered from end to end.
     metric : str, FrameMetric or GroupMetric
         As in `clip_distance`.
     progress : callable, optional
@@ -55,9 +54,8 @@ def pair_table(
 
     See Also
     --------
-    pair_distances : The same as one column.
-    nearest_walks : The distances of all clips from one.
-    label_table : Whether clips with the same label are near to each other.
+    pair_distances, pair_components : The same as one column, or by points.
+    nearest_walks, label_table : Which walks are near to each other.
 
     References
     ----------
@@ -94,11 +92,6 @@ def pair_distances(
     Series of pairs
         In the order of `itertools.combinations`.
 
-    See Also
-    --------
-    pair_components : The same by points.
-    distances_by_metric : The same by several metrics.
-
     Examples
     --------
     >>> walks = {name: ew.simulate_walk(seed=len(name), rate_hz=60) for name in ("a", "bb", "ccc")}
@@ -125,7 +118,7 @@ def distances_by_metric(
     clips
         As in `pair_table`.
     metrics : sequence of str
-        Names of published metrics; left out, all.
+        Names in `PUBLISHED`; left out, all.
     progress : callable, optional
         Called with the number of metrics that are done, and of all.
 
@@ -151,15 +144,13 @@ def pair_components(
 ) -> pd.DataFrame:
     r"""Return the distance of all pairs of clips for each point: the mean of F(d_k).
 
-    A weighted sum of the columns is a clip distance:
-    :math:`d(a, b) = \sum_k w_k \overline{F(d_k)}`, the mean along the path of `clip_distance`.
+    A clip distance is a weighted sum of the columns,
+    :math:`d(a, b) = \sum_k w_k \overline{F(d_k)}`.
 
     Parameters
     ----------
-    clips, progress
-        As in `pair_table`.
-    metric : str, FrameMetric or GroupMetric
-        Of which `by` and F are used; its weights are not.
+    clips, metric, progress
+        As in `pair_table`; the weights of the metric are not used.
 
     Returns
     -------

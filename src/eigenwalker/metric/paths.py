@@ -31,14 +31,14 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
 
     By a slope limit L, at most L steps (1, 0) or (0, 1) follow a step (1, 1), all of one kind: one
     clip is held while at most L frames of the other pass. :math:`\epsilon` is `HOLD_COST` times
-    the median of D, and 0 without a limit.
+    the median of D, and 0 without a limit (plain dynamic time warping, Sakoe & Chiba 1978).
 
     Parameters
     ----------
     cost : array of shape (frame, other frame)
         Distances, 0 or more, none missing.
     slope_limit : int, optional
-        L; left out, plain dynamic time warping.
+        L; left out, there is none.
 
     Returns
     -------
@@ -50,14 +50,10 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     ValueError
         If there are no frames, a cell is missing, or no path within the limit joins the ends.
 
-    See Also
-    --------
-    register : The path through the motion map of two clips.
-
     References
     ----------
     Kovar & Gleicher (2003), Flexible automatic motion blending with registration curves, section
-    3.1; Sakoe & Chiba (1978), Dynamic programming algorithm optimization.
+    3.1.
 
     Examples
     --------

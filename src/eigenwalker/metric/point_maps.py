@@ -30,8 +30,10 @@ def point_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of every frame of one clip with every frame of another.
 
-    Shapes: a (frame, point, part); b (other frame, point, part); weights (point,); returns
-    (frame, other frame).
+    a, b: arrays of shape (frame, point, part); three parts are a position or velocity, compared by
+    Euclidean distance, four a unit quaternion, compared by `angle_between`. `parameter` is the
+    scale or exponent of F. Points with a missing part (NaN) in either frame are left out and the
+    weights of the others grow; a cell is NaN where no point is left.
 
     Examples
     --------
@@ -135,14 +137,5 @@ def _point_by_point(
 
 
 def point_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the distance of each point of one clip from the same point of another, frame by frame.
-
-    Shapes: a, b (step, point, part); returns (step, point).
-
-    Examples
-    --------
-    >>> point_distances(np.array([[[1.0, 0, 0, 0]]]), np.array([[[0, 1.0, 0, 0]]])).round(6)
-    array([[3.141593]])
-
-    """
+    """Return the distance of each point from the same point of another clip, (step, point)."""
     return np.linalg.norm(a - b, axis=2) if a.shape[2] == 3 else angle_between(a, b)

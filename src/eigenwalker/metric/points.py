@@ -24,9 +24,11 @@ FEW_SHARED = 0.5
 
 
 def points_of(clip: xr.DataArray, by: By, *, periodic: bool) -> tuple[list[str], np.ndarray]:
-    """Return what is compared of a clip, as an unlabelled array.
+    """Return names, and values of shape (time, point, part), of what is compared of a clip.
 
-    Shapes: clip (time, marker, axis); values (time, point, part).
+    Velocities are central differences; of a periodic clip the derivatives of its first
+    `VELOCITY_HARMONICS` harmonics. Angles are orientations of bones (`joint_quaternions`), with
+    four parts in place of three in mm or mm/s.
     """
     if by == "angles":
         orientations = joint_quaternions(clip)

@@ -38,11 +38,6 @@ def prepare(clip: Clip) -> PreparedClip:
     ValueError
         If it is one frame, or has gaps that are too long to be filled.
 
-    See Also
-    --------
-    prepare_walk : From a capture to a walk that can be compared.
-    loop : The stride.
-
     Examples
     --------
     >>> prepare(ew.simulate_walk(seed=1)).cycle.sizes["time"]
@@ -69,7 +64,8 @@ def prepare_together(
 ) -> dict[str, PreparedClip]:
     """Return clips prepared to be compared with each other, with the points that all have.
 
-    Points that only some clips have then influence nothing. Prepared clips stay as they are.
+    Clips in a sequence are named "0", "1" and so on. Prepared clips stay as they are. `done` is
+    called after each clip.
     """
     clips = getattr(clips, "walkers", clips)
     if not isinstance(clips, Mapping):

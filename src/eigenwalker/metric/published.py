@@ -99,11 +99,6 @@ def metric_named(metric: str | Metric) -> Metric:
     -------
     FrameMetric or GroupMetric
 
-    Raises
-    ------
-    ValueError
-        If the name is not in `PUBLISHED`.
-
     Examples
     --------
     >>> metric_named("positions-sigmoid").shape
