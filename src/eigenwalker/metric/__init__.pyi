@@ -41,6 +41,7 @@ from .prepared import prepare as prepare
 from .published import (
     FIGURE_5 as FIGURE_5,
     PUBLISHED as PUBLISHED,
+    PrintedRow as PrintedRow,
     metric_named as metric_named,
 )
 from .registration import (

@@ -59,15 +59,6 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
 
     Positions are of shape (frame, point, axis), none missing; `half` is the number of frames of the
     window on either side, fewer at the ends. The alignment is of shape (frame, other frame).
-
-    Examples
-    --------
-    >>> posture = np.array([[[0.0, 0, 0], [100, 0, 0]]])
-    >>> turned = np.array([[[50.0, 0, 0], [50, 100, 0]]])
-    >>> alignment = align_windows(posture, turned)
-    >>> np.rad2deg(alignment.angles).round(6).tolist(), alignment.shifts.round(6).tolist()
-    ([[-90.0]], [[[0.0, 50.0]]])
-
     """
     n_points = a.shape[1]
     middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)

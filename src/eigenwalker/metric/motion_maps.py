@@ -92,15 +92,8 @@ def motion_map(
     """
     metric = metric_named(metric)
     clips = _clip_pair(a, b, metric, align, periodic)
-    half = _half_window(clips.a, clips.b, window_s)
-    values = clips.map_of(metric.weights_for(clips.names), metric, half, align)
-    return xr.DataArray(
-        values,
-        dims=("time_a", "time_b"),
-        coords=clips.times(),
-        name="distance",
-        attrs=_description(metric),
-    )
+    weights = {"all": metric.weights_for(clips.names)}
+    return clips.maps(weights, metric, window_s, align)[0].drop_vars("group")
 
 
 def motion_maps(
@@ -147,7 +140,6 @@ def motion_maps(
     """
     metric = metric_named(metric)
     clips = _clip_pair(a, b, metric, align)
-    half = _half_window(clips.a, clips.b, window_s)
     members = {name: set(points) & set(clips.names) for name, points in groups.items()}
     members = {name: points for name, points in members.items() if points}
     if not members:
@@ -155,17 +147,11 @@ def motion_maps(
             f"No group has points that both clips have. The groups are {dict(groups)}, the points "
             f"of both clips {clips.names}."
         )
-    weights = [
-        np.array([(name in points) / len(points) for name in clips.names])
-        for points in members.values()
-    ]
-    return xr.DataArray(
-        np.stack([clips.map_of(each, metric, half, align) for each in weights]),
-        dims=("group", "time_a", "time_b"),
-        coords={"group": list(members), **clips.times()},
-        name="distance",
-        attrs=_description(metric),
-    )
+    weights = {
+        group: np.array([(name in points) / len(points) for name in clips.names])
+        for group, points in members.items()
+    }
+    return clips.maps(weights, metric, window_s, align)
 
 
 class _ClipPair(NamedTuple):
@@ -177,23 +163,31 @@ class _ClipPair(NamedTuple):
     points_a: np.ndarray
     points_b: np.ndarray
 
-    def map_of(self, weights: np.ndarray, metric: Metric, half: int, align: bool) -> np.ndarray:
+    def maps(
+        self, weights: Mapping[str, np.ndarray], metric: Metric, window_s: float, align: bool
+    ) -> xr.DataArray:
+        half = _half_window(self.a, self.b, window_s)
+        values = [self._map_of(each, metric, half, align) for each in weights.values()]
+        times = {"time_a": self.a.time.values, "time_b": self.b.time.values}
+        return xr.DataArray(
+            values[0][None] if len(values) == 1 else np.stack(values),
+            dims=("group", "time_a", "time_b"),
+            coords={"group": list(weights), **times},
+            name="distance",
+            attrs=_description(metric),
+        )
+
+    def _map_of(self, weights: np.ndarray, metric: Metric, half: int, align: bool) -> np.ndarray:
         form = {"shape": metric.shape, "parameter": shape_parameter(metric)}
-        if align and metric.by != "angles":
+        if not align or metric.by == "angles":
+            cells = point_map(self.points_a, self.points_b, weights, **form)
+        else:
             alignment = align_windows(*common_positions(self.a, self.b), half)
             weighed = weights > 0
             a, b = _complete(self.points_a[:, weighed]), _complete(self.points_b[:, weighed])
             translate = metric.by == "positions"
-            cells = aligned_map(a, b, alignment, weights[weighed], **form, translate=translate)
-        else:
-            cells = point_map(self.points_a, self.points_b, weights, **form)
+            cells = aligned_map(a, b, alignment, weights[weighed], translate=translate, **form)
         return diagonal_means(cells, half) if half else cells
-
-    def times(self) -> dict[str, tuple[str, np.ndarray]]:
-        return {
-            "time_a": ("time_a", self.a.time.values),
-            "time_b": ("time_b", self.b.time.values),
-        }
 
 
 def _clip_pair(

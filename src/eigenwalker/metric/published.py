@@ -22,7 +22,7 @@ from eigenwalker.metric.frame_metrics import GroupMetric, Metric, Shape
 from eigenwalker.metric.joint_groups import GROUPS, By
 
 
-class Printed(NamedTuple):
+class PrintedRow(NamedTuple):
     """A row of figure 5: the difference from the observers, both constants and the weights."""
 
     difference: float
@@ -31,30 +31,27 @@ class Printed(NamedTuple):
     weights: tuple[float, ...]
 
 
-FIGURE_5: Mapping[tuple[By, Shape], Printed] = {
-    ("angles", "squared"): Printed(23.335, 0.508, 659.272, (0, 0, 0.006, 0, 0, 0.669, 0.325, 0)),
-    ("angles", "absolute"): Printed(
-        18.448, 0.324, 19.537, (0.041, 0.003, 0.061, 0, 0, 0.622, 0.273, 0)
-    ),
-    ("angles", "sigmoid"): Printed(
-        18.004, 0.312, 20.016, (0.039, 0.008, 0.076, 0, 0, 0.614, 0.263, 0)
-    ),
-    ("positions", "squared"): Printed(
-        17.117, 0.290, 206.509, (0.062, 0, 0.551, 0.181, 0, 0, 0.050, 0.156)
-    ),
-    ("positions", "absolute"): Printed(
-        13.423, 0.069, 9.909, (0.020, 0, 0.362, 0.429, 0, 0, 0, 0.189)
-    ),
-    ("positions", "sigmoid"): Printed(
-        13.264, 0.059, 10.375, (0.015, 0, 0.344, 0.455, 0, 0, 0, 0.184)
-    ),
-    ("velocities", "squared"): Printed(
-        25.779, 0.431, 1914.283, (0, 0, 0, 0, 0.605, 0, 0.298, 0.098)
-    ),
-    ("velocities", "absolute"): Printed(
-        22.039, 0.193, 36.885, (0, 0, 0, 0, 0.551, 0, 0.298, 0.151)
-    ),
-    ("velocities", "sigmoid"): Printed(21.993, 0.189, 36.532, (0, 0, 0, 0, 0.564, 0, 0.306, 0.157)),
+_FIGURE_5 = """
+angles squared         23.335 0.508  659.272 0.000 0.000 0.006 0.000 0     0.669 0.325 0
+angles absolute        18.448 0.324   19.537 0.041 0.003 0.061 0.000 0     0.622 0.273 0
+angles sigmoid         18.004 0.312   20.016 0.039 0.008 0.076 0.000 0     0.614 0.263 0
+positions squared      17.117 0.290  206.509 0.062 0.000 0.551 0.181 0.000 0.000 0.050 0.156
+positions absolute     13.423 0.069    9.909 0.020 0.000 0.362 0.429 0.000 0.000 0.000 0.189
+positions sigmoid      13.264 0.059   10.375 0.015 0.000 0.344 0.455 0.000 0.000 0.000 0.184
+velocities squared     25.779 0.431 1914.283 0.000 0.000 0.000 0.000 0.605 0.000 0.298 0.098
+velocities absolute    22.039 0.193   36.885 0.000 0.000 0.000 0.000 0.551 0.000 0.298 0.151
+velocities sigmoid     21.993 0.189   36.532 0.000 0.000 0.000 0.000 0.564 0.000 0.306 0.157
+"""
+
+
+def _row(numbers: list[str]) -> PrintedRow:
+    difference, constant, normalisation, *weights = map(float, numbers)
+    return PrintedRow(difference, constant, normalisation, tuple(weights))
+
+
+FIGURE_5: Mapping[tuple[By, Shape], PrintedRow] = {
+    (by, shape): _row(numbers)  # pyright: ignore[reportAssignmentType] - words of the table above
+    for by, shape, *numbers in map(str.split, _FIGURE_5.strip().splitlines())
 }
 """The nine rows as printed, weights in the order of `GROUPS`; angles have no hand and no toe. (The
 text says that velocities use hands, thighs and calves; the table says hands, calves and toes, and

@@ -221,7 +221,11 @@ def register(
             "first, with in_place() or repair_labels()."
         )
     path = least_cost_path(cells.values, slope_limit=slope_limit)
-    half = round(window_s * sampling_rate(a) / 2)
+    alignment = Alignment(np.zeros(len(path)), np.zeros((len(path), 2)))
+    if align:
+        first, second = common_positions(a, b)
+        half = round(window_s * sampling_rate(a) / 2)
+        alignment = align_steps(first[path[:, 0]], second[path[:, 1]], half)
     return Registration(
         first=a,
         second=b,
@@ -229,19 +233,9 @@ def register(
         times=np.stack([a.time.values[path[:, 0]], b.time.values[path[:, 1]]], axis=1),
         map=cells,
         cost=float(cells.values[path[:, 0], path[:, 1]].mean()),
-        alignment=_align_path(a, b, path, half) if align else no_alignment(len(path)),
+        alignment=alignment,
         periodic=False,
     )
-
-
-def _align_path(a: xr.DataArray, b: xr.DataArray, path: np.ndarray, half: int) -> Alignment:
-    first, second = common_positions(a, b)
-    return align_steps(first[path[:, 0]], second[path[:, 1]], half)
-
-
-def no_alignment(n_steps: int) -> Alignment:
-    """Return an alignment that changes nothing."""
-    return Alignment(np.zeros(n_steps), np.zeros((n_steps, 2)))
 
 
 def register_walks(a: Clip, b: Clip) -> Registration:

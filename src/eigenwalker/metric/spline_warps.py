@@ -8,11 +8,11 @@ import numpy as np
 from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import least_squares
 
-from eigenwalker.metric.alignment import align_steps
+from eigenwalker.metric.alignment import Alignment, align_steps
 from eigenwalker.metric.clips import Clip, as_trajectories, at_one_rate
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.points import common_positions
-from eigenwalker.metric.registration import Registration, no_alignment, register
+from eigenwalker.metric.registration import Registration, register
 
 _DEGREE = 3
 
@@ -48,15 +48,6 @@ def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = Tru
     Registration
         With a step for each frame of the first clip; `times` are exact, `path` the nearest frames.
 
-    Raises
-    ------
-    ValueError
-        If the clips have no points in common, or samples are missing.
-
-    See Also
-    --------
-    register : By a path, which holds frames.
-
     References
     ----------
     Troje (2002), discussion.
@@ -65,13 +56,14 @@ def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = Tru
     --------
     The same reach, at first slower and then faster:
 
-    >>> time = np.linspace(0, 1, 101)
+    >>> time = np.linspace(0, 1, 101)[:, None, None]
     >>> def reach(t):
-    ...     hand = np.stack([600 * t**2, 200 * np.sin(2 * t), 1000 + 0 * t], axis=-1)
-    ...     return np.stack([hand, hand / 2, 0 * hand], axis=1)
-    >>> names = ["hand", "elbow", "shoulder"]
-    >>> a = ew.label_trajectories(reach(time), markers=names, rate_hz=100)
-    >>> b = ew.label_trajectories(reach(time**1.5), markers=names, rate_hz=100)
+    ...     hand = np.concatenate([600 * t**2, 200 * np.sin(2 * t), 1000 + 0 * t], axis=2)
+    ...     return hand * np.array([[1.0], [0.5], [0.0]])
+    >>> a, b = (
+    ...     ew.label_trajectories(reach(t), markers=["hand", "elbow", "shoulder"], rate_hz=100)
+    ...     for t in (time, time**1.5)
+    ... )
     >>> times = register_by_spline(a, b, align=False).times
     >>> bool(np.abs(times[:, 0] - times[:, 1] ** 1.5).max() < 0.01)
     True
@@ -88,7 +80,9 @@ def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = Tru
     frames = np.abs(np.subtract.outer(other, b.time.values)).argmin(axis=1)
     path = np.stack([np.arange(len(time)), frames], axis=1)
     placed = CubicSpline(b.time.values, second)(other)
-    alignment = align_steps(first, placed) if align else no_alignment(len(time))
+    alignment = Alignment(np.zeros(len(time)), np.zeros((len(time), 2)))
+    if align:
+        alignment = align_steps(first, placed)
     cells = motion_map(a, b, align=align)
     distances = np.linalg.norm(first - alignment.apply(placed), axis=2)
     return Registration(

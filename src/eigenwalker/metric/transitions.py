@@ -32,18 +32,15 @@ def find_transitions(
     """Return the moments at which one clip can pass into another.
 
     Local minima of the motion map (`motion_map`, each pair of frames aligned and averaged over a
-    window) that are below a threshold; of minima less than half a window from each other in both
-    clips the lowest. Half a window at the ends of the clips is left out, as one could not blend
-    there. Bodies of different build differ at all moments: bring both to the mannequin first
-    (`retarget`).
+    window) below a threshold; of minima less than half a window from each other in both clips the
+    lowest, and none within half a window of an end, where one could not blend. Bodies of different
+    build differ at all moments: bring both to the mannequin first (`retarget`).
 
     Parameters
     ----------
-    a : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
-        The clip that is left.
-    b : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip, optional
-        The clip that is entered, at the same frame rate; left out, the same clip, of which moments
-        less than `window_s` apart are no transitions.
+    a, b : DataArray of shape (time, marker, axis), Walker, Loop or PreparedClip
+        The clip that is left, and the one that is entered, at the same frame rate. Without b, the
+        same clip, of which moments less than `window_s` apart are no transitions.
     metric : str, FrameMetric or GroupMetric
         As in `motion_map`.
     window_s : float
@@ -58,11 +55,6 @@ def find_transitions(
         The best first. Columns ``time_a``, ``time_b`` (s), ``distance``, and how the second clip is
         rotated about the vertical and then translated: ``angle_deg``, ``shift_x_mm``,
         ``shift_y_mm``.
-
-    Raises
-    ------
-    ValueError
-        If the clips have no points in common, or samples are missing.
 
     References
     ----------
