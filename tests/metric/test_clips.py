@@ -127,16 +127,16 @@ def test_attributes_do_not_change_loops(seed, strides):
         seed=seed, rate_hz=50, frequency_hz=0.9, duration_s=strides / 0.9, variability=0.5
     )
     for walk in (capture, ew.in_place(capture), metric.retarget(ew.in_place(capture))):
-        told, silent = ew.loop(walk), ew.loop(walk.drop_attrs())
-        assert (told.period_s, told.start_s) == (silent.period_s, silent.start_s)
-        np.testing.assert_array_equal(told.cycle, silent.cycle)
+        labelled, bare = ew.loop(walk), ew.loop(walk.drop_attrs())
+        assert (labelled.period_s, labelled.start_s) == (bare.period_s, bare.start_s)
+        np.testing.assert_array_equal(labelled.cycle, bare.cycle)
 
 
 def test_attributes_do_not_change_the_groups_of_the_mannequin(walks):
     placed = [metric.retarget(walk) for walk in walks]
-    silent = [walk.drop_attrs() for walk in placed]
+    bare = [walk.drop_attrs() for walk in placed]
     for by in ("positions-absolute", "angles-absolute"):
-        tables = [metric.group_table(clips, by) for clips in (placed, silent)]
+        tables = [metric.group_table(clips, by) for clips in (placed, bare)]
         pd.testing.assert_frame_equal(*tables)
         assert "clavicle" not in tables[0]
     assert not any(metric.is_mannequin(walk) for walk in walks)

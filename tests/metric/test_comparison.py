@@ -145,12 +145,12 @@ def test_the_mannequin_has_no_clavicles():
 
 
 def test_a_table_of_metrics_holds_the_distance_of_each_pair(people):
-    told = []
+    calls = []
     names = ["positions-sigmoid", "angles-squared", "lee"]
-    table = distances_by_metric(people, names, progress=lambda *steps: told.append(steps))
+    table = distances_by_metric(people, names, progress=lambda *steps: calls.append(steps))
     assert list(table) == names
     assert table.index.tolist() == list(itertools.combinations(people, 2))
     for name in names:
         alone = clip_distance(people["walk 3"], people["walk 0"], metric=name)
         assert table.loc[("walk 0", "walk 3"), name] == pytest.approx(alone, rel=1e-12)
-    assert told == [(1, 3), (2, 3), (3, 3)]
+    assert calls == [(1, 3), (2, 3), (3, 3)]

@@ -151,11 +151,11 @@ def test_components_weighed_and_summed_are_distances(people):
 
 
 def test_progress_counts_clips_and_pairs():
-    told = []
+    calls = []
     walks = {str(seed): some_walk(seed) for seed in range(3)}
-    pair_table(walks, progress=lambda done, total: told.append((done, total)))
-    assert told[-1] == (6, 6)
-    assert [done for done, _ in told] == sorted(done for done, _ in told)
+    pair_table(walks, progress=lambda done, total: calls.append((done, total)))
+    assert calls[-1] == (6, 6)
+    assert [done for done, _ in calls] == sorted(done for done, _ in calls)
 
 
 @pytest.mark.filterwarnings("ignore:All clips are compared from end to end")
@@ -223,7 +223,7 @@ def test_a_long_gap_is_told_with_its_marker():
 
 @pytest.mark.filterwarnings("ignore:All clips are compared from end to end")
 @pytest.mark.parametrize(
-    ("clips", "told"),
+    ("clips", "message"),
     [
         ({"a": some_action(0)}, "two clips or more"),
         ({"a": some_action(0), "b": some_action(0).isel(time=[0])}, "two frames"),
@@ -235,8 +235,8 @@ def test_a_long_gap_is_told_with_its_marker():
         ({"a": some_walk(0), "b": some_walk(0).where(False)}, "ever seen"),
     ],
 )
-def test_clips_that_cannot_be_compared_are_refused_with_words(clips, told):
-    with pytest.raises(ValueError, match=told):
+def test_clips_that_cannot_be_compared_are_refused_with_words(clips, message):
+    with pytest.raises(ValueError, match=message):
         pair_table(clips)
 
 
@@ -289,11 +289,11 @@ def test_two_halves_of_a_real_walk_are_nearer_than_two_people(captures):
 def test_captured_rotations_count_only_where_both_walks_have_them():
     walk, other = some_walk(1), some_walk(2)
     metric = FrameMetric("angles")
-    chance = np.random.default_rng(0)
-    turning = walk.assign_coords(rotation=(walk.dims, chance.normal(size=walk.shape)))
+    rng = np.random.default_rng(0)
+    turning = walk.assign_coords(rotation=(walk.dims, rng.normal(size=walk.shape)))
     expected = clip_distance(walk, other, metric=metric)
     assert clip_distance(turning, other, metric=metric) == pytest.approx(expected, rel=1e-9)
-    both = other.assign_coords(rotation=(other.dims, chance.normal(size=other.shape)))
+    both = other.assign_coords(rotation=(other.dims, rng.normal(size=other.shape)))
     assert clip_distance(turning, both, metric=metric) > 1.5 * expected
 
 

@@ -47,4 +47,4 @@ def test_lines_of_the_page_run_one_after_the_other(lab, monkeypatch):
     assert len(blocks) == 7
     assert names["metric"].predict(names["X"]).shape == (15,)
     assert (names["metric"].weights_ >= 0).all()
-    assert names["found"].shares.sum() == pytest.approx(1)
+    assert names["comparison"].shares.sum() == pytest.approx(1)

@@ -171,15 +171,15 @@ def test_captured_twist_is_seen_which_positions_do_not_tell():
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "options"),
     [
         ("bandai-namco/dataset-2_walk_normal_001.bvh", {"unit": "cm"}),
         ("cmu/12_01.bvh", {"unit": "asf"}),
         ("cmu/35_01.amc", {"unit": "asf", "rate_hz": 120}),
     ],
 )
-def test_positions_and_rotations_of_a_capture_tell_the_same(captures, name, told):
-    capture = read_mocap(captures / name, **told)
+def test_positions_and_rotations_of_a_capture_tell_the_same(captures, name, options):
+    capture = read_mocap(captures / name, **options)
     walk = in_place(with_rotations(virtual_markers(capture, joints="full"), capture))
     known = np.isfinite(walk.rotation.values).all(axis=(0, 2))
     for bone in ("hip", "knee", "shoulder", "elbow"):

@@ -109,7 +109,7 @@ def test_rotations_are_looped_with_their_joints():
 
 
 @pytest.mark.parametrize(
-    ("values", "told"),
+    ("values", "message"),
     [
         (np.random.default_rng(0).normal(size=(400, 3, 3)) * 100, "Nothing repeats"),
         (np.zeros((400, 3, 3)), "Nothing repeats"),
@@ -117,9 +117,9 @@ def test_rotations_are_looped_with_their_joints():
         (np.full((400, 3, 3), np.nan), "missing"),
     ],
 )
-def test_what_does_not_repeat_is_refused(values, told):
+def test_what_does_not_repeat_is_refused(values, message):
     clip = label_trajectories(values, markers=["a", "b", "c"], rate_hz=100)
-    with pytest.raises(ValueError, match=told):
+    with pytest.raises(ValueError, match=message):
         loop(clip, already_in_place=True)
 
 

@@ -232,7 +232,7 @@ def test_joint_angles_do_not_know_heading_or_place():
 
 
 @pytest.mark.parametrize(
-    ("other", "options", "told"),
+    ("other", "options", "message"),
     [
         (some_clip(names=["a", "b", "c", "d"]), {}, "no points in common"),
         (some_clip(rate_hz=30), {"window_s": 0.2}, "needs one rate"),
@@ -245,8 +245,8 @@ def test_joint_angles_do_not_know_heading_or_place():
         (some_clip().where(some_clip().marker == "m9"), {"align": True}, "all frames"),
     ],
 )
-def test_clips_that_do_not_fit_are_refused_with_words(other, options, told):
-    with pytest.raises(ValueError, match=told):
+def test_clips_that_do_not_fit_are_refused_with_words(other, options, message):
+    with pytest.raises(ValueError, match=message):
         motion_map(some_clip(), other, **options)
 
 
@@ -258,7 +258,7 @@ def test_a_map_that_would_not_fit_into_memory_is_refused(n_frames, align):
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"by": "colour"}, "by='colour'"),
         ({"shape": "cubed"}, "shape='cubed'"),
@@ -269,8 +269,8 @@ def test_a_map_that_would_not_fit_into_memory_is_refused(n_frames, align):
         ({"weights": {"head": np.nan}}, "0 or more"),
     ],
 )
-def test_a_metric_that_cannot_be_is_refused(options, told):
-    with pytest.raises(ValueError, match=told):
+def test_a_metric_that_cannot_be_is_refused(options, message):
+    with pytest.raises(ValueError, match=message):
         FrameMetric(**options)
 
 

@@ -92,7 +92,7 @@ def test_points_that_weigh_nothing_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "message"),
     [
         ({"group_weights": {"knee": 1.0}}, "joint groups"),
         ({"group_weights": {"calf": -1.0}}, "joint groups"),
@@ -101,9 +101,9 @@ def test_points_that_weigh_nothing_are_refused():
         ({"by": "forces"}, "forces"),
     ],
 )
-def test_metrics_that_make_no_sense_are_refused(wrong, said):
+def test_metrics_that_make_no_sense_are_refused(wrong, message):
     fine = {"name": "x", "by": "positions", "shape": "absolute", "group_weights": {"calf": 1.0}}
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=message):
         GroupMetric(**fine | wrong)
 
 

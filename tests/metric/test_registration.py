@@ -210,7 +210,7 @@ def test_a_smooth_warp_is_found_to_a_fraction_of_a_frame():
 
 
 @pytest.mark.parametrize(
-    ("other", "options", "told"),
+    ("other", "options", "message"),
     [
         (some_walker().trajectories([0.0]), {}, "two frames"),
         (some_walker().trajectories(np.arange(0, 0.1, 0.02)), {}, "no path joins"),
@@ -218,8 +218,8 @@ def test_a_smooth_warp_is_found_to_a_fraction_of_a_frame():
         (some_walker().trajectories(np.arange(0, 2, 0.02)), {"slope_limit": 0}, "1 or more"),
     ],
 )
-def test_clips_that_cannot_be_registered_are_refused_with_words(other, options, told):
-    with pytest.raises(ValueError, match=told):
+def test_clips_that_cannot_be_registered_are_refused_with_words(other, options, message):
+    with pytest.raises(ValueError, match=message):
         register(warped_pair()[0], other, **options)
 
 

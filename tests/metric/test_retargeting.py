@@ -132,12 +132,12 @@ def test_who_it_was_cannot_be_told_from_bones_any_more():
     after = np.stack([lengths(retarget(each)) for each in people])
     np.testing.assert_allclose(after, np.broadcast_to(after[0], after.shape), rtol=1e-9)
 
-    def told(bones: np.ndarray) -> float:
+    def accuracy(bones: np.ndarray) -> float:
         standard = (bones - bones.mean(axis=0)) / (bones.std(axis=0) + 1e-6)
         return cross_val_score(LogisticRegression(), standard, sex, cv=5).mean()
 
-    assert told(before) > 0.8
-    assert told(after) == 0.5  # nothing left to tell it from
+    assert accuracy(before) > 0.8
+    assert accuracy(after) == 0.5
 
 
 def test_hands_and_feet_stay_where_they_were_captured():
@@ -169,15 +169,15 @@ def test_missing_joints_are_named():
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "options"),
     [
         ("cmu/02_01.c3d", {}),
         ("cmu/12_01.bvh", {"unit": "asf"}),
         ("bandai-namco/dataset-2_walk_feminine_003.bvh", {"unit": "cm"}),
     ],
 )
-def test_captures_become_one_body(captures, name, told):
-    capture = read_mocap(captures / name, **told)
+def test_captures_become_one_body(captures, name, options):
+    capture = read_mocap(captures / name, **options)
     placed = prepare_walk(capture)
     usual = lengths(retarget(in_place(simulate_walk(seed=0, duration_s=3.0, rate_hz=30))))
     np.testing.assert_allclose(lengths(placed), usual, rtol=1e-6)

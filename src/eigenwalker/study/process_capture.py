@@ -12,15 +12,16 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.decomposition.fourier import decompose_fourier
 from eigenwalker.decomposition.pca import decompose_pca
-from eigenwalker.gait.gaps import MAX_GAP_S, Gap, find_gaps
+from eigenwalker.gait.gaps import Gap, find_gaps
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.label_repair import Repair
 from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.metric.comparison_pipeline import hidden_joints, with_rotations
 from eigenwalker.quality.assessment import judge
 from eigenwalker.quality.quality import Quality
 
@@ -146,7 +147,7 @@ def process_capture(
         stated = _stated(capture)
     points = _joints(capture, joints)
     gaps = find_gaps(points.values)
-    hidden = _hidden(points, gaps)
+    hidden = hidden_joints(points, gaps)
     main = points.sel(marker=list(JOINTS.markers)) if joints == "full" else points
     try:
         walk = in_place(
@@ -184,19 +185,7 @@ def _stated(capture: xr.DataArray) -> dict[str, float]:
 
 def _joints(capture: xr.DataArray, joints: Literal["walker", "full"]) -> xr.DataArray:
     points = virtual_markers(capture, joints=joints)
-    if joints == "walker":
-        return points
-    from eigenwalker.metric.comparison_pipeline import with_rotations
-
-    return with_rotations(points, capture)
-
-
-def _hidden(points: xr.DataArray, gaps: list[Gap]) -> list[str]:
-    """Return hands, feet and the like that were not seen for longer than can be filled."""
-    longest = MAX_GAP_S * sampling_rate(points) if gaps else 0
-    gaps = [gap for gap in gaps if gap.stop - gap.start > longest]
-    names = {str(points.marker.values[gap.marker]) for gap in gaps}
-    return sorted(names - set(JOINTS.markers))
+    return with_rotations(points, capture) if joints == "full" else points
 
 
 def _frames(points: xr.DataArray, walk: xr.DataArray) -> tuple[int, int]:
