@@ -191,3 +191,13 @@ def test_positions_and_rotations_of_a_capture_tell_the_same(captures, name, opti
 def test_a_capture_without_rotations_stays_as_it_is():
     walk = simulate_walk(seed=1, duration_s=1.0)
     assert with_rotations(walk, walk) is walk
+
+
+def test_of_bodies_that_fit_equally_the_nearest_turns_the_bone(captures):
+    """The hand of this capture only turns about the forearm, in which elbow and wrist lie still."""
+    capture = read_mocap(captures / "cmu/12_01.bvh", unit="asf")
+    joints = with_rotations(virtual_markers(capture, joints="full"), capture)
+    bone = joints.rotation.sel(marker="left_elbow").values
+    distances = np.linalg.norm(capture - joints.sel(marker="left_elbow"), axis=2).mean(axis=0)
+    nearest = capture.marker.values[distances.argmin()]
+    np.testing.assert_allclose(bone, capture.rotation.sel(marker=nearest).values)

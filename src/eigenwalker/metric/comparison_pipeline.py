@@ -120,12 +120,17 @@ def _bodies(capture: xr.DataArray) -> list[tuple[np.ndarray, np.ndarray]]:
 def _rotation_of(
     bodies: list[tuple[np.ndarray, np.ndarray]], start: np.ndarray, end: np.ndarray
 ) -> np.ndarray:
-    """Return the rotation of the body that both points are parts of; NaN if there is none."""
-    best, rotation = RIGID_MM, np.full_like(start, np.nan)
+    """Return the rotation of the body that both points are parts of; NaN if there is none.
+
+    Of bodies that fit equally, such as a forearm and a hand that only turns about it, the one that
+    begins nearest to the bone is taken.
+    """
+    best, rotation = (RIGID_MM, 0.0), np.full_like(start, np.nan)
     for place, vectors in bodies:
         into_body = Rotation.from_rotvec(vectors).inv()
         spread = [into_body.apply(point - place).std(axis=0) for point in (start, end)]
-        worst = float(np.sqrt(np.max(np.sum(np.square(spread), axis=1))))
-        if worst < best:
-            best, rotation = worst, vectors
+        worst = float(np.linalg.norm(spread, axis=1).max())
+        fit = round(worst, 3), float(np.linalg.norm(place - start, axis=1).mean())
+        if fit < best:
+            best, rotation = fit, vectors
     return rotation
