@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from eigenwalker.cli.options import Rate, Unit
+from eigenwalker.cli.options import Rate, Unit, option
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
@@ -17,7 +17,7 @@ LONGEST_IN_LINE = 24
 
 def info(
     file: Annotated[Path, typer.Argument(help="A capture, or a population file (.nc).")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    as_json: Annotated[bool, option("Print JSON.", "--json")] = False,
     unit: Unit = None,
     rate: Rate = None,
 ) -> None:
@@ -39,7 +39,7 @@ def convert(
     capture: Annotated[Path, typer.Argument(help="A capture, of any format that is read.")],
     output: Annotated[Path, typer.Argument(help="File to write: .bvh, .c3d, .csv, .nc or .trc.")],
     joints: Annotated[
-        bool, typer.Option("--joints", help="Write joints, not markers; .bvh always holds joints.")
+        bool, option("Write joints, not markers; .bvh always holds joints.", "--joints")
     ] = False,
     unit: Unit = None,
 ) -> None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from eigenwalker.cli.options import (
     OpenPage,
     People,
@@ -14,6 +12,7 @@ from eigenwalker.cli.options import (
     WithFlagged,
     load_people,
     open_in_browser,
+    option,
     progress_bar,
 )
 
@@ -28,12 +27,10 @@ BUILT_IN_TITLE = "How people walk"
 def classify(
     people: People = None,
     trait: Annotated[
-        str, typer.Option(help="Trait to tell: sex, weight_kg, style=feminine:masculine.")
+        str, option("Trait to tell: sex, weight_kg, style=feminine:masculine.")
     ] = "sex",
     output: ReportFolder = None,
-    permutations: Annotated[
-        int, typer.Option(help="Random permutations of the trait to compare with.")
-    ] = 200,
+    permutations: Annotated[int, option("Random permutations of the trait to compare with.")] = 200,
     with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
@@ -54,10 +51,10 @@ def classify(
 
 def demo(
     people: People = None,
-    output: Annotated[Path, typer.Option("-o", "--output", help="Folder to write into.")] = Path(
+    output: Annotated[Path, option("Folder to write into.", "-o", "--output")] = Path(
         "eigenwalker-demo"
     ),
-    trait: Annotated[str, typer.Option(help="Trait of two classes to tell.")] = "sex",
+    trait: Annotated[str, option("Trait of two classes to tell.")] = "sex",
     open_page: OpenPage = True,
     with_flagged: WithFlagged = False,
 ) -> None:

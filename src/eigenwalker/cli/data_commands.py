@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from eigenwalker.cli.options import progress_bar
+from eigenwalker.cli.options import option, progress_bar
 
 data = typer.Typer(
     no_args_is_help=True,
@@ -32,15 +32,13 @@ def list_collections() -> None:
 def fetch(
     name: Annotated[str, typer.Argument(help="A collection, as 'data list' names them.")],
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Folder; left out, one in this user's cache."),
+        Path | None, option("Folder; left out, one in this user's cache.", "-o", "--output")
     ] = None,
     accept_licence: Annotated[
-        bool, typer.Option("--accept-licence", help="Accept its terms, and do not ask.")
+        bool, option("Accept its terms, and do not ask.", "--accept-licence")
     ] = False,
     base_url: Annotated[
-        str | None,
-        typer.Option(help="Mirror to take; also in the variable EIGENWALKER_DATA_URL."),
+        str | None, option("Mirror to take; also in the variable EIGENWALKER_DATA_URL.")
     ] = None,
 ) -> None:
     """Fetch a collection from where it is published, after its licence is accepted."""

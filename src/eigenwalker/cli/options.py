@@ -23,38 +23,36 @@ EXIT_PARTIAL = 1
 EXIT_FAILED = 2
 EXIT_INTERRUPTED = 130
 
+
+def option(about: str, *names: str) -> Any:
+    """Return an option of a command, with its help text."""
+    return typer.Option(*names, help=about)
+
+
 People = Annotated[
     Path | None,
     typer.Argument(help="Population file (.nc); left out, the built-in simulated population."),
 ]
-WithFlagged = Annotated[bool, typer.Option("--with-flagged", help="Count flagged walkers too.")]
+WithFlagged = Annotated[bool, option("Count flagged walkers too.", "--with-flagged")]
 Unit = Annotated[
-    str | None, typer.Option(help="Unit of length, for files that name none: mm, cm, m, in, asf.")
+    str | None, option("Unit of length, for files that name none: mm, cm, m, in, asf.")
 ]
-Rate = Annotated[float | None, typer.Option(help="Frames a second, for files that name none.")]
-PopulationFile = Annotated[
-    Path, typer.Option("-o", "--output", help="Population file to write (.nc).")
-]
-ReportFolder = Annotated[
-    Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
-]
+Rate = Annotated[float | None, option("Frames a second, for files that name none.")]
+PopulationFile = Annotated[Path, option("Population file to write (.nc).", "-o", "--output")]
+ReportFolder = Annotated[Path | None, option("Folder to write a report into.", "-o", "--output")]
 TraitFromName = Annotated[
-    str | None,
-    typer.Option(help="Pattern with named groups over names: 'walk_(?P<style>[a-z]+)_'."),
+    str | None, option("Pattern with named groups over names: 'walk_(?P<style>[a-z]+)_'.")
 ]
 TraitSteps = Annotated[
-    list[str] | None,
-    typer.Option(help="Trait and standard deviations: sex=+3, weight=-2; may be repeated."),
+    list[str] | None, option("Trait and standard deviations: sex=+3, weight=-2; may be repeated.")
 ]
 StartFrom = Annotated[
-    str, typer.Option("--from", help="'average', the number of a walker, or a capture file.")
+    str, option("'average', the number of a walker, or a capture file.", "--from")
 ]
-View = Annotated[float, typer.Option(help="Azimuth in degrees: 0 frontal, 90 profile.")]
-Elevation = Annotated[float, typer.Option(help="Degrees above the horizon.")]
-OpenPage = Annotated[
-    bool, typer.Option("--open/--no-open", help="Open the page if there is a screen.")
-]
-Seed = Annotated[int, typer.Option(help="The same seed gives the same people.")]
+View = Annotated[float, option("Azimuth in degrees: 0 frontal, 90 profile.")]
+Elevation = Annotated[float, option("Degrees above the horizon.")]
+OpenPage = Annotated[bool, option("Open the page if there is a screen.", "--open/--no-open")]
+Seed = Annotated[int, option("The same seed gives the same people.")]
 
 
 def load_people(path: Path | None, with_flagged: bool) -> Population:

@@ -16,10 +16,12 @@ from eigenwalker.cli.options import (
     EXIT_PARTIAL,
     PopulationFile,
     Rate,
+    Seed,
     TraitFromName,
     Unit,
     check_choice,
     check_population_file,
+    option,
     progress_bar,
 )
 
@@ -33,25 +35,24 @@ def fit(
     folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
     output: PopulationFile,
     traits: Annotated[
-        Path | None,
-        typer.Option(help="CSV with a column 'file' (relative to FOLDER) and the traits."),
+        Path | None, option("CSV with a column 'file' (relative to FOLDER) and the traits.")
     ] = None,
     trait_from_name: TraitFromName = None,
     form: Annotated[
-        str, typer.Option(help="'eigenposture' (Troje 2002) or 'fourier' (WDP2002).")
+        str, option("'eigenposture' (Troje 2002) or 'fourier' (WDP2002).")
     ] = "eigenposture",
-    harmonics: Annotated[int, typer.Option(help="Multiples of the stride frequency.")] = 2,
+    harmonics: Annotated[int, option("Multiples of the stride frequency.")] = 2,
     low_pass: Annotated[
-        float | None, typer.Option(help="Cut-off in Hz of a low-pass filter, for noisy captures.")
+        float | None, option("Cut-off in Hz of a low-pass filter, for noisy captures.")
     ] = None,
-    jobs: Annotated[int, typer.Option(help="Processes; -1 for all cores.")] = -1,
+    jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
     unit: Unit = None,
     rate: Rate = None,
     table: Annotated[
-        Path | None, typer.Option(help="CSV to write all into that is known of each capture.")
+        Path | None, option("CSV to write all into that is known of each capture.")
     ] = None,
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="Read all anew, also what an interrupted run has read.")
+        bool, option("Read all anew, also what an interrupted run has read.", "--fresh")
     ] = False,
 ) -> None:
     """Make a population of a folder of captures.
@@ -137,19 +138,16 @@ def _print_summary(study: Study, output: Path) -> None:
 
 def simulate(
     output: PopulationFile,
-    women: Annotated[int, typer.Option(help="How many women.")] = 20,
-    men: Annotated[int, typer.Option(help="How many men.")] = 20,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same people.")] = 0,
+    women: Annotated[int, option("How many women.")] = 20,
+    men: Annotated[int, option("How many men.")] = 20,
+    seed: Seed = 0,
     sex_effect: Annotated[
-        float, typer.Option(help="Multiplies all differences between the sexes; 0 removes them.")
+        float, option("Multiplies all differences between the sexes; 0 removes them.")
     ] = 1.0,
     captures: Annotated[
-        Path | None,
-        typer.Option(help="Folder to write raw captures into, with traits.csv and truth.csv."),
+        Path | None, option("Folder to write raw captures into, with traits.csv and truth.csv.")
     ] = None,
-    captures_as: Annotated[
-        str, typer.Option(help="Format of the captures: c3d, trc or csv.")
-    ] = "c3d",
+    captures_as: Annotated[str, option("Format of the captures: c3d, trc or csv.")] = "c3d",
 ) -> None:
     """Simulate walkers of known truth, and the raw captures of a whole study to rehearse with."""
     from eigenwalker.simulation.people import (

@@ -8,7 +8,14 @@ from typing import Annotated
 import typer
 
 from eigenwalker.cli.classify_command import model_names
-from eigenwalker.cli.options import OpenPage, People, WithFlagged, load_people, open_in_browser
+from eigenwalker.cli.options import (
+    OpenPage,
+    People,
+    WithFlagged,
+    load_people,
+    open_in_browser,
+    option,
+)
 
 
 def serve(
@@ -17,7 +24,7 @@ def serve(
         int | None, typer.Option(help="Port; left out, one that is free.", min=0, max=65535)
     ] = None,
     host: Annotated[
-        str, typer.Option(help="Where to listen; anything but this machine lets others in.")
+        str, option("Where to listen; anything but this machine lets others in.")
     ] = "127.0.0.1",
     open_page: OpenPage = True,
     with_flagged: WithFlagged = False,

@@ -23,6 +23,7 @@ from eigenwalker.cli.options import (
     View,
     WithFlagged,
     load_people,
+    option,
     progress_bar,
     start_vector,
     trait_axes,
@@ -37,10 +38,6 @@ if TYPE_CHECKING:
 
 Texts = list[str] | None
 """Texts as typed, ``seed=3,keep=structure``, once or several times."""
-
-
-def _about(text: str) -> Any:
-    return typer.Option(help=text)
 
 
 def stimulus(
@@ -61,46 +58,45 @@ def stimulus(
     ] = Path("stim.json"),
     trait: TraitSteps = None,
     start_from: StartFrom = "average",
-    information: Annotated[str, _about("'full', 'structure' or 'dynamics' only.")] = "",
-    gain: Annotated[Texts, _about("Joints that move more: parts=legs,factor=0.5")] = None,
-    arm_swing: Annotated[float | None, _about("Factor of the arms' swing.")] = None,
-    conflict: Annotated[Texts, _about("shoulder_width=1.2,hip_sway=2 (Mather, Murdoch)")] = None,
-    ellipses: Annotated[Texts, _about("shoulder=35/12,hip=15/20 mm (Cutting)")] = None,
-    perturb: Annotated[Texts, _about("markers=left_knee,amount=0/50/0,frequency=3")] = None,
-    speed: Annotated[float | None, _about("Playback speed; 1 is its own.")] = None,
-    start: Annotated[float | None, _about("Starting phase, degrees of the stride.")] = None,
-    reverse: Annotated[bool, typer.Option("--reverse", help="Play backwards.")] = False,
-    freeze: Annotated[float | None, _about("Stand still as at this second.")] = None,
-    delay: Annotated[Texts, _about("parts=arms,phase=90: lag behind the rest")] = None,
-    phase_scramble: Annotated[str | None, _about("seed=3: a clock for each dot")] = None,
+    information: Annotated[str, option("'full', 'structure' or 'dynamics' only.")] = "",
+    gain: Annotated[Texts, option("Joints that move more: parts=legs,factor=0.5")] = None,
+    arm_swing: Annotated[float | None, option("Factor of the arms' swing.")] = None,
+    conflict: Annotated[Texts, option("shoulder_width=1.2,hip_sway=2 (Mather, Murdoch)")] = None,
+    ellipses: Annotated[Texts, option("shoulder=35/12,hip=15/20 mm (Cutting)")] = None,
+    perturb: Annotated[Texts, option("markers=left_knee,amount=0/50/0,frequency=3")] = None,
+    speed: Annotated[float | None, option("Playback speed; 1 is its own.")] = None,
+    start: Annotated[float | None, option("Starting phase, degrees of the stride.")] = None,
+    reverse: Annotated[bool, option("Play backwards.", "--reverse")] = False,
+    freeze: Annotated[float | None, option("Stand still as at this second.")] = None,
+    delay: Annotated[Texts, option("parts=arms,phase=90: lag behind the rest")] = None,
+    phase_scramble: Annotated[str | None, option("seed=3: a clock for each dot")] = None,
     morph_to: Annotated[
-        Texts,
-        _about("Become the walker of this trait while it is shown: sex=-2; may be repeated."),
+        Texts, option("Become the walker of this trait while it is shown: sex=-2; may be repeated.")
     ] = None,
-    mirror: Annotated[bool, typer.Option("--mirror", help="Swap left and right.")] = False,
+    mirror: Annotated[bool, option("Swap left and right.", "--mirror")] = False,
     overground: Annotated[
-        bool, typer.Option("--overground", help="Walk forward, not on a treadmill.")
+        bool, option("Walk forward, not on a treadmill.", "--overground")
     ] = False,
-    rotate: Annotated[Texts, _about("axis=z,angle=40,speed=0: x, y, z, sight or 1/0/1")] = None,
-    invert: Annotated[bool, typer.Option("--invert", help="Upside down.")] = False,
-    occlude: Annotated[str | None, _about("Parts to hide: lower_body, left_knee/head")] = None,
-    show: Annotated[str | None, _about("Parts to show; the others are hidden.")] = None,
-    scramble: Annotated[str | None, _about("seed=3,keep=structure,directions=horizontal")] = None,
-    limb_dots: Annotated[str | None, _about("number=8,lifetime=0.1,seed=1 (Beintema)")] = None,
-    blur: Annotated[float | None, _about("Blobs of this standard deviation, mm.")] = None,
-    mask: Annotated[Texts, _about("kind=scrambled,number=30,seed=2 or signal_to_noise=0.5")] = None,
+    rotate: Annotated[Texts, option("axis=z,angle=40,speed=0: x, y, z, sight or 1/0/1")] = None,
+    invert: Annotated[bool, option("Upside down.", "--invert")] = False,
+    occlude: Annotated[str | None, option("Parts to hide: lower_body, left_knee/head")] = None,
+    show: Annotated[str | None, option("Parts to show; the others are hidden.")] = None,
+    scramble: Annotated[str | None, option("seed=3,keep=structure,directions=horizontal")] = None,
+    limb_dots: Annotated[str | None, option("number=8,lifetime=0.1,seed=1 (Beintema)")] = None,
+    blur: Annotated[float | None, option("Blobs of this standard deviation, mm.")] = None,
+    mask: Annotated[Texts, option("kind=scrambled,number=30,seed=2 or signal_to_noise=0.5")] = None,
     view: View = 30.0,
     elevation: Elevation = 0.0,
-    eye_distance: Annotated[float | None, _about("mm, for a perspective picture.")] = None,
-    duration: Annotated[float | None, _about("Seconds; 4 if left out.")] = None,
-    rate: Annotated[float | None, _about("Frames a second; 60 if left out.")] = None,
-    style: Annotated[str | None, _about("'dots', 'sticks' or 'mannequin'.")] = None,
-    size: Annotated[str | None, _about("Picture in pixels: 512x512")] = None,
+    eye_distance: Annotated[float | None, option("mm, for a perspective picture.")] = None,
+    duration: Annotated[float | None, option("Seconds; 4 if left out.")] = None,
+    rate: Annotated[float | None, option("Frames a second; 60 if left out.")] = None,
+    style: Annotated[str | None, option("'dots', 'sticks' or 'mannequin'.")] = None,
+    size: Annotated[str | None, option("Picture in pixels: 512x512")] = None,
     height_deg: Annotated[
-        float | None, _about("Height of the walker in degrees of visual angle.")
+        float | None, option("Height of the walker in degrees of visual angle.")
     ] = None,
-    distance: Annotated[float, _about("From the eye to the screen, mm.")] = 570.0,
-    px_per_cm: Annotated[float, _about("Pixels a centimetre of the screen.")] = 38.0,
+    distance: Annotated[float, option("From the eye to the screen, mm.")] = 570.0,
+    px_per_cm: Annotated[float, option("Pixels a centimetre of the screen.")] = 38.0,
     with_flagged: WithFlagged = False,
 ) -> None:
     """Make a stimulus: a walker, what is done to it, and how it is shown.
@@ -155,11 +151,11 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
 
     from eigenwalker.stimulus.stimulus import Stimulus
 
-    for option in ("trait", "information", "morph_to", "size", "eye_distance"):
-        if options[option]:
-            name = option.replace("_", "-")
+    for name in ("trait", "information", "morph_to", "size", "eye_distance"):
+        if options[name]:
+            file = options["people"].name
             raise ValueError(
-                f"--{name} is for populations; {options['people'].name} is a stimulus."
+                f"--{name.replace('_', '-')} is for populations; {file} is a stimulus."
             )
     made = Stimulus.load(options["people"])
     timing = {"duration_s": options["duration"], "rate_hz": options["rate"]}
@@ -187,23 +183,23 @@ def _transforms(
     options: dict[str, Any], population: Population | None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield name and parameters of the transforms, in the order of the module's first lines."""
-    for option, parameter in ORDER:
-        value = options[option]
+    for name, parameter in ORDER:
+        value = options[name]
         if value is None or value is False or value == []:
             continue
-        if option == "morph_to":
+        if name == "morph_to":
             assert population is not None
             vector = _moved(population, population.average, value)
             yield "morph", {"walker": population.walker(vector)}
-        elif option in ("occlude", "show"):
-            yield "occlude", {"parts" if option == "occlude" else "show": value.split("/")}
+        elif name in ("occlude", "show"):
+            yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}
         elif parameter is not None:
-            yield option, {parameter: value}
+            yield name, {parameter: value}
         elif value is True:
-            yield option, {}
+            yield name, {}
         else:
             for text in [value] if isinstance(value, str) else value:
-                yield option, _parameters(option, text)
+                yield name, _parameters(name, text)
 
 
 ORDER: tuple[tuple[str, str | None], ...] = (

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from eigenwalker.cli.options import (
     Elevation,
     People,
@@ -16,6 +14,7 @@ from eigenwalker.cli.options import (
     WithFlagged,
     check_choice,
     load_people,
+    option,
     progress_bar,
     start_vector,
     trait_axes,
@@ -31,25 +30,22 @@ if TYPE_CHECKING:
 def synthesize(
     people: People = None,
     trait: TraitSteps = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", help="Film to write: .mp4, .webm or .gif.")
-    ] = Path("walker.mp4"),
+    output: Annotated[Path, option("Film to write: .mp4, .webm or .gif.", "-o", "--output")] = Path(
+        "walker.mp4"
+    ),
     view: View = 30.0,
     elevation: Elevation = 0.0,
     duration: Annotated[
-        float | None,
-        typer.Option(help="Seconds; left out, whole strides of about 4, so that films loop."),
+        float | None, option("Seconds; left out, whole strides of about 4, so that films loop.")
     ] = None,
-    style: Annotated[str, typer.Option(help="'dots' or 'sticks'.")] = "dots",
+    style: Annotated[str, option("'dots' or 'sticks'.")] = "dots",
     kind: Annotated[
-        str,
-        typer.Option(help="'discriminant' tells the trait best, 'mean_difference' shows it best."),
+        str, option("'discriminant' tells the trait best, 'mean_difference' shows it best.")
     ] = "discriminant",
     part: Annotated[
-        str,
-        typer.Option(help="What the axis may change: all, structure, dynamics, p1, p1+p2, ..."),
+        str, option("What the axis may change: all, structure, dynamics, p1, p1+p2, ...")
     ] = "all",
-    components: Annotated[int, typer.Option(help="Eigenwalkers that the axis uses.")] = 10,
+    components: Annotated[int, option("Eigenwalkers that the axis uses.")] = 10,
     start: StartFrom = "average",
     with_flagged: WithFlagged = False,
 ) -> None:

@@ -19,7 +19,7 @@ from eigenwalker.io.write import FORMATS, write_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
-from eigenwalker.simulation.provenance import CAPTURE, KEY, Provenance
+from eigenwalker.simulation.provenance import CAPTURE, KEY, provenance_text
 from eigenwalker.simulation.trait_effects import EFFECTS, TRAITS, Effects, draw_people
 from eigenwalker.simulation.walk import simulate_walk
 
@@ -63,6 +63,11 @@ def simulate_captures(
     person : Series
         Traits, parameters and scores, as `draw_people` returns them.
 
+    See Also
+    --------
+    write_captures : files of them.
+    simulate_population : the population that they make.
+
     Examples
     --------
     >>> for capture, person in simulate_captures(1, 1, duration_s=3):
@@ -84,9 +89,8 @@ def _capture(
     capture: Mapping[str, Any],
 ) -> xr.DataArray:  # fmt: skip
     parameters = {str(name): value for name, value in person.items()}
-    parameters["frequency_hz"] += sum(
-        person[f"{trait}_score"] * effect.frequency_hz for trait, effect in planted.items()
-    )
+    for trait, effect in planted.items():
+        parameters["frequency_hz"] += person[f"{trait}_score"] * effect.frequency_hz
     return simulate_walk(parameters, seed=seed, **{**CAPTURE, **capture})
 
 
@@ -111,8 +115,8 @@ def simulate_population(
 ) -> Population:
     """Return a population of simulated walkers, every property of which is known.
 
-    Each capture is made and goes on as in Troje (2002): 38 markers on the skin, the 15 joints
-    found from them, brought in place, decomposed, brought into correspondence.
+    Each capture is simulated and processed as in Troje (2002): 38 markers on the skin, the 15
+    joints from them, the walk in place, its decomposition, correspondence.
 
     Parameters
     ----------
@@ -125,8 +129,17 @@ def simulate_population(
     Returns
     -------
     Population
-        With the traits sex, age_years, weight_kg, height_mm, happy and nervous; `truth_of` tells
+        With the traits sex, age_years, weight_kg, height_mm, happy and nervous; `truth_of` gives
         the rest.
+
+    See Also
+    --------
+    simulate_captures : the captures themselves.
+    truth_of : all that is true of the people.
+
+    References
+    ----------
+    Troje (2002), methods; ``docs/simulation.md``.
 
     Examples
     --------
@@ -135,10 +148,10 @@ def simulate_population(
     (4, 229)
 
     """
-    people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
-    planted = dict(planted or {})
+    settings = {"n_women": n_women, "n_men": n_men, "seed": seed, "sex_effect": sex_effect}
+    settings["effects"] = effects
+    people, planted = draw_people(**settings), dict(planted or {})
     capture = {"markers": "skin", **CAPTURE, **capture}
-    provenance = Provenance(n_women, n_men, seed, sex_effect, effects, planted, capture)
     parts = np.array_split(np.arange(len(people)), max(len(people) // _PER_TASK, 1))
     tasks = (delayed(_walkers)(people.iloc[part], part, seed, planted, capture) for part in parts)
     lists = Parallel(n_jobs=n_jobs if len(parts) > 1 else 1)(tasks)
@@ -147,7 +160,7 @@ def simulate_population(
         people[list(TRAITS)],
         provenance={
             "simulated": f"{n_women} women and {n_men} men who do not exist, seed {seed}",
-            KEY: provenance.to_json(),
+            KEY: provenance_text(settings, planted, capture),
         },
     )
 

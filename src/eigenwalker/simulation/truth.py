@@ -15,7 +15,7 @@ from eigenwalker.gait.in_place import in_place
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.person import PARAMETERS
 from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
-from eigenwalker.simulation.provenance import KEY, provenance_from_json
+from eigenwalker.simulation.provenance import KEY, read_provenance
 from eigenwalker.simulation.trait_effects import EFFECTS, Effects, draw_people
 from eigenwalker.simulation.walk import simulate_walk
 
@@ -70,14 +70,14 @@ def truth_of(population: Population) -> Truth:
     -------
     Truth
 
-    See Also
-    --------
-    true_direction : what a trait does to the features.
-
     Raises
     ------
     ValueError
         If the population was not simulated, or not by this version of the program.
+
+    See Also
+    --------
+    true_direction : what a trait does to the features.
 
     Examples
     --------
@@ -93,21 +93,15 @@ def truth_of(population: Population) -> Truth:
             "This population was not simulated, so nobody knows its truth; "
             "make one with simulate_population()."
         )
-    known = provenance_from_json(population.provenance[KEY])
-    people = draw_people(
-        known.n_women,
-        known.n_men,
-        seed=known.seed,
-        sex_effect=known.sex_effect,
-        effects=known.effects,
-    )
+    settings, planted, capture = read_provenance(population.provenance[KEY])
+    people = draw_people(**settings)
     rows = _same_rows(people, population.traits)
     return Truth(
         people=people.iloc[rows].reset_index(drop=True),
-        effects=_effect_table(known.effects, known.sex_effect),
-        planted=known.planted,
-        capture=known.capture,
-        seeds=[(known.seed, row) for row in rows],
+        effects=_effect_table(settings["effects"], settings["sex_effect"]),
+        planted=planted,
+        capture=capture,
+        seeds=[(settings["seed"], row) for row in rows],
     )
 
 
