@@ -201,15 +201,3 @@ def _box(cover: np.ndarray) -> tuple[slice, slice]:
     within = slice(rows[0] // 2 * 2, rows[-1] // 2 * 2 + 2)
     columns = np.flatnonzero(cover[within].max(axis=0))
     return within, slice(columns[0] // 2 * 2, columns[-1] // 2 * 2 + 2)
-
-
-def shades_between(ground: str, ink: str) -> np.ndarray:
-    """Return red, green and blue, 0 to 255, from one colour to another: array of shape (256, 3)."""
-    start, end = (np.array(rgb(colour)) for colour in (ground, ink))
-    return start + np.linspace(0, 1, 256)[:, None] * (end - start)
-
-
-def rgb(colour: str) -> tuple[int, int, int]:
-    """Return red, green and blue, 0 to 255, of a colour such as ``"#ff8000"``."""
-    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    return red, green, blue

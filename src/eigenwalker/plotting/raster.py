@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 
 MAX_PIXELS = 2_000_000
 """Pixels of discs computed at once."""
+BLOB_REACH_SD = 3.6
+"""Standard deviations beyond which a blob gives less light than an 8-bit pixel shows."""
 
 
 def draw_discs(
@@ -83,6 +85,22 @@ def draw_lines(
         apart = np.sqrt((across - share * along_x) ** 2 + (down - share * along_y) ** 2)
         shares = full * np.clip(width / 2 + 0.5 - apart, 0, 1)
         _cover(canvas, top, left, np.rint(255 * shares).astype(np.uint8))
+
+
+def draw_blobs(canvas: np.ndarray, places: np.ndarray, *, sd_px: float) -> None:
+    """Add up the light of Gaussian blobs, 1 at most, and keep what is brighter than before."""
+    light = np.zeros(canvas.shape, np.float32)
+    rows, columns = (np.arange(size, dtype=np.float32) for size in canvas.shape)
+    reach = BLOB_REACH_SD * sd_px
+    for x, y in places[np.isfinite(places).all(axis=1)]:
+        down, along = (
+            slice(*np.clip([place - reach, place + reach + 1], 0, None).astype(int))
+            for place in (y, x)
+        )
+        tall = np.exp(-((rows[down] - y) ** 2) / (2 * sd_px**2))
+        wide = np.exp(-((columns[along] - x) ** 2) / (2 * sd_px**2))
+        light[down, along] += tall[:, None] * wide
+    np.maximum(canvas, np.rint(255 * np.minimum(light, 1)).astype(np.uint8), out=canvas)
 
 
 def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:

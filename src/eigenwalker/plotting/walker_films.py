@@ -18,9 +18,9 @@ from eigenwalker.plotting.encoding import (
     encode_film,
     film_format,
     frame_delays,
-    shades_between,
 )
 from eigenwalker.plotting.layout import DEFAULT_DURATION_S, STYLES, Style, arrange, positions_at
+from eigenwalker.plotting.shades import shades_between
 
 Background = Literal["dark", "light"]
 COLOURS = {"dark": ("#000000", "#ffffff"), "light": ("#ffffff", "#191919")}

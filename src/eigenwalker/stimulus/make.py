@@ -12,7 +12,6 @@ import xarray as xr
 from eigenwalker._version import __version__
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.layout import DEFAULT_DURATION_S, DOT_MM
-from eigenwalker.plotting.projection import observer_axes
 from eigenwalker.population.population import Population
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
@@ -110,9 +109,8 @@ def make_stimulus(
 def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
     """Return a stimulus with its figures in the middle of the picture and as large as it allows."""
     low, high = bare.extent()
-    axes = observer_axes(bare.view.view_deg, bare.view.elevation_deg)
     middles = np.mean([moving.middle for moving in bare.scene], axis=0)
-    middle = np.array([*(low + high) / 2, axes[2] @ middles]) @ axes
+    middle = np.array([*(low + high) / 2, bare.view.axes[2] @ middles]) @ bare.view.axes
     view = replace(
         bare.view, centre_mm=tuple(middle.round(3).tolist()), eye_distance_mm=eye_distance_mm
     )

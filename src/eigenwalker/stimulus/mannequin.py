@@ -15,9 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eigenwalker.core.skeleton import Skeleton
-from eigenwalker.plotting.projection import observer_axes
 from eigenwalker.stimulus.player import NEAREST_MM
-from eigenwalker.stimulus.schema import View
 from eigenwalker.stimulus.stimulus import Stimulus
 
 UNSIDED = ("head", "sternum", "pelvis")
@@ -110,16 +108,17 @@ def _of_side(piece: Mapping[str, Any], side: str) -> dict[str, Any]:
     return {**piece, **ends, **unless}
 
 
-def hulls_at(mannequin: Mannequin, positions: np.ndarray, visible: np.ndarray, view: View) -> Hulls:
+def hulls_at(
+    mannequin: Mannequin, seen: np.ndarray, visible: np.ndarray, eye_distance_mm: float | None
+) -> Hulls:
     """Return the pieces of a figure at one moment that are to be seen.
 
-    A piece of which a dot is not visible is left out, and one that reaches the observer's eye.
+    Of dots (dot, 3) in the observer's axes, mm from the centre of the view. A piece of which a dot
+    is not visible is left out, and one that reaches the observer's eye.
     """
-    axes = observer_axes(view.view_deg, view.elevation_deg)
-    known = np.where(visible[:, None], positions - np.array(view.centre_mm), 0.0)
-    middles = mannequin.weights @ (known @ axes.T)
-    seen = ~((mannequin.weights != 0) & ~visible).any(axis=(1, 2))
-    if view.eye_distance_mm is not None:
-        nearest = view.eye_distance_mm - NEAREST_MM
-        seen &= (middles[..., 2] + mannequin.radii_mm <= nearest).all(axis=1)
-    return Hulls(middles[seen], mannequin.radii_mm[seen], mannequin.tones[seen])
+    middles = mannequin.weights @ np.where(visible[:, None], seen, 0.0)
+    whole = ~((mannequin.weights != 0) & ~visible).any(axis=(1, 2))
+    if eye_distance_mm is not None:
+        nearest = eye_distance_mm - NEAREST_MM
+        whole &= (middles[..., 2] + mannequin.radii_mm <= nearest).all(axis=1)
+    return Hulls(middles[whole], mannequin.radii_mm[whole], mannequin.tones[whole])

@@ -31,6 +31,9 @@ class Played(NamedTuple):
     positions : array of shape (time, dot, 3)
         Millimetres in the scene, NaN where not known.
     visible : array of bool of shape (time, dot)
+    seen : array of shape (time, dot, 3)
+        Millimetres from the centre of the view to the observer's right, up, and towards the
+        observer.
     picture : array of shape (time, dot, 2)
         Millimetres to the right of and above the middle of the picture, at the walker's scale.
 
@@ -41,6 +44,7 @@ class Played(NamedTuple):
     figures: np.ndarray
     positions: np.ndarray
     visible: np.ndarray
+    seen: np.ndarray
     picture: np.ndarray
 
 
@@ -59,10 +63,11 @@ def scene(
         for number in range(len(moving)) if step.figures is None else step.figures:
             figure = figures[number]
             if step.adds_dots:
-                context = Context(_observer(view, 0.0), number)
+                context = Context(view.axes, number)
                 masks.append(step.apply(_placed(moving[number], figure), context))
             else:
-                context = Context(_observer(view, figure.heading_deg), number)
+                observer = observer_axes(view.view_deg + figure.heading_deg, view.elevation_deg)
+                context = Context(observer, number)
                 moving[number] = step.apply(moving[number], context)
     return (*map(_placed, moving, figures), *masks)
 
@@ -72,37 +77,32 @@ def play(shown: Sequence[MovingDots], view: View, time: np.ndarray) -> Played:
     moments = [moving.at(time) for moving in shown]
     positions = np.concatenate([moment.positions for moment in moments], axis=1)
     visible = np.concatenate([moment.visible for moment in moments], axis=1)
-    picture, in_front = in_picture(positions, view)
+    seen = (positions - np.array(view.centre_mm)) @ view.axes.T
+    picture, in_front = in_picture(seen, view.eye_distance_mm)
     return Played(
         time,
         tuple(dot for moving in shown for dot in moving.dots),
         np.repeat(np.arange(len(shown)), [len(moving.dots) for moving in shown]),
         positions,
         visible & in_front,
+        seen,
         picture,
     )
 
 
-def in_picture(positions: np.ndarray, view: View) -> tuple[np.ndarray, np.ndarray]:
-    """Return where dots are in the picture, and whether they are in front of the eye.
+def in_picture(seen: np.ndarray, eye_distance_mm: float | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return where dots (..., 3) in the observer's axes are in the picture, and which are in front.
 
-    Of positions (..., 3) in the scene, mm; in the picture (..., 2), mm to the right of and above
-    the centre of the view. In perspective, things as far from the eye as the centre keep their
-    size.
+    In the picture (..., 2): mm to the right of and above the centre of the view. In perspective,
+    things as far from the eye as the centre keep their size; what is behind the eye is NaN.
     """
-    seen = (positions - np.array(view.centre_mm)) @ _observer(view, 0.0).T
     known = np.asarray(~np.isnan(seen).any(axis=-1))
-    if view.eye_distance_mm is None:
+    if eye_distance_mm is None:
         return seen[..., :2], known
-    away = view.eye_distance_mm - seen[..., 2]
+    away = eye_distance_mm - seen[..., 2]
     in_front = known & (away >= NEAREST_MM)
-    scale = np.where(in_front, view.eye_distance_mm / np.where(in_front, away, 1.0), np.nan)
+    scale = np.where(in_front, eye_distance_mm / np.where(in_front, away, 1.0), np.nan)
     return seen[..., :2] * scale[..., None], in_front
-
-
-def _observer(view: View, heading_deg: float) -> np.ndarray:
-    """Return the observer's axes in the frame of a figure turned to its left by a heading."""
-    return observer_axes(view.view_deg + heading_deg, view.elevation_deg)
 
 
 def _placed(moving: MovingDots, figure: Figure) -> MovingDots:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from scipy.io import savemat
 
-from eigenwalker.plotting.encoding import rgb
+from eigenwalker.plotting.shades import rgb
 from eigenwalker.stimulus.drawing import places_px
 from eigenwalker.stimulus.stimulus import Stimulus
 

@@ -9,12 +9,15 @@ import json
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from typing import Annotated, Any, Literal, get_args
 
+import numpy as np
 from pydantic import BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 from pydantic.json_schema import GenerateJsonSchema
 
+from eigenwalker.plotting.projection import observer_axes
 from eigenwalker.stimulus.body_transforms import Conflict, Ellipses, Gain, Occlude, Perturb
 from eigenwalker.stimulus.dot_transforms import Blur, LimbDots, Mask, Scramble, numbered
 from eigenwalker.stimulus.figure import FigurePart
@@ -78,6 +81,11 @@ class View(KnownNames):
         about("from the centre; null for orthographic"),
     ] = None
     centre_mm: Annotated[Vector, about("place of the scene in the middle of the picture")]
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """The observer's right, up and the direction to the observer: rows of a rotation."""
+        return observer_axes(self.view_deg, self.elevation_deg)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
-from eigenwalker.stimulus.player import Played, in_picture, play, scene
+from eigenwalker.stimulus.player import Played, play, scene
 from eigenwalker.stimulus.schema import (
     FORMAT,
     VERSION,
@@ -155,10 +155,8 @@ class Stimulus:
     def extent(self, figure: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest and largest coordinates in the picture, mm, of a figure or all."""
         chosen = self.scene[: len(self.figures)] if figure is None else [self.scene[figure]]
-        positions = [moving.at(moving.sample_times).positions for moving in chosen]
-        places = np.concatenate(
-            [in_picture(each, self.view)[0].reshape(-1, 2) for each in positions]
-        )
+        played = [play([moving], self.view, moving.sample_times) for moving in chosen]
+        places = np.concatenate([each.picture.reshape(-1, 2) for each in played])
         return np.nanmin(places, axis=0), np.nanmax(places, axis=0)
 
     @property

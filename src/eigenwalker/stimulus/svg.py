@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from eigenwalker.core.skeleton import Skeleton
+from eigenwalker.plotting.raster import BLOB_REACH_SD
+from eigenwalker.plotting.shades import lit_colour
 from eigenwalker.stimulus.drawing import (
-    BLOB_REACH_SD,
     STICK_PER_DOT,
     hulls_of,
-    lit_colour,
     look_of,
     mannequins,
     places_px,

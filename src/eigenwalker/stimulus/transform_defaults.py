@@ -14,7 +14,6 @@ import numpy as np
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.projection import observer_axes
 from eigenwalker.stimulus.figure import Figure, WalkerPart
 from eigenwalker.stimulus.moving_dots import MovingDots
 from eigenwalker.stimulus.schema import TRANSFORMS, View
@@ -168,7 +167,7 @@ def _phase_of_legs(moving: MovingDots) -> float:
 
 def _extent(view: View, moving: MovingDots) -> list[float]:
     """Width and height in the picture of a figure's mean posture, in whole millimetres."""
-    seen = moving.mean @ observer_axes(view.view_deg, view.elevation_deg)[:2].T
+    seen = moving.mean @ view.axes[:2].T
     extent = np.nanmax(seen, axis=0) - np.nanmin(seen, axis=0)
     return np.maximum(np.ceil(extent), 100.0).tolist()
 
