@@ -223,7 +223,7 @@ class Figure:
         else:
             speed = _if_finite(self.motion.attrs.get("speed_mm_s"))
             markers = self._skeleton.markers
-            samples = {"markers": markers, **self._samples(), "speed_mm_s": speed}
+            samples = {"markers": markers, **self._samples(self.motion), "speed_mm_s": speed}
             motion = {"trajectories": samples}
         return {
             **motion,
@@ -237,11 +237,10 @@ class Figure:
         """Return the figure in its own frame as a function of time."""
         if isinstance(self.motion, Walker):
             return walking(self.motion, self._skeleton)
-        return sampled(self._skeleton, **self._samples())
+        return sampled(self._skeleton, **self._samples(self.motion))
 
-    def _samples(self) -> dict[str, Any]:
+    def _samples(self, walk: xr.DataArray) -> dict[str, Any]:
         """Samples, rate and repeat, rounded as in the file, so that a file plays alike."""
-        walk = check_trajectories(self.motion)
         return {
             "rate_hz": round(sampling_rate(walk), DECIMALS),
             "repeat": self.repeat,
@@ -265,7 +264,7 @@ class Figure:
             motion = label_trajectories(given.samples, markers=given.markers, rate_hz=given.rate_hz)
             if given.speed_mm_s is not None:
                 motion.attrs["speed_mm_s"] = given.speed_mm_s
-        body = Skeleton(given.markers, part.segments, part.pairs)
+        body = Skeleton(given.markers, part.segments, part.pairs)  # pyright: ignore[reportArgumentType] - links have two ends
         repeat = isinstance(given, TrajectoriesPart) and given.repeat
         return cls(motion, body, part.position_mm, part.heading_deg, repeat)
 

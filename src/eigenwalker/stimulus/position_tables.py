@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -68,8 +69,8 @@ def write_csv(stimulus: Stimulus, path: Path) -> None:
 def write_npz(stimulus: Stimulus, path: Path) -> None:
     """Write `frame_arrays`, and the stimulus file as the text ``stimulus``."""
     with path.open("wb") as file:
-        np.savez_compressed(file, **frame_arrays(stimulus), stimulus=np.array(stimulus.to_json()))
-        # pyright: ignore[reportArgumentType] - arrays by name
+        arrays: dict[str, Any] = frame_arrays(stimulus)
+        np.savez_compressed(file, **arrays, stimulus=np.array(stimulus.to_json()))
 
 
 def write_mat(stimulus: Stimulus, path: Path) -> None:
@@ -105,6 +106,7 @@ Each refresh shows the frame that is due by the clock, so that a screen of any r
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from psychopy import core, event, visual
