@@ -19,6 +19,7 @@ from eigenwalker.io.timestamps import Clocked, on_clock
 from eigenwalker.io.to_trajectories import labelled_points, own_name, trajectories_of
 from eigenwalker.io.up_axis_and_unit import Unit
 
+_COUNT = re.compile(r"\d{1,9}", re.ASCII)
 _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
 
 
@@ -43,6 +44,14 @@ class TextTable:
     """As `table_of` takes it."""
     ends_file: bool = True
     """Whether the file ends with the table, and so may be cut within it."""
+
+
+def declared_count(file: CaptureFile, word: str, key: str) -> int:
+    """Return the count above 0 that a header gives under a key."""
+    count = int(word) if _COUNT.fullmatch(word) else 0
+    if not count:
+        raise file.error(f"a count above 0 as {key}", repr(word[:40]))
+    return count
 
 
 def interleaved(n_points: int, first: int) -> list[tuple[int, int, int]]:

@@ -22,6 +22,8 @@ MAGIC = 0x50
 MAX_PARAMETER_BLOCKS = 255
 MAX_CONTINUED = 30
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
+_ORDER = {"Intel": "<", "DEC": "<", "MIPS": ">"}
+"""Order of bytes on these machines."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +42,7 @@ class Parameter:
         raw = self.raw[: len(self.raw) // self.kind * self.kind]
         if self.kind == 4:
             return _floats(raw, self.processor).tolist()
-        order = ">" if self.processor == "MIPS" else "<"
-        return np.frombuffer(raw, f"{order}u{self.kind}").tolist()
+        return np.frombuffer(raw, f"{_ORDER[self.processor]}u{self.kind}").tolist()
 
     def texts(self) -> list[str]:
         """Return the value as a list of texts without the blanks that pad them."""
@@ -80,23 +81,15 @@ class Header(NamedTuple):
     rate_hz: float
 
 
-class Sections(NamedTuple):
-    """What a file holds; positions (time, point, 3) in its own unit, NaN where missing.
+def c3d_sections(file: CaptureFile) -> tuple[Header, Parameters, np.ndarray, dict[str, int]]:
+    """Return header, parameters, positions of shape (time, point, 3), and attributes.
 
-    `attrs` has ``n_frames_cut`` of a partial file that is to be kept; else it is empty.
+    Positions are in the unit of the file, NaN where missing. ``n_frames_cut`` is an attribute of a
+    partial file that is to be kept.
     """
-
-    header: Header
-    parameters: Parameters
-    positions: np.ndarray
-    attrs: dict[str, int]
-
-
-def c3d_sections(file: CaptureFile) -> Sections:
-    """Return the sections of a C3D file."""
     header = _header(file)
     parameters = _parameters(file, header)
-    return Sections(header, parameters, *_samples(file, header, parameters))
+    return header, parameters, *_samples(file, header, parameters)
 
 
 def _header(file: CaptureFile) -> Header:
@@ -104,18 +97,14 @@ def _header(file: CaptureFile) -> Header:
     block = content[0] if content else 0
     at = (block - 1) * BLOCK
     if len(content) < BLOCK or not block or len(content) < at + 4:
-        raise file.error(
-            "a header and parameters of 512 bytes each or more",
-            f"{len(content)} bytes: the file is cut short",
-        )
-    if content[at + 3] not in PROCESSORS:
-        raise file.error(
-            "the mark of an Intel, DEC or MIPS file (84 to 86) at its parameters",
-            str(content[at + 3]),
-        )
-    processor = PROCESSORS[content[at + 3]]
-    order = ">" if processor == "MIPS" else "<"
-    words = struct.unpack(order + "12H", content[:24])
+        got = f"{len(content)} bytes: the file is cut short"
+        raise file.error("a header and parameters of 512 bytes each or more", got)
+    mark = content[at + 3]
+    if mark not in PROCESSORS:
+        expected = "the mark of an Intel, DEC or MIPS file (84 to 86) at its parameters"
+        raise file.error(expected, str(mark))
+    processor = PROCESSORS[mark]
+    words = struct.unpack(_ORDER[processor] + "12H", content[:24])
     return Header(
         processor=processor,
         parameter_block=block,
@@ -131,18 +120,12 @@ def _header(file: CaptureFile) -> Header:
 
 def _floats(raw: bytes, processor: str) -> np.ndarray:
     """Return 4-byte floats of any of the three machines."""
-    if processor != "DEC":
-        return _wide(np.frombuffer(raw, ">f4" if processor == "MIPS" else "<f4"))
-    # A VAX float has its 16-bit halves exchanged and an exponent that is larger by two.
-    halves = np.frombuffer(raw, "<u2").reshape(-1, 2)
-    swapped = np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0]
-    return _wide(swapped) / 4
-
-
-def _wide(floats: np.ndarray) -> np.ndarray:
-    """Return 4-byte floats as 8-byte ones, without a word on NaN that a processor would signal."""
-    with np.errstate(invalid="ignore"):
-        return floats.astype(float)
+    with np.errstate(invalid="ignore"):  # of NaN that a processor would signal
+        if processor != "DEC":
+            return np.frombuffer(raw, _ORDER[processor] + "f4").astype(float)
+        # A VAX float has its 16-bit halves exchanged and an exponent that is larger by two.
+        halves = np.frombuffer(raw, "<u2").reshape(-1, 2)
+        return np.ascontiguousarray(halves[:, ::-1]).view("<f4")[:, 0].astype(float) / 4
 
 
 def _parameters(file: CaptureFile, header: Header) -> Parameters:
@@ -152,9 +135,8 @@ def _parameters(file: CaptureFile, header: Header) -> Parameters:
     end = min(len(content), at + MAX_PARAMETER_BLOCKS * BLOCK)
     if header.data_block > header.parameter_block:
         end = min(end, (header.data_block - 1) * BLOCK)
-    order = ">" if header.processor == "MIPS" else "<"
     groups: dict[int, str] = {}
-    found: dict[tuple[int, str], Parameter] = {}
+    entries: dict[tuple[int, str], Parameter] = {}
     try:
         while at + 2 <= end:
             length, group = struct.unpack_from("bb", content, at)
@@ -162,23 +144,21 @@ def _parameters(file: CaptureFile, header: Header) -> Parameters:
                 break
             name = _text(content[at + 2 : at + 2 + abs(length)]).upper()
             at += 2 + abs(length)
-            (step,) = struct.unpack_from(order + "H", content, at)
+            (step,) = struct.unpack_from(_ORDER[header.processor] + "H", content, at)
             record = content[at + 2 : at + step if step else end]
             if group < 0:
                 groups.setdefault(-group, name)
             else:
-                found.setdefault((group, name), _parameter(record, header.processor))
+                entries.setdefault((group, name), _parameter(record, header.processor))
             if not step:
                 break
             at += step
     except struct.error:
-        raise file.error(
-            "whole parameters",
-            "an end within them: the file is cut short",
-        ) from None
+        got = "an end within them: the file is cut short"
+        raise file.error("whole parameters", got) from None
     return Parameters(
         (f"{groups.get(group, group)}:{name}", parameter)
-        for (group, name), parameter in found.items()
+        for (group, name), parameter in entries.items()
     )
 
 
@@ -203,10 +183,8 @@ def _samples(
     """Return positions in the file's unit, NaN where a point is missing, and what is cut off."""
     declared_points = parameters.number("POINT:USED")
     if header.n_points == 0 or declared_points not in (None, header.n_points):
-        raise file.error(
-            "the number of points in its header, one or more, to be that of its parameters",
-            f"{header.n_points} and {declared_points}",
-        )
+        expected = "the number of points in its header, one or more, to be that of its parameters"
+        raise file.error(expected, f"{header.n_points} and {declared_points}")
     scale = _scale(file, header, parameters)
     words = 4 * header.n_points + header.n_analog
     stride = words * (4 if scale < 0 else 2)
@@ -219,14 +197,18 @@ def _samples(
     if scale < 0:
         table = _floats(raw, header.processor)
     else:
-        table = np.frombuffer(raw, ">i2" if header.processor == "MIPS" else "<i2").astype(float)
+        table = np.frombuffer(raw, _ORDER[header.processor] + "i2").astype(float)
     points = table.reshape(n_frames, words)[:, : 4 * header.n_points]
     points = points.reshape(n_frames, header.n_points, 4)
     positions = points[..., :3] * (1.0 if scale < 0 else scale)
     if (np.abs(positions) > MAX_SIZE).any():
         raise file.error("finite positions", "infinite or absurd ones")
     positions[(points[..., 3] < 0) | np.isnan(positions).any(axis=2)] = np.nan
-    return _without_zeros(positions), attrs
+    # Some programs put a marker that was not seen, and is elsewhere in other frames, at 0, 0, 0.
+    at_zero = (positions == 0).all(axis=2)
+    always = (at_zero | np.isnan(positions).any(axis=2)).all(axis=0)
+    positions[at_zero & ~always] = np.nan
+    return positions, attrs
 
 
 def _scale(file: CaptureFile, header: Header, parameters: Parameters) -> float:
@@ -235,15 +217,10 @@ def _scale(file: CaptureFile, header: Header, parameters: Parameters) -> float:
     scale = header.scale if scale is None else scale
     agree = np.isfinite(header.scale) and np.sign(scale) == np.sign(header.scale)
     if not np.isfinite(scale) or not scale or not agree:
-        raise file.error(
-            "one scale of the samples in header and parameters",
-            f"{header.scale} and {scale}",
-        )
+        got = f"{header.scale} and {scale}"
+        raise file.error("one scale of the samples in header and parameters", got)
     if scale > 0 and abs(scale - header.scale) > 1e-4 * scale:
-        raise file.error(
-            f"the scale {header.scale} of the header",
-            f"{scale} in its parameters",
-        )
+        raise file.error(f"the scale {header.scale} of the header", f"{scale} in its parameters")
     return scale
 
 
@@ -270,14 +247,3 @@ def _declared_frames(
     if not declared:
         raise file.error("one frame or more", "none")
     return declared
-
-
-def _without_zeros(positions: np.ndarray) -> np.ndarray:
-    """Return positions with NaN where a marker that is elsewhere sits at 0, 0, 0 exactly.
-
-    Some programs mark so what was not seen.
-    """
-    at_zero = (positions == 0).all(axis=2)
-    some = at_zero.any(axis=0) & ~(at_zero | np.isnan(positions).any(axis=2)).all(axis=0)
-    positions[at_zero & some] = np.nan
-    return positions

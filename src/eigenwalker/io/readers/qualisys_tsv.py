@@ -13,7 +13,13 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import cells, lines_of
-from eigenwalker.io.text_table import TextTable, interleaved, table_trajectories, table_values
+from eigenwalker.io.text_table import (
+    TextTable,
+    declared_count,
+    interleaved,
+    table_trajectories,
+    table_values,
+)
 from eigenwalker.io.timestamps import declared_rate
 from eigenwalker.io.to_trajectories import without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit
@@ -23,7 +29,6 @@ MAX_KEYS = 10_000
 
 _BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?\s*NO_OF_(FRAMES|CAMERAS|MARKERS)\b", re.IGNORECASE)
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+", re.ASCII)
-_COUNT = re.compile(r"\d{1,9}", re.ASCII)
 
 
 def looks_like_qualisys_tsv(content: bytes) -> bool:
@@ -35,15 +40,16 @@ def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the markers in a Qualisys table; NaN where one was not seen."""
     lines = lines_of(file.content, file.name)
     keys, first = _keys(lines)
-    kind = "".join(keys.get("DATA_INCLUDED", ["3D"])[:1])
+    first_of = {key: "".join(values[:1]) for key, values in keys.items()}
+    kind = first_of.get("DATA_INCLUDED", "3D")
     if kind.upper() != "3D":
         raise file.error("3D data", repr(kind[:20]), "export the 3D data as TSV")
     names = keys.get("MARKER_NAMES", [])
-    n_markers = _count(file, keys, "NO_OF_MARKERS")
+    n_markers = declared_count(file, first_of.get("NO_OF_MARKERS", ""), "NO_OF_MARKERS")
     if n_markers != len(names) or not all(names):
         raise file.error(f"the names of {n_markers} markers, as it declares", f"{len(names)} names")
     rows = [line for line in lines[first:] if line.strip()]
-    n_frames = _count(file, keys, "NO_OF_FRAMES")
+    n_frames = declared_count(file, first_of.get("NO_OF_FRAMES", ""), "NO_OF_FRAMES")
     n_front = _columns_in_front(file, lines[first - 1], rows, n_markers)
     table = TextTable(
         names,
@@ -62,7 +68,7 @@ def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
         replace(values, positions=without_zeros(values.positions)),
         names,
         format_name="Qualisys TSV",
-        rate_hz=declared_rate(file, "".join(keys.get("FREQUENCY", [])[:1]), "FREQUENCY"),
+        rate_hz=declared_rate(file, first_of.get("FREQUENCY", ""), "FREQUENCY"),
         usual_unit=Unit("mm", 1.0, "Qualisys writes millimetres"),
     )
 
@@ -81,14 +87,6 @@ def _keys(lines: Sequence[str]) -> tuple[dict[str, list[str]], int]:
         elif words[0].lower() != "frame" and line.strip():
             return keys, at
     return keys, len(lines)
-
-
-def _count(file: CaptureFile, keys: dict[str, list[str]], key: str) -> int:
-    word = "".join(keys.get(key, [])[:1])
-    count = int(word) if _COUNT.fullmatch(word) else 0
-    if not count:
-        raise file.error(f"a count above 0 as {key}", repr(word[:40]))
-    return count
 
 
 def _columns_in_front(file: CaptureFile, head: str, rows: Sequence[str], n_markers: int) -> int:

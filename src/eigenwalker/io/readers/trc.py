@@ -15,12 +15,17 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import cells, lines_of, points_of
-from eigenwalker.io.text_table import TextTable, interleaved, table_trajectories, table_values
+from eigenwalker.io.text_table import (
+    TextTable,
+    declared_count,
+    interleaved,
+    table_trajectories,
+    table_values,
+)
 from eigenwalker.io.timestamps import declared_rate
 from eigenwalker.io.to_trajectories import unit_named, without_zeros
 
 _KEYS = ("numframes", "nummarkers")
-_COUNT = re.compile(r"\d{1,9}", re.ASCII)
 _N_FRONT = 2  # columns for the number of the frame and its time
 
 
@@ -36,7 +41,7 @@ def read_trc(file: CaptureFile) -> xr.DataArray:
         raise file.error("five lines above the first frame", f"{len(lines)} lines")
     separator = "\t" if "\t" in lines[3] else None
     keys = _keys(file, lines, separator)
-    n_markers = _count(file, keys, "nummarkers")
+    n_markers = declared_count(file, keys["nummarkers"], "nummarkers")
     names = _names(file, cells(lines[3], separator)[_N_FRONT:], n_markers)
     axes = lines[4].split()
     first = 5 if axes and re.match(r"[xyz]\d*$", axes[0], re.IGNORECASE) else 4
@@ -48,7 +53,7 @@ def read_trc(file: CaptureFile) -> xr.DataArray:
         separator=separator,
         first_line=first + 1,
         time_column=1,
-        n_frames=_count(file, keys, "numframes"),
+        n_frames=declared_count(file, keys["numframes"], "numframes"),
         short_by=3 if separator else 0,
     )
     values = table_values(file, table)
@@ -77,13 +82,6 @@ def _keys(file: CaptureFile, lines: Sequence[str], separator: str | None) -> dic
         got = f"a header without {lacking}" if lacking else repr(lines[3][:40])
         raise file.error("NumFrames and NumMarkers, then a line Frame#, Time", got)
     return keys
-
-
-def _count(file: CaptureFile, keys: dict[str, str], key: str) -> int:
-    count = int(keys[key]) if _COUNT.fullmatch(keys[key]) else 0
-    if not count:
-        raise file.error(f"a count above 0 as {key}", repr(keys[key][:40]))
-    return count
 
 
 def _names(file: CaptureFile, words: list[str], n_markers: int) -> list[str]:

@@ -49,7 +49,7 @@ def _dataset(walk: Any) -> Any:
 def _storable(value: object) -> str | int | float | None:
     """Return an attribute as NetCDF holds it: a word, a number, names in one line, or JSON."""
     if isinstance(value, np.generic):
-        value = value.item()
+        value = cast("Any", value).item()
     if isinstance(value, bool):
         return str(value)
     if isinstance(value, str | int | float):
