@@ -237,7 +237,7 @@ def test_classify_reports_on_a_trait_that_is_a_number(run, people, tmp_path) -> 
     )
     assert code == 0
     page = (tmp_path / "report.html").read_text()
-    assert "Share of the variance of weight_kg told" in page
+    assert "Share of the variance of weight_kg explained" in page
     assert "nested R2" in page
     assert "when that number is chosen without them" in page
 

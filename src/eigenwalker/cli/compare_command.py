@@ -1,36 +1,39 @@
-"""The command line for differences: ``eigenwalker compare A B``, or all pairs of a folder."""
+"""``eigenwalker compare``: how different two walks look, or all pairs of many."""
 
 from __future__ import annotations
 
-import re
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from eigenwalker.cli.options import (
+    EXIT_PARTIAL,
+    Rate,
+    ReportFolder,
+    TraitFromName,
+    Unit,
+    WithFlagged,
+    progress_bar,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from eigenwalker.metric.clips import PreparedClip
     from eigenwalker.metric.frame_metrics import GroupMetric
-    from eigenwalker.study.walks import Walks
+    from eigenwalker.study.walks import CapturedWalk, Walks
 
-SOME_REFUSED = 1
-MOST_NEAREST = 10
+MAX_NEAREST = 10
 N_CLUSTERS = 2
 POPULATION = ".nc"
-MOST_SAID = 3
-"""Warnings of readers that are told; of many files most say the same."""
-OF_FILES = (".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".nc", ".pdf", ".png", ".svg", ".txt")
-AS_OPTIONS = (
-    (r"read_mocap\(\.\.\., unit='?([^')]+)'?\)", r"--unit \1"),
-    (r"read_mocap\(\.\.\., rate_hz='?([^')]+)'?\)", r"--rate \1"),
-)
-"""What readers advise in Python, as one types it here."""
+MAX_WARNINGS = 3
+"""Warnings of readers that are printed; those of many files are mostly the same."""
+MAX_REASONS = 3
+FILE_SUFFIXES = {".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".pdf", ".png", ".svg", ".txt"}
 
 
 def compare(
@@ -41,9 +44,7 @@ def compare(
     second: Annotated[
         Path | None, typer.Argument(help="The capture to compare the first one with.")
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder to write a report into.")
-    ] = None,
+    output: ReportFolder = None,
     metric: Annotated[
         str,
         typer.Option(
@@ -72,20 +73,10 @@ def compare(
     trait: Annotated[
         str | None, typer.Option(help="Trait of a population: are its classes apart?")
     ] = None,
-    trait_from_name: Annotated[
-        str | None,
-        typer.Option(help="The same for a folder, of names: 'walk_(?P<style>[a-z]+)_'."),
-    ] = None,
-    with_flagged: Annotated[
-        bool, typer.Option("--with-flagged", help="Count flagged walks among many too.")
-    ] = False,
-    unit: Annotated[
-        str | None,
-        typer.Option(help="Unit of length, for files that name none: mm, cm, m, in, asf."),
-    ] = None,
-    rate: Annotated[
-        float | None, typer.Option(help="Frames a second, for files that name none.")
-    ] = None,
+    trait_from_name: TraitFromName = None,
+    with_flagged: WithFlagged = False,
+    unit: Unit = None,
+    rate: Rate = None,
 ) -> None:
     """Say how different walks look: two of them, all pairs of many, or those nearest to one.
 
@@ -93,47 +84,40 @@ def compare(
 
     Ends with 1 when some captures of a folder could not be compared.
     """
-    given = {
-        "--nearest": nearest is not None,
-        "--answers": answers is not None,
-        "-o": output is not None,
-        "--clusters": clusters is not None,
-        "--trait": trait is not None,
-        "--trait-from-name": trait_from_name is not None,
-        "--with-flagged": with_flagged,
-        "--unit": unit is not None,
-        "--rate": rate is not None,
-    }
-    _refuse_at_the_door(first, second, output, given)
+    given = {"--nearest": nearest, "--answers": answers, "-o": output, "--clusters": clusters}
+    given |= {"--trait": trait, "--trait-from-name": trait_from_name, "--unit": unit}
+    given |= {"--with-flagged": with_flagged or None, "--rate": rate}
+    options = {name for name, value in given.items() if value is not None}
+    _check_options(first, second, options)
+    _check_output(output)
     if clusters is not None and clusters < 1:
         raise ValueError(f"--clusters {clusters}: expected 1 or more.")
     from eigenwalker.psychophysics.weights_file import load_metric
 
     chosen = load_metric(metric)
-    told = {"mannequin": not own_bodies, "unit": unit, "rate_hz": rate}
+    reading = {"mannequin": not own_bodies, "default_unit": unit, "default_rate_hz": rate}
     if second is not None:
-        _compare_two(first, second, output, chosen, told)
+        _compare_two(first, second, output, chosen, reading)
         return
-    labels = {"trait": trait, "trait_from_name": trait_from_name, "with_flagged": with_flagged}
-    if nearest is not None:
-        query = _prepared(nearest, told)
-        walks = _walks(first, told, labels)
+    query = None if nearest is None else _captured(nearest, reading)
+    table = None if answers is None else _answers(answers, chosen)
+    walks = _walks(first, reading, trait, trait_from_name, with_flagged)
+    if nearest is not None and query is not None:
         _print_nearest(nearest, query, walks, chosen)
-    elif answers is not None:
-        table = _answers(answers, chosen)
-        walks = _walks(first, told, labels)
+    elif table is not None:
         _fit(walks, table, output, chosen)
     else:
-        walks = _walks(first, told, labels)
         _compare_all(walks, output, chosen, clusters)
-    _say_what_is_left_out(walks)
+    _print_left_out(walks)
     if walks.refused:
-        raise typer.Exit(SOME_REFUSED)
+        raise typer.Exit(EXIT_PARTIAL)
 
 
-def _refuse_at_the_door(
-    first: Path, second: Path | None, output: Path | None, given: dict[str, bool]
-) -> None:
+_OF_CAPTURES = {"--unit", "--rate"}
+_OF_MANY = {"--with-flagged", *_OF_CAPTURES}
+
+
+def _check_options(first: Path, second: Path | None, options: set[str]) -> None:
     """Refuse what cannot be done, and options that would be of no use, before any work."""
     if not first.exists():
         raise ValueError(
@@ -141,33 +125,21 @@ def _refuse_at_the_door(
             f"({POPULATION})."
         )
     if second is not None:
-        _refuse_many(first, second)
-        _refuse(
-            given, {"-o", "--unit", "--rate"}, "is about many walks: name one folder or population"
-        )
-    elif given["--nearest"]:
-        allowed = {"--nearest", "--with-flagged", "--unit", "--rate"}
-        _refuse(given, allowed, "does not go with --nearest, which prints a list")
-    elif given["--answers"]:
-        allowed = {"--answers", "-o", "--with-flagged", "--unit", "--rate"}
-        _refuse(given, allowed, "does not go with --answers")
-    elif given["--clusters"] and not given["-o"]:
+        _check_two(first, second)
+        reason = "is about many walks: name one folder or population"
+        _refuse(options - {"-o", *_OF_CAPTURES}, reason)
+    elif "--nearest" in options:
+        reason = "does not go with --nearest, which prints a list"
+        _refuse(options - {"--nearest", *_OF_MANY}, reason)
+    elif "--answers" in options:
+        _refuse(options - {"--answers", "-o", *_OF_MANY}, "does not go with --answers")
+    elif "--clusters" in options and "-o" not in options:
         raise ValueError("--clusters are drawn in a report: give a folder for it too, with -o.")
-    if first.suffix.lower() == POPULATION and not given["--nearest"]:
-        _refuse(given, set(given) - {"--unit", "--rate"}, "is for captures, not for a population")
-    if output is None:
-        return
-    above = next(each for each in (output, *output.absolute().parents) if each.exists())
-    if not above.is_dir():
-        raise ValueError(f"-o {output}: {above} is a file; name a folder to write a report into.")
-    if output.suffix.lower() in OF_FILES and not output.exists():
-        raise ValueError(
-            f"-o {output} is called like a file; name a folder. The report with its pictures, "
-            "and tables as CSV, are written into it."
-        )
+    if first.suffix.lower() == POPULATION and "--nearest" not in options:
+        _refuse(options & _OF_CAPTURES, "is for captures, not for a population")
 
 
-def _refuse_many(first: Path, second: Path) -> None:
+def _check_two(first: Path, second: Path) -> None:
     for one, other in ((first, second), (second, first)):
         if one.is_dir() or one.suffix.lower() == POPULATION:
             kind = "folder" if one.is_dir() else "population"
@@ -177,68 +149,77 @@ def _refuse_many(first: Path, second: Path) -> None:
             )
 
 
-def _refuse(given: dict[str, bool], allowed: set[str], why: str) -> None:
-    for option, is_given in given.items():
-        if is_given and option not in allowed:
-            raise ValueError(f"{option} {why}.")
+def _refuse(options: set[str], reason: str) -> None:
+    for option in sorted(options):
+        raise ValueError(f"{option} {reason}.")
 
 
-def _say_what_is_left_out(walks: Walks) -> None:
-    for many, said in (
-        ("not compared", walks.refused),
-        ("flagged and left out; --with-flagged counts them too", walks.flagged),
-        ("to be minded", walks.remarks),
-    ):
-        if said:
-            lines = [f"{len(said)} {many}:", *(f"  {name}: {why}" for name, why in said.items())]
-            print("\n".join(lines), file=sys.stderr)
+def _check_output(output: Path | None) -> None:
+    if output is None:
+        return
+    above = next(each for each in (output, *output.absolute().parents) if each.exists())
+    if not above.is_dir():
+        raise ValueError(f"-o {output}: {above} is a file; name a folder to write a report into.")
+    if output.suffix.lower() in {POPULATION, *FILE_SUFFIXES} and not output.exists():
+        raise ValueError(
+            f"-o {output} is called like a file; name a folder. The report with its pictures, "
+            "and tables as CSV, are written into it."
+        )
 
 
 def _compare_two(
-    first: Path, second: Path, output: Path | None, metric: GroupMetric, told: dict
+    first: Path, second: Path, output: Path | None, metric: GroupMetric, reading: dict[str, Any]
 ) -> None:
     from eigenwalker.metric.comparison import compare_walks
     from eigenwalker.metric.published import PUBLISHED
-    from eigenwalker.report.pair_report import in_words, remarks_on_both, write_two_walks
-    from eigenwalker.study.reference_pairs import simulated_pairs
-    from eigenwalker.study.walks import with_like_rotations
+    from eigenwalker.report.pair_report import pair_sentences, remark_sentences, write_pair_report
+    from eigenwalker.study.reference_pairs import compare_with_references
+    from eigenwalker.study.walks import with_common_rotations
 
-    names = _apart(first, second)
-    a, b = with_like_rotations({"a": _prepared(first, told), "b": _prepared(second, told)}).values()
-    found = compare_walks(a, b, metric=metric)
-    asked = {metric.name: metric} if output is None else {**PUBLISHED, metric.name: metric}
-    with _bar("Simulated people to compare with") as progress:
-        reference = simulated_pairs(
-            list(asked.values()), mannequin=told["mannequin"], progress=progress
+    names = _distinct_names(first, second)
+    walks = [_captured(path, reading) for path in (first, second)]
+    remarks = {name: walk.remark for name, walk in zip(names, walks, strict=True)}
+    clips = {name: walk.clip for name, walk in zip(names, walks, strict=True)}
+    comparison = compare_walks(*with_common_rotations(clips).values(), metric=metric)
+    metrics = {metric.name: metric} if output is None else {**PUBLISHED, metric.name: metric}
+    with progress_bar("Simulated people to compare with") as progress:
+        result = compare_with_references(
+            comparison, list(metrics.values()), mannequin=reading["mannequin"], progress=progress
         )
-    print("\n".join(in_words(found, names, reference)))
-    for remark in remarks_on_both(found, names):
-        print(f"eigenwalker: {remark}", file=sys.stderr)
+    print("\n".join(pair_sentences(result, names)))
+    _print_remarks(remark_sentences(remarks))
     if output is not None:
-        print(f"Report: {write_two_walks(output, found, names, reference)}")
+        page = write_pair_report(result, output, names=names, remarks=remarks)
+        print(f"Report: {page}")
 
 
 def _compare_all(
     walks: Walks, output: Path | None, metric: GroupMetric, clusters: int | None
 ) -> None:
+    from eigenwalker.metric.neighbours import label_table
+    from eigenwalker.metric.pairwise import pair_table
     from eigenwalker.report.pairs_report import (
         TABLE_NAME,
-        label_table,
-        labels_in_words,
-        summary,
-        table_of,
-        write_all_pairs,
+        pairs_sentences,
+        printed_labels,
+        write_pairs_report,
     )
 
-    if clusters is not None and clusters > len(walks.clips):
-        raise ValueError(f"--clusters {clusters}: there are {len(walks.clips)} walks.")
-    with _bar("Comparing all pairs") as progress:
-        table = table_of(walks, metric, progress=progress)
-    print("\n".join(summary(table, metric)))
+    n_walks = len(walks.clips)
+    if clusters is not None and clusters > n_walks:
+        raise ValueError(f"--clusters {clusters}: there are {n_walks} walks.")
+    if n_walks < 2:
+        raise ValueError(
+            f"All pairs need two walks or more; {n_walks} could be used. {_left_out(walks)}"
+        )
+    with progress_bar("Comparing all pairs") as progress:
+        table = pair_table(walks.clips, metric=metric, progress=progress)
+    print("\n".join(pairs_sentences(table, metric)))
     if walks.labels:
-        print(labels_in_words(label_table(table, walks.labels)))
+        print(printed_labels(label_table(table, walks.labels)))
     if output is not None:
-        page = write_all_pairs(output, table, walks, metric, n_clusters=clusters or N_CLUSTERS)
+        n_clusters = clusters or N_CLUSTERS
+        page = write_pairs_report(table, walks, output, metric=metric, n_clusters=n_clusters)
         print(f"Table: {output / TABLE_NAME}\nReport: {page}")
 
 
@@ -268,7 +249,7 @@ def _fit(walks: Walks, answers: pd.DataFrame, output: Path | None, metric: Group
     from eigenwalker.study.walks import walker_space_distances
 
     others = {"distance in walker space": walker_space_distances(walks)} if walks.vectors else {}
-    with _bar("Fitting to answers") as progress:
+    with progress_bar("Fitting to answers") as progress:
         fit = fit_to_answers(
             walks.clips, answers, metric=metric.name, others=others, progress=progress
         )
@@ -278,71 +259,118 @@ def _fit(walks: Walks, answers: pd.DataFrame, output: Path | None, metric: Group
         print(f"Report: {write_metric_fit_report(fit, output)}")
 
 
-def _print_nearest(path: Path, query: PreparedClip, walks: Walks, metric: GroupMetric) -> None:
-    from eigenwalker.report.pairs_report import nearest_walks
-    from eigenwalker.study.walks import remarks_on
+def _print_nearest(path: Path, query: CapturedWalk, walks: Walks, metric: GroupMetric) -> None:
+    from eigenwalker.metric.neighbours import nearest_walks
+    from eigenwalker.report.pair_report import remark_sentences
 
-    with _bar("Comparing") as progress:
-        found = nearest_walks(query, walks, metric, progress=progress)
-    shown = found.head(MOST_NEAREST)
-    which = (
-        f"The {len(shown)} of {len(found)} walks nearest" if len(shown) < len(found) else "Nearest"
-    )
+    if not walks.clips:
+        raise ValueError(f"There is no walk to compare with. {_left_out(walks)}")
+    with progress_bar("Comparing") as progress:
+        distances = nearest_walks(query.clip, walks.clips, metric=metric, progress=progress)
+    shown = distances.head(MAX_NEAREST)
+    which = "Nearest"
+    if len(shown) < len(distances):
+        which = f"The {len(shown)} of {len(distances)} walks nearest"
     print(f"{which} to {path.name} by {metric.name}:")
     for name, distance in shown.items():
         print(f"  {distance:8.4g}  {name}")
-    if remark := remarks_on(query.clip):
-        print(f"eigenwalker: Mind {path.name}: {remark}", file=sys.stderr)
+    _print_remarks(remark_sentences({path.name: query.remark}))
 
 
-def _prepared(path: Path, told: dict) -> PreparedClip:
-    from eigenwalker.study.walks import repeating, walk_of_capture
+def _captured(path: Path, reading: dict[str, Any]) -> CapturedWalk:
+    """Return the walk of a capture; errors name its file."""
+    from eigenwalker.study.walks import walk_of_capture
 
     if path.is_dir():
         raise ValueError(f"{path} is a folder; name a capture.")
     try:
-        with _told_as_options():
-            return repeating(walk_of_capture(path, **told))
+        with _summarised_warnings():
+            walk = walk_of_capture(path, **reading)
+        if walk.clip.cycle is None:
+            raise ValueError(walk.clip.not_periodic_reason)
     except (ValueError, OSError) as error:
-        said = _as_options(str(error))
-        raise ValueError(said if path.name in said else f"{path}: {said}") from error
+        reason = str(error).strip()
+        raise ValueError(reason if path.name in reason else f"{path}: {reason}") from error
+    return walk
 
 
-def _walks(source: Path, told: dict, labels: dict) -> Walks:
+def _walks(
+    source: Path,
+    reading: dict[str, Any],
+    trait: str | None,
+    trait_from_name: str | None,
+    with_flagged: bool,
+) -> Walks:
+    """Return all walks of a folder or a population."""
+    from eigenwalker.datasets.built_in import load_population
     from eigenwalker.study.walks import walks_of_folder, walks_of_population
 
     if source.is_dir():
-        if labels.pop("trait") is not None:
+        if trait is not None:
             raise ValueError("--trait is for populations; for a folder give --trait-from-name.")
-        with _told_as_options(), _bar("Reading captures") as progress:
-            return walks_of_folder(source, progress=progress, **labels, **told)
+        with _summarised_warnings(), progress_bar("Reading captures") as progress:
+            return walks_of_folder(
+                source,
+                trait_from_name=trait_from_name,
+                with_flagged=with_flagged,
+                progress=progress,
+                **reading,
+            )
     if source.suffix.lower() != POPULATION:
         raise ValueError(
             f"{source} is one walk; name a second one, or a folder or population for all pairs."
         )
-    if labels["trait_from_name"] is not None:
+    if trait_from_name is not None:
         raise ValueError("--trait-from-name is for folders; for a population give --trait.")
-    from eigenwalker.datasets.built_in import load_population
-
     population = load_population(source)
-    if labels["with_flagged"]:
-        population = population.without_flags()
-    with _bar("Looping walks") as progress:
+    with progress_bar("Looping walks") as progress:
         return walks_of_population(
-            population, trait=labels["trait"], mannequin=told["mannequin"], progress=progress
+            population.without_flags() if with_flagged else population,
+            trait=trait,
+            mannequin=reading["mannequin"],
+            progress=progress,
         )
 
 
-def _apart(first: Path, second: Path) -> tuple[str, str]:
-    """Names of two files, with their folders where they would be the same."""
+def _distinct_names(first: Path, second: Path) -> tuple[str, str]:
+    """Return the names of two files, with their folders where they would be the same."""
     if first.name != second.name:
         return first.name, second.name
     return str(first), f"{second} (again)" if first == second else str(second)
 
 
+def _left_out(walks: Walks) -> str:
+    """Return why some walks do not count, in sentences; of many refused, the first few."""
+    refused = list(walks.refused.items())[:MAX_REASONS]
+    sentences = [f"{name}: {reason.strip().rstrip('.')}." for name, reason in refused]
+    if walks.flagged:
+        name, reason = next(iter(walks.flagged.items()))
+        first = reason.partition(". ")[0].rstrip(".")
+        sentences.append(f"{len(walks.flagged)} flagged, such as {name}: {first}.")
+        sentences.append("With --with-flagged they count too.")
+    return " ".join(sentences)
+
+
+def _print_left_out(walks: Walks) -> None:
+    titles: dict[str, Mapping[str, str]] = {
+        "not compared": walks.refused,
+        "flagged and left out; --with-flagged counts them too": walks.flagged,
+        "to be minded": walks.remarks,
+    }
+    for title, reasons in titles.items():
+        if reasons:
+            lines = [f"  {name}: {reason}" for name, reason in reasons.items()]
+            print("\n".join([f"{len(reasons)} {title}:", *lines]), file=sys.stderr)
+
+
+def _print_remarks(sentences: list[str]) -> None:
+    for sentence in sentences:
+        print(f"eigenwalker: {sentence}", file=sys.stderr)
+
+
 @contextmanager
-def _told_as_options() -> Iterator[None]:
-    """Say what readers warn of in words of this command line, of many files the first few."""
+def _summarised_warnings() -> Iterator[None]:
+    """Print each warning of readers once, of many files the first few, and how to answer them."""
     from eigenwalker.io.capture_file import RateAssumed
     from eigenwalker.io.up_axis_and_unit import UnitGuessed
 
@@ -350,26 +378,8 @@ def _told_as_options() -> Iterator[None]:
         for kind in (RateAssumed, UnitGuessed):
             warnings.simplefilter("always", kind)
         yield
-    said = list(dict.fromkeys(_as_options(str(each.message)) for each in caught))
-    for words in said[:MOST_SAID]:
-        print(f"eigenwalker: {words}", file=sys.stderr)
-    if len(said) > MOST_SAID:
-        print(f"eigenwalker: and {len(said) - MOST_SAID} more warnings.", file=sys.stderr)
-
-
-def _as_options(words: str) -> str:
-    for python, option in AS_OPTIONS:
-        words = re.sub(python, option, words)
-    return words.strip()
-
-
-@contextmanager
-def _bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A progress bar on the error stream, and what to call as work proceeds."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task(title, total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+    messages = list(dict.fromkeys(str(each.message).strip() for each in caught))
+    more = f"and {len(messages) - MAX_WARNINGS} more warnings."
+    _print_remarks(messages[:MAX_WARNINGS] + ([more] if len(messages) > MAX_WARNINGS else []))
+    if any(issubclass(each.category, RateAssumed | UnitGuessed) for each in caught):
+        _print_remarks(["On the command line, name a unit or a rate by --unit and --rate."])

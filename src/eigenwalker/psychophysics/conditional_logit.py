@@ -1,14 +1,9 @@
-r"""Weights of a metric fitted to the choices themselves, not to shares of them.
+"""Weights of a metric fitted to the choices themselves, not to shares of them.
 
 The paper fits a sum of distances to the share of times that each pair was not chosen. Where four
 walkers are shown and one of six pairs is chosen, that share depends on the other five pairs and
 levels off: a pair that differs much is never chosen, however much it differs. A model of the choice
-itself has no such limit. A pair is the more likely to be chosen, the less it differs from the
-others shown (McFadden 1974), with no weight below 0 as in the paper:
-
-.. math:: P(i) = \frac{e^{-d_i}}{\sum_j e^{-d_j}}, \qquad d_i = \sum_k w_k F(d_{ik})
-
-The likelihood has one maximum.
+itself has no such limit.
 """
 
 from __future__ import annotations
@@ -68,13 +63,13 @@ class ChoiceFit:
 def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None) -> ChoiceFit:
     r"""Return the weights of joint groups that make what observers chose most likely.
 
-    A conditional logit whose weights are not negative:
+    A conditional logit: of the pairs shown, pair i is chosen with the probability
 
-    .. math:: \max_{w \ge 0} \sum_t \log \frac{e^{-x_{c_t} w}}{\sum_{i \in S_t} e^{-x_i w}}
+    .. math:: P(i) = e^{-d_i} / \sum_j e^{-d_j}, \qquad d_i = \sum_k w_k F(d_{ik}), \; w_k \ge 0
 
-    with x_i the row of X of pair i, S_t the pairs shown in trial t and c_t the one chosen. It is
-    found by Newton's method, of which each step is a problem of non-negative least squares. Warns
-    of weights without an upper bound, as of a group that differs only in pairs never chosen.
+    The likelihood has one maximum, found by Newton's method with steps of non-negative least
+    squares. Warns of weights without an upper bound, as of a group that differs only in pairs that
+    were never chosen.
 
     Parameters
     ----------
@@ -89,11 +84,6 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     -------
     ChoiceFit
 
-    Raises
-    ------
-    ValueError
-        If X does not fit the pairs, or no trial counts.
-
     See Also
     --------
     PerceptualMetric : The paper's fit, to shares of choices.
@@ -101,8 +91,7 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
 
     References
     ----------
-    McFadden (1974), Conditional logit analysis of qualitative choice behavior. Pražák et al.
-    (2010), section 5, whose weights are not negative either.
+    McFadden (1974), Conditional logit analysis of qualitative choice behavior.
 
     Examples
     --------
@@ -165,11 +154,6 @@ def bootstrap_choices(
     -------
     Bootstrap
         Its constants are 0: a model of choices has none.
-
-    Raises
-    ------
-    ValueError
-        If X does not fit the pairs, or there is one observer only.
 
     See Also
     --------

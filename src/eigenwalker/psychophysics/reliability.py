@@ -58,12 +58,10 @@ def bootstrap_weights(
     """Return weights of `PerceptualMetric` refitted to observers, and walkers, drawn anew.
 
     Observers are drawn with replacement rather than answers, since the answers of one observer
-    belong together; walkers rather than pairs, for the same reason. With walkers the intervals are
-    wider: they then cover other walkers too, and where the metric does not quite fit.
-
-    Neither is calibrated. A walker drawn twice makes pairs count four times, so with walkers the
-    samples spread wider than repeated studies do, by about a half; with observers alone they
-    spread less than half as much as repeated studies with other walkers.
+    belong together; walkers rather than pairs, for the same reason. Neither is calibrated: with
+    walkers, samples spread wider than repeated studies do, by about a half, as a walker drawn twice
+    makes pairs count four times; with observers alone, less than half as much as studies with other
+    walkers.
 
     Parameters
     ----------
@@ -83,11 +81,6 @@ def bootstrap_weights(
     Bootstrap
         Pairs that the observers drawn were never shown are left out of that sample; samples of
         fewer than `MIN_PAIRS` different pairs are drawn again.
-
-    Raises
-    ------
-    ValueError
-        If counts are impossible, or there are too few walkers or pairs to draw from.
 
     See Also
     --------

@@ -29,8 +29,7 @@ class PairCounts:
     ----------
     pairs : MultiIndex
         The two walkers of each pair, in the order of `itertools.combinations` over their names.
-    observers : tuple
-        The observers.
+    observers : tuple of str
     chosen, shown : array of shape (observer, pair)
         Counts.
 
@@ -62,8 +61,7 @@ class Trials:
     ----------
     pairs : MultiIndex
         The two walkers of each pair, as in `PairCounts`.
-    observers : tuple
-        Their names.
+    observers : tuple of str
     observer : array of int of shape (trial,)
         The observer of each trial, as a position in `observers`.
     shown : array of int of shape (trial, 6)
@@ -111,26 +109,22 @@ class Trials:
 
 
 def read_answers(path: str | Path) -> pd.DataFrame:
-    r"""Return a table of observers' answers from a CSV file, all cells as text.
+    r"""Return a table of observers' answers from a CSV file.
 
     Parameters
     ----------
     path : path
-        Text in UTF-8, separated by commas, semicolons or tabs, with the columns that
-        `read_trials` takes.
+        Text in UTF-8, separated by commas, semicolons or tabs.
 
     Returns
     -------
     DataFrame
+        The columns that `read_trials` and `fit_to_answers` take; all cells are text.
 
     Raises
     ------
     ValueError
         If the file cannot be read, or lacks columns.
-
-    See Also
-    --------
-    read_trials, fit_to_answers
 
     Examples
     --------
@@ -183,13 +177,13 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     Raises
     ------
     ValueError
-        If a column or an observer is missing, a trial shows a walker twice, none, or one that is
-        not known, or walkers were chosen that it did not show; or `walkers` names one twice. Lines
-        are counted as in a file whose first line is the headings.
+        If a column or an observer is missing, a trial does not show four different known walkers
+        or shows none that was chosen, or `walkers` names one twice. Lines are counted as in a file
+        whose first line is the headings.
 
     References
     ----------
-    Pražák et al. (2010), section 4: four walkers a trial, the most similar pair is chosen.
+    Pražák et al. (2010), section 4.
 
     Examples
     --------
@@ -253,20 +247,13 @@ def count_pairs(
 
     Parameters
     ----------
-    answers : DataFrame or Trials
-        As `read_trials` takes or returns them.
-    walkers : sequence of str, optional
-        As `read_trials` takes them.
+    answers, walkers
+        As `read_trials` takes them; or `Trials`.
 
     Returns
     -------
     PairCounts
         Its `differences` are what `PerceptualMetric` is fitted to.
-
-    Raises
-    ------
-    ValueError
-        As `read_trials` does.
 
     References
     ----------

@@ -38,16 +38,6 @@ class Table:
     """A table whose first column names the rows.
 
     Numbers are set at the right, fractions with three figures; None and NaN are dashes.
-
-    Parameters
-    ----------
-    caption : str
-        The content of the table, in a sentence.
-    columns : sequence of str
-        Names of all columns.
-    rows : sequence of sequences
-        Cells, as many a row as there are columns.
-
     """
 
     caption: str
@@ -94,16 +84,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Link:
-    """A link to a page beside the report.
-
-    Parameters
-    ----------
-    text : str
-        The text of the link.
-    file : str
-        Name of a file in the report's folder.
-
-    """
+    """The text of a link, and the name of the file in the report's folder to which it leads."""
 
     text: str
     file: str

@@ -115,16 +115,7 @@ def space_figure(X: np.ndarray, contrast: Contrast, step: np.ndarray) -> Figure:
 
 
 def write_films(walkers: Mapping[str, Walker], stem: Path) -> list[Film]:
-    """Film walkers side by side, as points of light and as sticks.
-
-    Parameters
-    ----------
-    walkers : mapping of str to Walker
-        By title; points of light show the first, the middle and the last.
-    stem : Path
-        Where to write ``STEM-dots.mp4`` and ``STEM-sticks.mp4``.
-
-    """
+    """Film walkers side by side, as points of light and as sticks."""
     titles = list(walkers)
     ends = [titles[0], titles[len(titles) // 2], titles[-1]]
     kinds: list[tuple[Style, str, list[str]]] = [

@@ -13,7 +13,7 @@ from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, Metri
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
 from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.pair_report import CITE, in_plain
+from eigenwalker.report.metric_sentences import CITE, plain_name
 
 FEW_OBSERVERS = 10
 """Below so many, intervals from drawing observers hold planted weights much too seldom."""
@@ -75,7 +75,9 @@ def _unseen(correlation: float) -> str:
 
 def _shares(weights: pd.DataFrame) -> str:
     in_order = weights.relative.sort_values(ascending=False)
-    parts = [f"{in_plain(name)} {share:.2f}" for name, share in in_order.items() if share >= 0.005]
+    parts = [
+        f"{plain_name(name)} {share:.2f}" for name, share in in_order.items() if share >= 0.005
+    ]
     return ", ".join(parts) if parts else "none, as no joint group predicts anything"
 
 
@@ -137,7 +139,7 @@ def _weights_figure(fit: MetricFit) -> Figure:
 def _weights_table(caption: str, weights: pd.DataFrame) -> Table:
     rows = [
         [
-            in_plain(group),
+            plain_name(group),
             float(row.weight),
             float(row.relative),
             f"{row.relative_low:.2f} to {row.relative_high:.2f}",

@@ -7,10 +7,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.progress import Progress
-from eigenwalker.metric.clips import Clip
 from eigenwalker.metric.frame_metrics import GroupMetric
-from eigenwalker.metric.pairwise import pair_distances, pair_table
+from eigenwalker.metric.neighbours import label_table
 from eigenwalker.plotting.difference_tables import (
     figure_difference_table,
     figure_map_of_walks,
@@ -22,145 +20,40 @@ from eigenwalker.psychophysics.dissimilarity_structure import (
     map_of_walks,
     order_of_walks,
 )
-from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
+from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.pair_report import CITE, SCALE_IS_UNKNOWN, WHERE_POINTS_SIT, in_plain
+from eigenwalker.report.metric_sentences import (
+    CITE,
+    SCALE_IS_UNKNOWN,
+    WHERE_POINTS_SIT,
+    body_sentence,
+    missing_points,
+)
 from eigenwalker.study.walks import Walks
 
-MOST_ROWS = 60
-MOST_NAMED_POINTS = 30
+MAX_ROWS = 60
+MAX_NAMED_POINTS = 30
 TABLE_NAME = "differences.csv"
 
 
-def table_of(
-    walks: Walks, metric: GroupMetric, *, progress: Progress | None = None
-) -> pd.DataFrame:
-    """Return the differences of all pairs of walks."""
-    if len(walks.clips) < 2:
-        raise ValueError(
-            f"All pairs need two walks or more; {len(walks.clips)} could be used. {left_out(walks)}"
-        )
-    return pair_table(walks.clips, metric=metric, progress=progress)
-
-
-def left_out(walks: Walks) -> str:
-    """Return why some walks do not count, in words; of many refused, the first few."""
-    few = list(walks.refused.items())[:3]
-    said = [f"{name}: {why.strip().rstrip('.')}." for name, why in few]
-    if walks.flagged:
-        name, why = next(iter(walks.flagged.items()))
-        first = why.partition(". ")[0].rstrip(".")
-        said.append(f"{len(walks.flagged)} flagged, such as {name}: {first}.")
-        said.append("With --with-flagged they count too.")
-    return " ".join(said)
-
-
-def nearest_walks(
-    query: Clip, walks: Walks, metric: GroupMetric, *, progress: Progress | None = None
-) -> pd.Series:
-    """Return the differences of all walks from one, the nearest first.
-
-    Parameters
-    ----------
-    query : DataArray of shape (time, marker, axis), or PreparedClip
-        A walk.
-    walks : Walks
-        Among which to look.
-    metric : GroupMetric
-        By which.
-    progress : callable, optional
-        Called with the number of walks that are done, and of all.
-
-    Returns
-    -------
-    Series of walks
-
-    """
-    if not walks.clips:
-        raise ValueError(f"There is no walk to compare with. {left_out(walks)}")
-    distances = {}
-    for done, (name, clip) in enumerate(walks.clips.items(), start=1):
-        pair = {"query": query, "other": clip}
-        distances[name] = float(pair_distances(pair, metric=metric).iloc[0])
-        if progress is not None:
-            progress(done, len(walks.clips))
-    return pd.Series(distances, name="distance").sort_values(kind="stable")
-
-
-def label_table(table: pd.DataFrame, labels: dict[str, str]) -> pd.DataFrame:
-    """Return whether walks of a label are nearer to each other than to others.
-
-    Parameters
-    ----------
-    table : DataFrame of walks by walks
-        Differences.
-    labels : dict of str to str
-        Label of each walk; walks without one are left out.
-
-    Returns
-    -------
-    DataFrame of labels
-        ``walks``; mean differences ``within`` the label (NaN of one walk alone) and to
-        ``others``; ``nearest``, the share of its walks whose nearest walk has the same label; and
-        ``by_chance``, what that share would be if labels were dealt out at random.
-
-    Examples
-    --------
-    >>> place = pd.Series({"a": 0.0, "b": 1.0, "c": 9.0, "d": 10.0})
-    >>> table = (place.to_frame() @ np.ones((1, 4)) - place.to_numpy()).abs()
-    >>> table.columns = place.index
-    >>> found = label_table(table, {"a": "slow", "b": "slow", "c": "fast", "d": "fast"})
-    >>> found.loc["slow"].tolist()
-    [2.0, 1.0, 9.0, 1.0, 0.3333333333333333]
-
-    """
-    names = [name for name in table.index if name in labels]
-    values = table.loc[names, names].to_numpy()
-    of = np.array([labels[name] for name in names])
-    alone = values + np.diag(np.full(len(values), np.inf))
-    nearest = of[alone.argmin(axis=1)]
-    rows = {}
-    for label in sorted(set(of)):
-        mine = of == label
-        n = int(mine.sum())
-        rows[label] = {
-            "walks": n,
-            "within": values[np.ix_(mine, mine)].sum() / (n * (n - 1)) if n > 1 else np.nan,
-            "others": values[np.ix_(mine, ~mine)].mean() if n < len(of) else np.nan,
-            "nearest": float(np.mean(nearest[mine] == label)),
-            "by_chance": (n - 1) / max(len(of) - 1, 1),
-        }
-    return pd.DataFrame.from_dict(rows, orient="index")
-
-
-def labels_in_words(found: pd.DataFrame) -> str:
-    """Return a table of labels to be printed, and what its columns are."""
-    table = found.to_string(float_format=lambda number: f"{number:.3g}")
-    return (
-        f"{table}\nwithin: mean difference from walks of the same kind; others: from all others; "
-        "nearest: share of walks whose nearest walk is of their kind; by_chance: that share if "
-        "kinds were dealt out at random."
-    )
-
-
-def write_all_pairs(
-    folder: str | Path,
+def write_pairs_report(
     table: pd.DataFrame,
     walks: Walks,
-    metric: GroupMetric,
+    folder: str | Path,
     *,
+    metric: GroupMetric,
     n_clusters: int = 2,
 ) -> Path:
     """Write a report on all pairs, with ``differences.csv`` beside it, and return its page.
 
     Parameters
     ----------
+    table : DataFrame of walks by walks
+        Differences, as `pair_table` gives them.
+    walks : Walks
+        Which they are, and what was left out.
     folder : path
         Made where it does not exist.
-    table : DataFrame of walks by walks
-        Differences, as `table_of` gives them.
-    walks : Walks
-        Which they are.
     metric : GroupMetric
         By which they were compared.
     n_clusters : int
@@ -170,103 +63,130 @@ def write_all_pairs(
     -------
     Path
 
+    See Also
+    --------
+    eigenwalker.study.walks_of_folder, eigenwalker.metric.pair_table
+
+    References
+    ----------
+    Pražák et al. (2010), section 4, figures 3 and 4.
+
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     table.to_csv(folder / TABLE_NAME, index_label="walk")
     names = short_names([str(name) for name in table.index])
-    order = order_of_walks(table)
-    clusters = clusters_of_walks(table, n_clusters)
+    labels = [walks.labels.get(str(name)) for name in table.index]
+    order, clusters = order_of_walks(table), clusters_of_walks(table, n_clusters)
     sections = [
-        Section("All pairs", _pictures(table, names, order, clusters, walks)),
-        Section("Each walk", [_each_walk(table, names, order, clusters, walks)]),
+        Section(
+            "All pairs",
+            [_table_figure(table, names, order, clusters), _map(table, names, clusters, labels)],
+        ),
+        Section("Each walk", [_each_walk(table, names, order, clusters, labels)]),
     ]
     if walks.labels:
-        sections.insert(1, Section("Labels", [_labels(table, walks)]))
-    for title, said in (
+        sections.insert(1, Section("Labels", [_labels(label_table(table, walks.labels))]))
+    for title, reasons in (
         ("Not compared", walks.refused),
         ("Flagged, and left out", walks.flagged),
         ("To be minded", walks.remarks),
     ):
-        if said:
-            sections.append(Section(title, [_listed(said)]))
+        if reasons:
+            sections.append(Section(title, [_items(reasons)]))
     sections.append(Section("How this was done", [Items(_method(walks, metric)), Text(CITE)]))
-    lead = " ".join(summary(table, metric))
+    lead = " ".join(pairs_sentences(table, metric))
     return write_report(Report(f"{len(names)} walks compared", lead, sections), folder)
 
 
-def _listed(said: dict[str, str]) -> Items:
-    items = [f"{name}: {why}" for name, why in said.items()]
-    more = [f"and {len(items) - MOST_ROWS} more"] if len(items) > MOST_ROWS else []
-    return Items([*items[:MOST_ROWS], *more])
+def pairs_sentences(table: pd.DataFrame, metric: GroupMetric) -> list[str]:
+    """Return the main results of a table of differences in sentences."""
+    first, second = np.triu_indices(len(table), 1)
+    pairs = table.to_numpy()[first, second]
 
-
-def summary(table: pd.DataFrame, metric: GroupMetric) -> list[str]:
-    """Return what a table says, in sentences."""
-    values = table.to_numpy()
-    rows, columns = np.triu_indices(len(values), 1)
-    pairs = values[rows, columns]
-    least, most = int(pairs.argmin()), int(pairs.argmax())
-
-    def named(pair: int) -> str:
-        return f"{table.index[rows[pair]]} and {table.index[columns[pair]]}"
+    def walks(pair: np.intp) -> str:
+        return f"{table.index[first[pair]]} and {table.index[second[pair]]}"
 
     return [
         f"{len(pairs)} pairs of {len(table)} walks by {metric.name}: differences of "
         f"{pairs.min():.3g} to {pairs.max():.3g}, median {np.median(pairs):.3g}.",
-        f"Most alike are {named(least)}; most different {named(most)}.",
+        f"Most alike are {walks(pairs.argmin())}; most different {walks(pairs.argmax())}.",
     ]
 
 
-def _pictures(
-    table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray, walks: Walks
-) -> list[Block]:
-    heat = Figure(
+def printed_labels(labels: pd.DataFrame) -> str:
+    """Return a table of labels (`label_table`) to be printed, and what its columns are."""
+    table = labels.to_string(float_format=lambda number: f"{number:.3g}")
+    return (
+        f"{table}\nwithin: mean difference from walks of the same kind; others: from all others; "
+        "nearest: share of walks whose nearest walk is of their kind; by_chance: that share if "
+        "kinds were dealt out at random."
+    )
+
+
+def _items(reasons: dict[str, str]) -> Items:
+    items = [f"{name}: {reason}" for name, reason in reasons.items()]
+    more = [f"and {len(items) - MAX_ROWS} more"] if len(items) > MAX_ROWS else []
+    return Items([*items[:MAX_ROWS], *more])
+
+
+def _table_figure(
+    table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray
+) -> Figure:
+    return Figure(
         figure_difference_table(table, names, order=order, clusters=clusters),
         "Differences of all pairs, dark where walks are alike, in the order of the first principal "
         "component of the table's rows; dashed lines part neighbours of different clusters.",
         f"A square grey picture of {len(names)} by {len(names)} differences.",
     )
-    classes, told = [f"cluster {each + 1}" for each in clusters], "cluster (k-means on the rows)"
-    if walks.labels:
-        classes, told = [walks.labels.get(str(name), "none") for name in table.index], "label"
-    few = names if len(names) <= MOST_NAMED_POINTS and not walks.labels else None
-    places = Figure(
-        figure_map_of_walks(map_of_walks(table), classes, names=few),
+
+
+def _map(
+    table: pd.DataFrame, names: list[str], clusters: np.ndarray, labels: list[str | None]
+) -> Figure:
+    if any(labels):
+        classes, colour, shown_names = [label or "none" for label in labels], "label", None
+    else:
+        classes = [f"cluster {each + 1}" for each in clusters]
+        colour = "cluster (k-means on the rows)"
+        shown_names = names if len(names) <= MAX_NAMED_POINTS else None
+    return Figure(
+        figure_map_of_walks(map_of_walks(table), classes, names=shown_names),
         "A map on which distances are as near to the differences as two dimensions allow "
-        f"(classical scaling), coloured by {told}.",
+        f"(classical scaling), coloured by {colour}.",
         f"{len(names)} points in clusters of {np.bincount(clusters).tolist()}.",
     )
-    return [heat, places]
 
 
 def _each_walk(
-    table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray, walks: Walks
+    table: pd.DataFrame,
+    names: list[str],
+    order: np.ndarray,
+    clusters: np.ndarray,
+    labels: list[str | None],
 ) -> Table:
     values = table.to_numpy()
-    alone = values + np.diag(np.full(len(values), np.inf))
-    belongs = cluster_memberships(table, clusters)
-    rows = []
-    for walk in order[:MOST_ROWS]:
-        nearest = int(alone[walk].argmin())
-        rows.append(
-            [
-                names[walk],
-                walks.labels.get(str(table.index[walk])),
-                int(clusters[walk]) + 1,
-                f"{100 * belongs[walk, clusters[walk]]:.0f} %",
-                names[nearest],
-                float(values[walk, nearest]),
-                float(values[walk].sum() / (len(values) - 1)),
-            ]
-        )
+    nearest = (values + np.diag(np.full(len(values), np.inf))).argmin(axis=1)
+    membership = cluster_memberships(table, clusters)
     columns = ["walk", "label", "cluster", "belongs", "nearest walk", "distance", "mean of all"]
-    if not walks.labels:
+    rows = [
+        [
+            names[walk],
+            labels[walk],
+            int(clusters[walk]) + 1,
+            f"{100 * membership[walk, clusters[walk]]:.0f} %",
+            names[nearest[walk]],
+            float(values[walk, nearest[walk]]),
+            float(values[walk].sum() / (len(values) - 1)),
+        ]
+        for walk in order[:MAX_ROWS]
+    ]
+    if not any(labels):
         columns.remove("label")
-        rows = [[row[0], *row[2:]] for row in rows]
-    left = f" (the first {MOST_ROWS} of {len(order)})" if len(order) > MOST_ROWS else ""
+        rows = [[name, *rest] for name, _, *rest in rows]
+    shown = f" (the first {MAX_ROWS} of {len(order)})" if len(order) > MAX_ROWS else ""
     return Table(
-        f"Walks in that order{left}, and the walk nearest to each. A walk belongs to its cluster "
+        f"Walks in that order{shown}, and the walk nearest to each. A walk belongs to its cluster "
         "the more, the nearer it is to the cluster's middle than to the other middles (fuzzy "
         "c-means)",
         columns,
@@ -274,8 +194,7 @@ def _each_walk(
     )
 
 
-def _labels(table: pd.DataFrame, walks: Walks) -> Table:
-    found = label_table(table, walks.labels)
+def _labels(labels: pd.DataFrame) -> Table:
     rows = [
         [
             str(label),
@@ -285,7 +204,7 @@ def _labels(table: pd.DataFrame, walks: Walks) -> Table:
             f"{100 * row.nearest:.0f} %",
             f"{100 * row.by_chance:.0f} %",
         ]
-        for label, row in found.iterrows()
+        for label, row in labels.iterrows()
     ]
     return Table(
         "Mean difference from walks of the same label and of others, and how many have one of the "
@@ -297,21 +216,11 @@ def _labels(table: pd.DataFrame, walks: Walks) -> Table:
 
 def _method(walks: Walks, metric: GroupMetric) -> list[str]:
     clips = [each.clip for each in walks.clips.values()]
-    bodies = (
-        "All walks are shown on a neutral mannequin of fixed proportions, so that only movements "
-        "differ."
-        if all(clip.attrs.get("retargeted") for clip in clips)
-        else "Each walk has its own body, whose build counts too."
-    )
-    every = [set(map(str, clip.marker.values)) for clip in clips]
-    lacking = sorted(set.union(*every) - set.intersection(*every))
-    points = ", ".join(map(in_plain, lacking))
-    said = [f"Left out, as some of the walks lack them: {points}."] if lacking else []
     return [
-        bodies,
+        body_sentence(clips),
         "Walks were brought in place, looped, registered pair by pair in phase, heading and "
         f"place, and compared along the path by the metric {metric.name}.",
-        *said,
+        *missing_points(clips),
         SCALE_IS_UNKNOWN,
         WHERE_POINTS_SIT,
     ]

@@ -7,8 +7,16 @@ from .process_capture import (
     NoWalkError as NoWalkError,
     process_capture as process_capture,
 )
+from .reference_pairs import (
+    ReferencedComparison as ReferencedComparison,
+    compare_with_references as compare_with_references,
+    self_distance as self_distance,
+    simulated_distances as simulated_distances,
+)
 from .walks import (
+    CapturedWalk as CapturedWalk,
     Walks as Walks,
+    walk_of_capture as walk_of_capture,
     walker_space_distances as walker_space_distances,
     walks_of_folder as walks_of_folder,
     walks_of_population as walks_of_population,

@@ -2,50 +2,41 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 
 from eigenwalker.metric.mannequin import SHARES
 
 WIDE_HIPS = 1.5
-"""How much wider hips may be, beside shoulders, than those of the mannequin."""
+"""Hip ratio above which hips must be points on the skin."""
 
 
-def strangeness(own: xr.DataArray, shown: xr.DataArray) -> str:
-    """Return in words why a walk is not itself on the mannequin; empty if it is.
+class RetargetingWarnings(NamedTuple):
+    """Whether legs cross on the mannequin only; hips beside shoulders, over the mannequin's."""
 
-    Parameters
-    ----------
-    own : DataArray of shape (time, marker, axis)
-        A walk of joints in place on its own body, facing +x.
-    shown : DataArray of shape (time, marker, axis)
-        The same on the mannequin (`retarget`).
+    legs_cross: bool
+    hip_ratio: float
 
-    Examples
-    --------
+
+def retargeting_warnings(own: xr.DataArray, shown: xr.DataArray) -> RetargetingWarnings:
+    """Compare a walk of joints in place on its own body with the same on the mannequin.
+
     >>> own = ew.in_place(ew.simulate_walk(seed=1))
-    >>> strangeness(own, own)
-    ''
     >>> skin = own.copy()
     >>> skin.loc[{"marker": "left_hip", "axis": "y"}] += 150
-    >>> strangeness(skin, own).startswith("its hips are")
-    True
-
+    >>> [bool(retargeting_warnings(walk, own).hip_ratio > WIDE_HIPS) for walk in (own, skin)]
+    [False, True]
     """
-    said = []
-    if np.sign(_apart(own, "ankle")) != np.sign(_apart(shown, "ankle")):
-        said.append("its legs cross on the mannequin, as they did not in the capture")
     usual = SHARES["hip_width"] / SHARES["shoulder_width"]
-    wide = abs(_apart(own, "hip") / _apart(own, "shoulder")) / usual
-    if wide > WIDE_HIPS:
-        said.append(
-            f"its hips are {wide:.1f} times as wide beside its shoulders as joints are, so they "
-            "are points on the skin"
-        )
-    return ", and ".join(said)
+    return RetargetingWarnings(
+        legs_cross=bool(np.sign(_width(own, "ankle")) != np.sign(_width(shown, "ankle"))),
+        hip_ratio=abs(_width(own, "hip") / _width(own, "shoulder")) / usual,
+    )
 
 
-def _apart(walk: xr.DataArray, joint: str) -> float:
-    """Return how far the left joint is to the left of the right one, in the mean."""
+def _width(walk: xr.DataArray, joint: str) -> float:
+    """Return how far the left joint is to the left of the right one, on average."""
     left, right = (walk.sel(marker=f"{side}_{joint}", axis="y") for side in ("left", "right"))
     return float((left - right).mean())

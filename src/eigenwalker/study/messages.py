@@ -14,6 +14,7 @@ from eigenwalker.quality.quality import (
     STEADY_R2,
     Quality,
 )
+from eigenwalker.study.body_warnings import WIDE_HIPS, RetargetingWarnings
 from eigenwalker.study.process_capture import CaptureResult
 
 
@@ -47,6 +48,20 @@ def reasons(quality: Quality) -> list[str]:
 def flag_of(quality: Quality) -> str:
     """Return all that speaks against a capture in one line, empty for the verdict "use"."""
     return " ".join(reasons(quality))
+
+
+def capture_remark(flag: str, warnings: RetargetingWarnings | None = None) -> str:
+    """Return what is wrong with a capture, and with its walk on the mannequin, in one line."""
+    body = []
+    if warnings and warnings.legs_cross:
+        body.append("its legs cross on the mannequin, as they did not in the capture")
+    if warnings and warnings.hip_ratio > WIDE_HIPS:
+        body.append(
+            f"its hips are {warnings.hip_ratio:.1f} times as wide beside its shoulders as joints "
+            "are, so they are points on the skin"
+        )
+    remarks = [f"it is flagged: {flag.rstrip('.')}"] if flag else []
+    return "; ".join([*remarks, ", and ".join(body)] if body else remarks)
 
 
 def capture_lines(result: CaptureResult) -> list[str]:

@@ -1,8 +1,8 @@
-"""Something to hold a difference against: pairs of simulated people, and a walk and itself."""
+"""References for a difference: pairs of simulated people, and a walk compared with itself."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -10,107 +10,158 @@ import numpy as np
 import pandas as pd
 from scipy.stats import percentileofscore
 
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.datasets.built_in import load_population
 from eigenwalker.metric.clip_distances import clip_distance
 from eigenwalker.metric.clips import PreparedClip
+from eigenwalker.metric.comparison import Comparison
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.loops import loop
 from eigenwalker.metric.pairwise import pair_distances
 from eigenwalker.metric.prepared import prepare
-from eigenwalker.study.walks import Walks, walks_of_population, without_rotations
+from eigenwalker.study.walks import walks_of_population, without_rotations
 
 
 @dataclass(frozen=True, eq=False)
-class SimulatedPairs:
-    """Distances of all pairs of the built-in, simulated people, by several metrics.
-
-    They tell how different people are from each other who all walk at their own pace. They are
-    simulated, so it is no norm.
+class ReferencedComparison:
+    """A comparison of two walks beside distances to hold it against.
 
     Parameters
     ----------
+    comparison : Comparison
+        Of the two walks.
+    self_distances : tuple of float
+        How far each walk is from itself (`self_distance`).
+    by_metric : DataFrame of metrics
+        ``distance`` of the two walks; ``by_joints``, the same by the 15 joints alone, and
+        ``share_nearer``, the share of pairs of simulated people that differ less: both NaN by
+        angles, and for walks that do not differ.
     n_people : int
-    distances : DataFrame of pairs by metrics
-        By name, of joint positions and velocities. Angles are left out: they depend on whether a
-        capture is of joints, as that of simulated people, or of points on the skin.
-    metrics : dict of str to GroupMetric
-        All that were asked for, by name.
+        Simulated people.
 
     """
 
+    comparison: Comparison
+    self_distances: tuple[float, float]
+    by_metric: pd.DataFrame
     n_people: int
-    distances: pd.DataFrame
-    metrics: Mapping[str, GroupMetric]
-
-    def place(self, a: PreparedClip, b: PreparedClip, metric: str) -> tuple[float, float] | None:
-        """Return how far two walks are apart by joints alone, and the share of pairs nearer.
-
-        Hands, feet and clavicles, which simulated people have not, are left aside, so that like is
-        compared with like. None of angles, and of walks that do not differ.
-        """
-        if metric not in self.distances:
-            return None
-        a, b = (_joints_alone(clip) for clip in (a, b))
-        distance = clip_distance(a, b, metric=self.metrics[metric])
-        if not distance > 0:
-            return None
-        share = percentileofscore(self.distances[metric], distance, kind="mean") / 100
-        return distance, float(share)
 
 
-def simulated_pairs(
-    metrics: Sequence[GroupMetric], *, mannequin: bool = True, progress: Progress | None = None
-) -> SimulatedPairs:
-    """Return the distances of all pairs of simulated people.
+def compare_with_references(
+    comparison: Comparison,
+    metrics: Sequence[GroupMetric],
+    *,
+    mannequin: bool = True,
+    progress: Progress | None = None,
+) -> ReferencedComparison:
+    """Return a comparison beside distances of simulated people, and of each walk from itself.
+
+    Hands, feet and clavicles, which simulated people do not have, are left out of the comparison
+    with them. Joint angles get none: they depend on whether a capture is of joints, as that of
+    simulated people, or of points on the skin.
 
     Parameters
     ----------
+    comparison : Comparison
+        As `compare_walks` gives it.
     metrics : sequence of GroupMetric
-        By which.
+        By which; that of the comparison is among them.
     mannequin : bool
-        Whether they too are shown on the neutral mannequin.
+        Whether the walks are shown on the neutral mannequin, and simulated people are to be.
     progress : callable, optional
         Called with the number of metrics that are done, and of all.
 
     Returns
     -------
-    SimulatedPairs
+    ReferencedComparison
+
+    Examples
+    --------
+    >>> a, b = (ew.metric.prepare_walk(ew.simulate_walk(seed=seed)) for seed in (1, 2))
+    >>> comparison = ew.metric.compare_walks(a, b)
+    >>> metrics = [ew.metric.PUBLISHED["positions-sigmoid"]]
+    >>> result = compare_with_references(comparison, metrics)
+    >>> 0 < result.by_metric.share_nearer.item() < 1, max(result.self_distances) < 0.001
+    (True, True)
 
     """
-    people = _simulated_people(mannequin).clips
-    columns = {}
-    for done, metric in enumerate(metrics, start=1):
-        if metric.by != "angles":
-            columns[metric.name] = pair_distances(people, metric=metric)
-        if progress is not None:
-            progress(done, len(metrics))
-    return SimulatedPairs(len(people), pd.DataFrame(columns), {m.name: m for m in metrics})
+    pairs = simulated_distances(metrics, mannequin=mannequin, progress=progress)
+    a, b = comparison.a, comparison.b
+    bare_a, bare_b = (_joints_alone(clip) for clip in (a, b))
+    rows = {}
+    for metric in metrics:
+        by_joints = share = np.nan
+        if metric.name in pairs:
+            distance = clip_distance(bare_a, bare_b, metric=metric)
+            if distance > 0:
+                by_joints = distance
+                share = percentileofscore(pairs[metric.name], distance, kind="mean") / 100
+        rows[metric.name] = {
+            "distance": clip_distance(a, b, metric=metric),
+            "by_joints": by_joints,
+            "share_nearer": share,
+        }
+    metric = comparison.metric
+    own = (np.nan, np.nan)
+    if isinstance(metric, GroupMetric) and comparison.distance > 0:
+        own = (self_distance(a, metric=metric), self_distance(b, metric=metric))
+    table = pd.DataFrame.from_dict(rows, orient="index")
+    return ReferencedComparison(comparison, own, table, len(_simulated_people(mannequin)))
 
 
-@cache
-def _simulated_people(mannequin: bool) -> Walks:
-    walks = walks_of_population(load_population(), mannequin=mannequin)
-    return Walks({name: _joints_alone(clip) for name, clip in walks.clips.items()})
+def simulated_distances(
+    metrics: Sequence[GroupMetric], *, mannequin: bool = True, progress: Progress | None = None
+) -> pd.DataFrame:
+    """Return the distances of all pairs of the built-in, simulated people.
 
+    They tell how different people are who all walk at their own pace; as they are simulated, it is
+    no norm.
 
-def _joints_alone(prepared: PreparedClip) -> PreparedClip:
-    (bare,) = without_rotations({"": prepared}).values()
-    keep = [name for name in JOINTS.markers if name in bare.clip.marker.values]
-    return replace(
-        bare,
-        clip=bare.clip.sel(marker=keep),
-        cycle=None if bare.cycle is None else bare.cycle.sel(marker=keep),
+    Parameters
+    ----------
+    metrics : sequence of GroupMetric
+        By which; those of angles are left out.
+    mannequin, progress
+        As in `compare_with_references`.
+
+    Returns
+    -------
+    DataFrame of pairs by metrics
+
+    """
+    people = _simulated_people(mannequin)
+    return pd.DataFrame(
+        {
+            metric.name: pair_distances(people, metric=metric)
+            for metric in ticked(metrics, len(metrics), progress)
+            if metric.by != "angles"
+        }
     )
 
 
-def own_spread(prepared: PreparedClip, metric: GroupMetric) -> float:
-    """Return how different a walk is from itself: the distance of its first and its last strides.
+@cache
+def _simulated_people(mannequin: bool) -> dict[str, PreparedClip]:
+    walks = walks_of_population(load_population(), mannequin=mannequin)
+    return {name: _joints_alone(clip) for name, clip in walks.clips.items()}
+
+
+def _joints_alone(prepared: PreparedClip) -> PreparedClip:
+    bare = without_rotations(prepared)
+    markers = [name for name in JOINTS.markers if name in bare.clip.marker.values]
+    return replace(
+        bare,
+        clip=bare.clip.sel(marker=markers),
+        cycle=None if bare.cycle is None else bare.cycle.sel(marker=markers),
+    )
+
+
+def self_distance(prepared: PreparedClip, *, metric: GroupMetric) -> float:
+    """Return how different a walk is from itself: the distance of its first and last strides.
 
     Halves of the capture where each has two strides or more, single strides where there are fewer;
-    NaN where there is but one. A difference of two captures that is no more than this is none.
+    NaN where there is only one. Two captures that differ by no more cannot be told apart.
 
     Parameters
     ----------
@@ -119,17 +170,23 @@ def own_spread(prepared: PreparedClip, metric: GroupMetric) -> float:
     metric : GroupMetric
         By which to compare.
 
+    Returns
+    -------
+    float
+        In units of the metric.
+
     """
     clip = prepared.clip
+    n_frames = clip.sizes["time"]
     stride = loop(clip).period_s * sampling_rate(clip)
-    n_strides = int(clip.sizes["time"] / stride + 0.05)
+    n_strides = int(n_frames / stride + 0.05)
     if n_strides < 2:
         return float("nan")
-    each = n_strides // 2 if n_strides >= 4 else 1
-    length = min(round(each * stride), clip.sizes["time"] // 2)
-    ends = [clip.isel(time=slice(None, length)), clip.isel(time=slice(-length, None))]
-    walks = [prepare(end.assign_attrs(n_strides=each)) for end in ends]
-    if any(walk.cycle is None for walk in walks):
+    length = min(round((n_strides // 2 if n_strides >= 4 else 1) * stride), n_frames // 2)
+    first, last = (
+        prepare(clip.isel(time=part)) for part in (slice(length), slice(n_frames - length, None))
+    )
+    if first.cycle is None or last.cycle is None:
         return float("nan")
-    distance = clip_distance(*walks, metric=metric)
+    distance = clip_distance(first, last, metric=metric)
     return distance if np.isfinite(distance) else float("nan")
