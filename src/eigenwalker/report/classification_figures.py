@@ -63,8 +63,8 @@ def average_walker_figures(average: Walker) -> list[Figure]:
 
 def curves_figure(result: Classification | Regression) -> Figure:
     """Return how well each input predicts the trait, over the number of components."""
-    panels = {each.input.title: each.curves for each in result.results[:N_PANELS]}
     if isinstance(result, Classification):
+        panels = {each.input.title: each.curves for each in result.results[:N_PANELS]}
         return Figure(
             figure_curves(panels, n_walkers=len(result.contrast.rows)),
             "Misclassified walkers over the number of components: among those trained on (dashed) "
@@ -72,6 +72,7 @@ def curves_figure(result: Classification | Regression) -> Figure:
             "Nine panels of two curves each: training errors fall to zero, errors on walkers left "
             "out stay above.",
         )
+    panels = {each.input.title: each.curves for each in result.results[:N_PANELS]}
     return Figure(
         figure_regression_curves(panels),
         f"Share of the variance of {result.contrast.trait} explained over the number of "

@@ -153,8 +153,8 @@ def flags_table(population: Population) -> Table | None:
     """Return the flagged walkers and why they are flagged; None if none is."""
     if not population.flagged.any():
         return None
-    flags = population.traits["flag"][population.flagged]
-    rows = [[population.names[row], flag] for row, flag in flags.items()]
+    flags = zip(population.names, population.traits["flag"], population.flagged, strict=True)
+    rows = [[name, flag] for name, flag, is_flagged in flags if is_flagged]
     return Table("Flagged, and left out of all that follows", ["walk", "why"], rows)
 
 

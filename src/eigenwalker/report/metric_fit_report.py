@@ -11,7 +11,7 @@ from scipy.stats import chi2
 from eigenwalker.plotting.fitted_weights import figure_predictions, figure_weights
 from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, MetricFit
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
-from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
+from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
 from eigenwalker.report.metric_sentences import CITE, plain_name
 
@@ -24,7 +24,7 @@ PAIRS_NAME, COMPARED_NAME = "pairs.csv", "metrics.csv"
 
 def fit_sentences(fit: MetricFit) -> list[str]:
     """Return the main results of a fit, and doubts about it, in sentences."""
-    fitted = fit.compared.loc[FITTED]
+    fitted = {str(name): float(fit.compared[name][FITTED]) for name in fit.compared}
     unanswered = f" ({fit.n_unanswered} more trials had none)" if fit.n_unanswered else ""
     sentences = [
         f"{len(fit.counts.observers)} observers, {fit.counts.chosen.sum():.0f} answers{unanswered},"
@@ -111,7 +111,7 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
     save_weights(fit.by_choices, folder / BY_CHOICES_NAME, metric=fit.name)
     fit.pairs.to_csv(folder / PAIRS_NAME)
     fit.compared.to_csv(folder / COMPARED_NAME)
-    weights = [_weights_figure(fit)]
+    weights: list[Block] = [_weights_figure(fit)]
     for target, table in (("choices", fit.by_choices), ("differences", fit.weights)):
         weights.append(_weights_table(f"Weights of {fit.name}, fitted to {target}", table))
     sections = [

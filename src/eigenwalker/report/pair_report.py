@@ -136,7 +136,7 @@ def _self_differences(result: ReferencedComparison, names: tuple[str, str]) -> l
 
 def _how_different(result: ReferencedComparison, names: tuple[str, str]) -> list[Block]:
     table = result.by_metric
-    differ = any(_differ_by_joints(row.by_joints, row.distance) for row in table.itertuples())
+    differ = any(map(_differ_by_joints, table.by_joints, table.distance))
     columns = ["metric", "distance", "by joints alone", "pairs that differ less"]
     rows = []
     for name, distance, by_joints, share in table.itertuples():
