@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import DIMS, sampling_rate
-from eigenwalker.gait.gaps import MAX_GAP_S, Gap, find_gaps
+from eigenwalker.gait.gaps import MAX_GAP_S, find_gaps
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.metric.clips import Clip, as_trajectories
@@ -66,15 +66,10 @@ def full_joints(capture: Clip) -> xr.DataArray:
     """
     capture = as_trajectories(capture)
     joints = with_rotations(virtual_markers(capture, joints="full"), capture)
-    hidden = hidden_joints(joints, find_gaps(joints.values))
+    longest = MAX_GAP_S * sampling_rate(joints) if len(joints) > 1 else 0
+    gaps = [gap for gap in find_gaps(joints.values) if gap.stop - gap.start > longest]
+    hidden = sorted({str(joints.marker.values[gap.marker]) for gap in gaps} - {*JOINTS.markers})
     return joints.drop_sel(marker=hidden).assign_attrs(hidden_markers=hidden)
-
-
-def hidden_joints(joints: xr.DataArray, gaps: list[Gap]) -> list[str]:
-    """Return hands, feet and the like that were hidden for longer than gaps are filled."""
-    longest = MAX_GAP_S * sampling_rate(joints) if gaps else 0
-    hidden = sorted({gap.marker for gap in gaps if gap.stop - gap.start > longest})
-    return sorted(set(map(str, joints.marker.values[hidden])) - set(JOINTS.markers))
 
 
 def with_rotations(joints: xr.DataArray, capture: xr.DataArray) -> xr.DataArray:

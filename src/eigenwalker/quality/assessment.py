@@ -109,8 +109,8 @@ def judge(
             name: float(share) for name, share in zip(names, missing, strict=True) if share
         },
         repairs=tuple(repaired.attrs.get("repairs", ())),
-        rebuilt=_names(capture, "rebuilt"),
-        repeated=_names(capture, "repeated"),
+        rebuilt=names_in(capture, "rebuilt"),
+        repeated=names_in(capture, "repeated"),
         sides_swapped=walk is not None and sides_swapped(walk.values, names),
         bone_length_variation=bone_length_variation(strides),
         height_mm=height_mm,
@@ -122,7 +122,7 @@ def judge(
     )
 
 
-def _names(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
+def names_in(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
     """Return what an attribute lists; NetCDF files hold it as one line."""
     names = capture.attrs.get(attribute, ())
     return (names,) * bool(names) if isinstance(names, str) else tuple(names)

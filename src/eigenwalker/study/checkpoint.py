@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -44,23 +45,20 @@ class Checkpoint:
         if path.is_file():
             text = path.read_text(encoding="utf-8", errors="replace")
             self._whole_lines = not text or text.endswith("\n")
-            self._known = {
-                entry["file"]: entry
-                for line in text.splitlines()
-                if (entry := _entry(line)) and entry["settings"] == self._settings
-            }
-
-    def __len__(self) -> int:
-        return len(self._known)
+            for line in text.splitlines():
+                with suppress(ValueError, TypeError, KeyError, RecursionError):  # of a cut line
+                    entry = json.loads(line)
+                    if entry["settings"] == self._settings:
+                        self._known[entry["file"]] = entry
 
     def get(self, name: str, state: list[int]) -> tuple[Walker, dict[str, Any]] | None:
         """Return the walker of a capture and its row of `Study.files`, if they are there."""
-        entry = self._known.get(name)
-        if entry is None or entry["state"] != state:
+        entry = self._known.get(name, {})
+        if entry.get("state") != state:
             return None
         try:
-            return _walker(entry["walker"]), entry["facts"]
-        except (TypeError, ValueError, KeyError):
+            return _walker(entry["walker"]), dict(entry["facts"])
+        except (TypeError, ValueError, KeyError, AttributeError):
             return None
 
     def append(self, name: str, state: list[int], walker: Walker, row: Mapping) -> None:
@@ -76,23 +74,6 @@ class Checkpoint:
             start = "" if self._whole_lines else "\n"
             file.write(f"{start}{json.dumps(entry, default=_plain)}\n")
         self._whole_lines = True
-        self._known[name] = json.loads(json.dumps(entry, default=_plain))
-
-    def remove(self) -> None:
-        """Remove the file, once all is done."""
-        self.path.unlink(missing_ok=True)
-
-
-def _entry(line: str) -> dict | None:
-    try:
-        entry = json.loads(line)
-    except (ValueError, RecursionError):
-        return None
-    wanted = {"file": str, "state": list, "settings": dict, "facts": dict, "walker": dict}
-    sound = isinstance(entry, dict) and all(
-        isinstance(entry.get(key), kind) for key, kind in wanted.items()
-    )
-    return entry if sound else None
 
 
 def _plain(value: object) -> object:
@@ -104,12 +85,9 @@ def _plain(value: object) -> object:
     raise TypeError(f"{type(value).__name__} cannot be written into a checkpoint.")
 
 
-def _walker(fields_of: dict) -> Walker:
-    fit = fields_of["fit"]
+def _walker(entry: Mapping[str, Any]) -> Walker:
+    fit = entry["fit"]
     if fit is not None:
-        fit = CaptureFit(**{key: _array(value) for key, value in fit.items()})
-    return Walker(**{**fields_of, "fit": fit})
-
-
-def _array(value: Any) -> Any:
-    return np.array(value) if isinstance(value, list) else value
+        arrays = {name: np.array(value) for name, value in fit.items() if isinstance(value, list)}
+        fit = CaptureFit(**(fit | arrays))
+    return Walker(**(dict(entry) | {"fit": fit}))

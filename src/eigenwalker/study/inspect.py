@@ -17,7 +17,7 @@ from eigenwalker.io.read import read_mocap
 from eigenwalker.population.population import Population
 from eigenwalker.population.population_file import looks_like_population
 from eigenwalker.study.messages import reasons, swaps_in_words
-from eigenwalker.study.process_capture import NoWalkError, process_capture
+from eigenwalker.study.process_capture import NoWalkError, process_capture, stated
 
 Fact = str | float | int | bool | None | list[str]
 
@@ -114,7 +114,7 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
     problems = [str(warning.message) for warning in caught]
     facts = _as_read(capture)
     try:
-        result = process_capture(capture)
+        result = process_capture(capture, **stated(capture))
         joints, quality = result.walk, result.quality
     except NoWalkError as error:
         joints, quality = error.joints, error.quality

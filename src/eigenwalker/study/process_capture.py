@@ -16,13 +16,12 @@ from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.decomposition.fourier import decompose_fourier
 from eigenwalker.decomposition.pca import decompose_pca
-from eigenwalker.gait.gaps import Gap, find_gaps
+from eigenwalker.gait.gaps import find_gaps
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.label_repair import Repair
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.metric.comparison_pipeline import hidden_joints, with_rotations
-from eigenwalker.quality.assessment import judge
+from eigenwalker.quality.assessment import judge, names_in
 from eigenwalker.quality.quality import Quality
 
 DECOMPOSE = {"eigenposture": decompose_pca, "fourier": decompose_fourier}
@@ -81,8 +80,10 @@ def process_capture(
     *,
     form: Form = "eigenposture",
     n_harmonics: int = 2,
-    low_pass_hz: float | None = None,
     joints: Literal["walker", "full"] = "walker",
+    low_pass_hz: float | None = None,
+    speed_mm_s: float | None = None,
+    heading_deg: float | None = None,
     **reading: Any,
 ) -> CaptureResult:
     """Return the walk in place, the walker and the quality of a capture.
@@ -99,11 +100,12 @@ def process_capture(
         Decomposition of the walk: principal components or a Fourier series.
     n_harmonics : int
         Multiples of the stride frequency in the walker.
-    low_pass_hz : float, optional
-        Cut-off of a low-pass filter in hertz, as `in_place` takes it.
     joints : {"walker", "full"}
         Whether the walk holds the 15 joints, or feet, hands and captured rotations too. The walker
         and the quality are those of the 15 joints.
+    low_pass_hz, speed_mm_s, heading_deg : float, optional
+        Cut-off of a low-pass filter, and speed and direction of a walk on a treadmill, as
+        `in_place` takes them. Left out, they are those that a file states of its walk in place.
     **reading
         As `read_mocap` takes them, such as ``unit`` and ``rate_hz``.
 
@@ -137,22 +139,23 @@ def process_capture(
     ('use', 10, 0)
 
     """
-    stated: dict[str, float] = {}
+    known = {"speed_mm_s": speed_mm_s, "heading_deg": heading_deg}
     if isinstance(path_or_capture, xr.DataArray):
         if reading:
             raise TypeError(f"{list(reading)} are for files; this capture is read already.")
         capture = check_trajectories(path_or_capture)
     else:
         capture = read_mocap(path_or_capture, **reading)
-        stated = _stated(capture)
-    points = _joints(capture, joints)
-    gaps = find_gaps(points.values)
-    hidden = hidden_joints(points, gaps)
-    main = points.sel(marker=list(JOINTS.markers)) if joints == "full" else points
+        known |= {name: value for name, value in stated(capture).items() if known[name] is None}
+    if joints == "full":
+        from eigenwalker.metric.comparison_pipeline import full_joints
+
+        points = full_joints(capture)
+        main = points.sel(marker=list(JOINTS.markers))
+    else:
+        points = main = virtual_markers(capture)
     try:
-        walk = in_place(
-            points.drop_sel(marker=hidden), low_pass_hz=low_pass_hz, repair=False, **stated
-        )
+        walk = in_place(points, low_pass_hz=low_pass_hz, repair=False, **known)
     except ValueError as error:
         raise NoWalkError(str(error), main, judge(main, main, None, str(error))) from error
     main_walk = walk.sel(marker=list(JOINTS.markers)) if joints == "full" else walk
@@ -166,26 +169,21 @@ def process_capture(
         walker=walker,
         quality=quality,
         repairs=pd.DataFrame(points.attrs.get("repairs", ()), columns=Repair._fields),
-        gaps=pd.DataFrame(_gap_rows(points, walk, gaps), columns=_WHERE),
-        left_out=pd.DataFrame(_left_out(points, walk, hidden), columns=_WHERE),
+        gaps=pd.DataFrame(_gaps(points, walk), columns=_WHERE),
+        left_out=pd.DataFrame(_left_out(points, walk), columns=_WHERE),
         capture=capture,
     )
 
 
-def _stated(capture: xr.DataArray) -> dict[str, float]:
+def stated(capture: xr.DataArray) -> dict[str, float]:
     """Return the speed that a file states of its walk, and the heading of a walk in place."""
-    stated = {}
+    known = {}
     speed = capture.attrs.get("speed_mm_s")
     if isinstance(speed, int | float | np.number) and np.isfinite(speed):
-        stated["speed_mm_s"] = float(speed)
+        known["speed_mm_s"] = float(speed)
     if "heading_deg" in capture.attrs:  # was in place when it was written
-        stated["heading_deg"] = 0.0
-    return stated
-
-
-def _joints(capture: xr.DataArray, joints: Literal["walker", "full"]) -> xr.DataArray:
-    points = virtual_markers(capture, joints=joints)
-    return with_rotations(points, capture) if joints == "full" else points
+        known["heading_deg"] = 0.0
+    return known
 
 
 def _frames(points: xr.DataArray, walk: xr.DataArray) -> tuple[int, int]:
@@ -194,24 +192,19 @@ def _frames(points: xr.DataArray, walk: xr.DataArray) -> tuple[int, int]:
     return start, start + len(walk)
 
 
-def _gap_rows(
-    points: xr.DataArray, walk: xr.DataArray, gaps: list[Gap]
-) -> Iterator[tuple[str, str, int, int]]:
+def _gaps(points: xr.DataArray, walk: xr.DataArray) -> Iterator[tuple[str, str, int, int]]:
     start, stop = _frames(points, walk)
-    for gap in gaps:
+    for gap in find_gaps(points.values):
         kind = "filled" if gap.start < stop and gap.stop > start else "unused"
         yield str(points.marker.values[gap.marker]), kind, gap.start, gap.stop - 1
 
 
-def _left_out(
-    points: xr.DataArray, walk: xr.DataArray, hidden: list[str]
-) -> Iterator[tuple[str, str, int, int]]:
-    last = len(points) - 1
+def _left_out(points: xr.DataArray, walk: xr.DataArray) -> Iterator[tuple[str, str, int, int]]:
     start, stop = _frames(points, walk)
-    unlabelled = points.attrs.get("left_out", ())
-    still = walk.attrs.get("still_points", ())
-    for kind, names in (("unlabelled", unlabelled), ("still", still), ("hidden", hidden)):
-        for name in [names] if isinstance(names, str) else names:
+    last = len(points) - 1
+    kinds = {"left_out": "unlabelled", "still_points": "still", "hidden_markers": "hidden"}
+    for attribute, kind in kinds.items():
+        for name in names_in(walk, attribute):
             yield name, kind, 0, last
     if start > 0:
         yield "", "before", 0, start - 1
