@@ -23,23 +23,18 @@ from eigenwalker.stimulus.transform_types import (
 
 SemiAxes = Annotated[tuple[Millimetres, ...], Length(2, 2)]
 
-SHOULDER_SWAY = {
-    **dict.fromkeys(("head", "sternum"), 1.0),
-    **{
-        f"{side}_{joint}": 1.0
-        for side in ("left", "right")
-        for joint in ("shoulder", "elbow", "wrist")
-    },
-}
-"""How far each dot goes along when the shoulders sway more."""
-HIP_SWAY = {
-    "pelvis": 1.0,
-    **{f"{side}_hip": 1.0 for side in ("left", "right")},
-    **{f"{side}_knee": 0.5 for side in ("left", "right")},
-}
-"""How far each dot goes along when the hips sway more; ankles stand."""
 ARM = ("shoulder", "elbow", "wrist")
 LEG = ("hip", "knee", "ankle")
+
+
+def _both(*parts: str) -> list[str]:
+    return [f"{side}_{part}" for side in ("left", "right") for part in parts]
+
+
+SHOULDER_SWAY = dict.fromkeys(["head", "sternum", *_both(*ARM)], 1.0)
+"""How far each dot moves along when the shoulders sway more."""
+HIP_SWAY = dict.fromkeys(["pelvis", *_both("hip")], 1.0) | dict.fromkeys(_both("knee"), 0.5)
+"""How far each dot moves along when the hips sway more; ankles stand."""
 
 
 class Occlude(Transform):
@@ -61,10 +56,9 @@ class Occlude(Transform):
 class Gain(Transform):
     """Make movements of joints larger or smaller.
 
-    From the root outwards, the way from the joint that carries it is r(t) with the mean m over a
-    period; for the named joints it becomes ``m + factor (r - m)`` on the named axes, and what they
-    carry goes along. With elbows and wrists it is the arm swing of Kozlowski and Cutting (1977).
-    Keeps the mean posture; bones do not keep their lengths exactly.
+    From the root outwards, each joint's position relative to the joint that carries it is scaled
+    about its mean over a period; what it carries moves along. With elbows and wrists it is the arm
+    swing of Kozlowski and Cutting (1977). Keeps the mean posture, and bone lengths nearly.
     """
 
     name: Literal["gain"]
@@ -97,11 +91,9 @@ class Gain(Transform):
 class Conflict(Transform):
     """Set the widths of shoulders and hips against their sway from side to side.
 
-    Mather and Murdoch (1994), who found sway to win. All four are factors. The mean distance to the
-    left between both shoulders (hips) is multiplied by the width, half of the change on each side,
-    and the arm (leg) goes along. The movement to the left of the middle between both shoulders
-    (hips) about its mean is multiplied by the sway; head, sternum and arms (pelvis, and knees by
-    half) go along. Keeps forward and vertical motion.
+    All four are factors, of the mean distance between both shoulders (hips) and of the movement to
+    the side of their middle; arms, head and trunk (legs) move along. Keeps forward and vertical
+    motion. Mather and Murdoch (1994): sway decides.
     """
 
     name: Literal["conflict"]
@@ -144,14 +136,12 @@ class Conflict(Transform):
 
 
 class Ellipses(Transform):
-    """Let shoulders and hips go round ellipses, as in Cutting's synthetic walkers.
+    """Let shoulders and hips go round ellipses, as in Cutting's synthetic walkers (1978).
 
-    Cutting (1978): men are given larger ellipses of the shoulders, women of the hips. About its
-    mean place the left hip is at ``(a sin c, b cos c)`` forward and up, with
-    ``c = 2 pi t / period + phase``; the right hip is half a cycle later, and each shoulder opposite
-    to the hip of its side. The semi-axes a (forward) and b (up) are those given. What hung on the
-    joint goes along: elbow and wrist, knee and ankle. Keeps motion to the side, and the limbs'
-    motion against the joints they hang on.
+    Men are given larger ellipses of the shoulders, women of the hips. The left hip is at ``(a sin
+    c, b cos c)`` forward and up from its mean place, ``c = 2 pi t / period + phase``; the right hip
+    is half a cycle later, each shoulder opposite to the hip of its side. Limbs move along with the
+    joints that they hang on. Keeps motion to the side.
     """
 
     name: Literal["ellipses"]

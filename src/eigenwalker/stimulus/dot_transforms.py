@@ -31,13 +31,10 @@ SHOWN_AXES = {"both": (1.0, 1.0), "horizontal": (1.0, 0.0), "vertical": (0.0, 1.
 class Scramble(Transform):
     """Put the dots elsewhere in the picture; each moves as it did.
 
-    Seen by the observer of the stimulus' view, the mean place of each dot is moved, its depth is
-    not. ``keep="nothing"``: to a random place in a box around the figure's middle,
-    ``(u_1 - 1/2) width`` to the right and ``(u_2 - 1/2) height`` up, stream (SCRAMBLE, seed, dot,
-    figure), which breaks the structure (Cutting, 1981; Bertenthal and Pinto, 1994).
-    ``keep="structure"``: to the mean place of another dot, in a random order of dots, so that the
-    same places are taken by other motions. With ``directions`` of ``"horizontal"`` or
-    ``"vertical"`` places change in that direction alone. Keeps each dot's own motion exactly.
+    The mean place of each dot is moved in the picture, not in depth: to a random place in a box
+    around the figure's middle (Cutting, 1981; Bertenthal and Pinto, 1994), or, with
+    ``keep="structure"``, to the mean place of another dot. `directions` says in which direction
+    places change. Keeps each dot's own motion exactly.
     """
 
     name: Literal["scramble"]
@@ -63,13 +60,9 @@ class Scramble(Transform):
 class LimbDots(Transform):
     """Show dots that live for a moment at random places of the body in place of the joints.
 
-    Beintema and Lappe (2002): dots on the limbs, each of which, after its life, begins another one
-    elsewhere, so that no dot's motion tells about the walk. Dot d is in life
-    ``floor(t / lifetime + asynchrony d / number)``: with asynchrony 0 all begin anew at once, with
-    1 one after the other. Each life draws u_1, u_2 from stream (LIMB_DOTS, seed, d + 65536 figure,
-    life). On ``"limbs"``, u_1 chooses a segment in proportion to its length in the mean posture and
-    u_2 how far along it; on ``"joints"``, u_1 chooses a joint. With a lifetime of
-    null they live on. Keeps the posture that a frame shows, breaks the dots' paths.
+    Beintema and Lappe (2002): after its life a dot begins another one elsewhere on the limbs (or
+    joints), so that no dot's motion shows the walk. With asynchrony 0 all begin anew at once, with
+    1 one after the other. Keeps the posture that a frame shows, breaks the dots' paths.
     """
 
     name: Literal["limb_dots"]
@@ -135,18 +128,10 @@ class Blur(Transform):
 class Mask(Transform):
     """Return noise dots in a box that faces the observer, which become a figure of their own.
 
-    Dot d, in life ``floor(t / lifetime + d / number)`` (0 where lifetime is null), draws u_1 to u_3
-    from stream (MASK, seed, d, life) and is at ``centre + X right + Y up`` with
-    ``X = (u_1 - 1/2) width`` and ``Y = (u_2 - 1/2) height``.
-
-    - ``"random"``: it stays there for its life.
-    - ``"linear"``: it moves from there with the speed, in the direction given (0 to the right, 90
-      up) or, for null, by ``2 pi u_3``; leaving the box it comes in at the other side. The time
-      that counts is that since its life began, or since 0 s.
-    - ``"scrambled"``: from there it moves as a dot of the figure moves about its mean place: dot d
-      as the figure's dot ``d modulo n`` (Cutting, Moore and Morrison, 1988; Bertenthal and Pinto,
-      1994), and if ``phases``, as at ``t + u_3 period``, u_3 of its life 0. It is seen
-      when that is.
+    Their places are random in each life. ``"random"``: they stay there; ``"linear"``: they move
+    from there, and leaving the box come in at the other side; ``"scrambled"``: they move as the
+    figure's dots move about their mean places, with `phases` each on a clock of its own (Cutting,
+    Moore and Morrison, 1988; Bertenthal and Pinto, 1994).
     """
 
     adds_dots = True

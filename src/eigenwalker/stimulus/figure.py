@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 import xarray as xr
-from pydantic import Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
 from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.trajectories import check_trajectories, label_trajectories, sampling_rate
@@ -74,29 +74,19 @@ class WalkerPart(Part):
     @classmethod
     def of(cls, walker: Walker) -> dict[str, Any]:
         """Return a walker as it stands in a file."""
+        values = {name: getattr(walker, name) for name in cls.model_fields}
         return {
-            "markers": walker.markers,
-            "p0": walker.p0.tolist(),
-            "p": walker.p.tolist(),
-            "harmonics": walker.harmonics.tolist(),
-            "phases": walker.phases.tolist(),
-            "frequency_hz": walker.frequency_hz,
-            "form": walker.form,
+            **{name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in values.items()},
             "speed_mm_s": _if_finite(walker.speed_mm_s),
         }
 
     def to_walker(self) -> Walker:
         """Return the walker that stands in a file."""
-        return Walker(
-            markers=self.markers,
-            p0=np.array(self.p0),
-            p=np.array(self.p, dtype=float).reshape(-1, len(self.markers), 3),
-            harmonics=np.array(self.harmonics, dtype=int),
-            phases=np.array(self.phases, dtype=float),
-            frequency_hz=self.frequency_hz,
-            form=self.form,
-            speed_mm_s=np.nan if self.speed_mm_s is None else self.speed_mm_s,
-        )
+        values = self.model_dump()
+        values["p"] = np.reshape(self.p, (-1, len(self.markers), 3))
+        if self.speed_mm_s is None:
+            del values["speed_mm_s"]
+        return Walker(**values)
 
 
 def _checked_samples(value: Any) -> np.ndarray:
@@ -131,6 +121,7 @@ _FRAME = {"type": "array", "items": _DOT, "minItems": 1, "maxItems": MAX_MARKERS
 Samples = Annotated[
     np.ndarray,
     PlainValidator(_checked_samples),
+    PlainSerializer(lambda samples: np.where(np.isnan(samples), None, samples).tolist()),
     WithJsonSchema({"type": "array", "items": _FRAME, "minItems": 2}),
 ]
 """Numbers of shape (time, dot, 3), null where missing; an array, NaN where missing."""

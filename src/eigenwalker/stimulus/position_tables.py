@@ -106,7 +106,6 @@ Each refresh shows the frame that is due by the clock, so that a screen of any r
 """
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from psychopy import core, event, visual

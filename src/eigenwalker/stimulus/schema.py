@@ -165,8 +165,8 @@ class StimulusFile(Part):
         return _follow_chain(self)[0]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content as JSON has it, with all defaults; samples stay an array."""
-        content = self.model_dump()
+        """Return the content as JSON has it, with all defaults filled in."""
+        content = self.model_dump(mode="json")
         for figure in content["figures"]:
             del figure["trajectories" if figure["trajectories"] is None else "walker"]
         return {**content, "transforms": [step.to_dict() for step in self.transforms]}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -12,15 +11,12 @@ from pydantic import Field, field_validator
 from eigenwalker.stimulus.moving_dots import Moments, MovingDots
 from eigenwalker.stimulus.transform_types import Context, Degrees, Transform, Vector, problem
 
-NAMED_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-
 
 class Invert(Transform):
     """Turn the figure upside down: ``z`` becomes ``2 m - z``, m being the middle's height.
 
-    Sumi (1984); Barclay, Cutting and Kozlowski (1978), who found the sexes to swap. What walks to
-    the right still does. For half a turn in the picture, rotate by 180 degrees about ``"sight"``.
-    Keeps horizontal motion, and lengths; twice is nothing.
+    Sumi (1984); Barclay, Cutting and Kozlowski (1978): the sexes swap. What walks to the right
+    still does. For half a turn in the picture, rotate by 180 degrees about ``"sight"``.
     """
 
     name: Literal["invert"]
@@ -33,9 +29,7 @@ class Invert(Transform):
 class Mirror(Transform):
     """Swap the sides: ``y`` becomes ``2 m - y``, and what was left is called right.
 
-    Troje (2002) shows views of 30 and -30 degrees as one. Each dot of the left becomes the
-    mirror image of its counterpart at the right. Keeps forward and vertical motion; twice is
-    nothing.
+    Troje (2002) shows views of 30 and -30 degrees as one. Keeps forward and vertical motion.
     """
 
     name: Literal["mirror"]
@@ -53,9 +47,8 @@ class Mirror(Transform):
 class Rotate(Transform):
     """Turn the figure about an axis through its middle, right-handed, standing or on and on.
 
-    The turn at time t is by ``angle + speed t``, by Rodrigues' formula. The axis is ``"x"``
-    (forward), ``"y"`` (left), ``"z"`` (up), ``"sight"`` (towards the observer: the picture
-    turns, anticlockwise, as Pavlova and Sokolov, 2000, did), or a vector. Keeps all distances.
+    By ``angle + speed t``, about ``"x"`` (forward), ``"y"`` (left), ``"z"`` (up), ``"sight"``
+    (towards the observer, as Pavlova and Sokolov, 2000, did), or a vector. Keeps all distances.
     """
 
     name: Literal["rotate"]
@@ -75,11 +68,9 @@ class Rotate(Transform):
         return axis
 
     def apply(self, moving: MovingDots, context: Context) -> MovingDots:
-        if self.axis == "sight":
-            named: Sequence[float] = context.observer[2].tolist()
-        else:
-            named = NAMED_AXES[self.axis] if isinstance(self.axis, str) else self.axis
-        unit = np.array(named) / np.sqrt(np.sum(np.square(named)))
+        named = {"sight": context.observer[2], **dict(zip("xyz", np.eye(3), strict=True))}
+        axis = np.array(named[self.axis] if isinstance(self.axis, str) else self.axis)
+        unit = axis / np.sqrt(np.sum(axis**2))
         middle = moving.middle
 
         def turned(positions: np.ndarray, time: np.ndarray) -> np.ndarray:

@@ -181,7 +181,7 @@ class Stimulus:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of the file, with all defaults filled in."""
-        return _plain(self.file.to_dict())
+        return self.file.to_dict()
 
     def to_json(self) -> str:
         """Return the text of the file: one figure and one transform a line."""
@@ -253,19 +253,6 @@ def _text(content: dict[str, Any]) -> str:
         else:
             lines.append(f'"{name}": {_compact(part)}')
     return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-def _plain(content: Any) -> Any:
-    """Return content as JSON would give it back: lists, and None where a sample is missing."""
-    if isinstance(content, dict):
-        return {name: _plain(part) for name, part in content.items()}
-    if isinstance(content, list | tuple):
-        return [_plain(part) for part in content]
-    if isinstance(content, np.ndarray):
-        values = content.astype(object)
-        values[np.isnan(content)] = None
-        return values.tolist()
-    return content
 
 
 def _parsed(text: str) -> Any:

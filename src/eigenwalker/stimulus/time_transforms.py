@@ -133,11 +133,9 @@ def _shifted(moving: MovingDots, shifts: np.ndarray) -> MovingDots:
 class Morph(Transform):
     """Pass from the figure into another walker.
 
-    The share w of the other grows from 0 at the start to 1 at the end, evenly. Both are taken at
-    the same phase of their cycles and their places averaged, ``(1 - w) a + w b``, which is the
-    average of their Fourier coefficients (WDP2002); the frequency ``(1 - w) f_a + w f_b`` passes
-    evenly too, so that the phase in cycles is ``f_a t + (f_b - f_a) W(t)``, W being the integral of
-    w. Before the start and after the end each is as it is by itself but for the phase.
+    The share of the other grows evenly from 0 at the start to 1 at the end. Both are taken at the
+    same phase of their cycles and their places averaged, which averages their Fourier coefficients
+    (Troje 2002, WDP); the frequency changes evenly too.
     """
 
     name: Literal["morph"]

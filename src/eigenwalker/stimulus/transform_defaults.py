@@ -23,6 +23,7 @@ MASK_MARGIN = (2.0, 1.15)
 """How much wider and higher than the figure the box of a mask is where none is given."""
 
 Parameters = dict[str, Any]
+_Resolver = Callable[["Situation", Parameters], Parameters]
 
 
 @dataclass(frozen=True)
@@ -115,25 +116,15 @@ def _overground(situation: Situation, given: Parameters) -> Parameters:
     return {"offset_mm": [-half, 0, 0], "velocity_mm_s": [speed, 0, 0], **given}
 
 
-def _reverse(situation: Situation, given: Parameters) -> Parameters:
-    return {"end_s": situation.duration_s, **given}
-
-
 def _morph(situation: Situation, given: Parameters) -> Parameters:
     if isinstance(given.get("walker"), Walker):
         given["walker"] = WalkerPart.of(given["walker"])
     return {"start_s": 0.0, "end_s": situation.duration_s, **given}
 
 
-def _scramble(situation: Situation, given: Parameters) -> Parameters:
-    if "box_mm" not in given:
-        given["box_mm"] = _extent(situation.view, situation.moving(given))
-    return given
-
-
 def _mask(situation: Situation, given: Parameters) -> Parameters:
     moving = situation.moving(given)
-    extent = _extent(situation.view, moving)
+    extent = _extent(situation, given)
     given = {
         "figures": [situation.number(given)],
         "kind": "random",
@@ -149,15 +140,9 @@ def _mask(situation: Situation, given: Parameters) -> Parameters:
     return given
 
 
-def _ellipses(situation: Situation, given: Parameters) -> Parameters:
-    if "phase_deg" not in given:
-        given["phase_deg"] = _phase_of_legs(situation.moving(given))
-    return given
-
-
-def _phase_of_legs(moving: MovingDots) -> float:
+def _phase_of_legs(situation: Situation, given: Parameters) -> float:
     """Phase of the left leg's swing at 0 s, degrees: ``sin(c + phase)`` is how far it is ahead."""
-    cycle = np.arange(64) / 64
+    moving, cycle = situation.moving(given), np.arange(64) / 64
     forward = moving.at(cycle * moving.period_s).positions[..., 0]
     left, right = moving.dots.index("left_ankle"), moving.dots.index("right_ankle")
     ahead = np.nan_to_num(forward[:, left] - forward[:, right])
@@ -165,22 +150,31 @@ def _phase_of_legs(moving: MovingDots) -> float:
     return round(float(np.rad2deg(np.arctan2(cosine, sine))), 3)
 
 
-def _extent(view: View, moving: MovingDots) -> list[float]:
+def _extent(situation: Situation, given: Parameters) -> list[float]:
     """Width and height in the picture of a figure's mean posture, in whole millimetres."""
-    seen = moving.mean @ view.axes[:2].T
+    seen = situation.moving(given).mean @ situation.view.axes[:2].T
     extent = np.nanmax(seen, axis=0) - np.nanmin(seen, axis=0)
     return np.maximum(np.ceil(extent), 100.0).tolist()
 
 
-_DEFAULTS: dict[str, Callable[[Situation, Parameters], Parameters]] = {
+def _computed(name: str, compute: Callable[[Situation, Parameters], Any]) -> _Resolver:
+    """Return what fills in one parameter where it is left out."""
+
+    def resolve(situation: Situation, given: Parameters) -> Parameters:
+        return given if name in given else {name: compute(situation, given), **given}
+
+    return resolve
+
+
+_DEFAULTS: dict[str, _Resolver] = {
     **dict.fromkeys(("occlude", "gain", "delay"), _with_markers),
     "perturb": _perturb,
     "arm_swing": _arm_swing,
     "overground": _overground,
-    "reverse": _reverse,
+    "reverse": _computed("end_s", lambda situation, given: situation.duration_s),
     "morph": _morph,
-    "scramble": _scramble,
+    "scramble": _computed("box_mm", _extent),
     "mask": _mask,
-    "ellipses": _ellipses,
+    "ellipses": _computed("phase_deg", _phase_of_legs),
 }
 _SHORTHANDS = {"arm_swing": "gain", "overground": "translate"}

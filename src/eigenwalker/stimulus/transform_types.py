@@ -169,7 +169,7 @@ class Transform(Part, ABC):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the transform as it stands in a file: its name, its parameters, its figures."""
-        content = self.model_dump()
+        content = self.model_dump(mode="json")
         figures = content.pop("figures")
         return {"name": content.pop("name"), **content, "figures": figures}
 
