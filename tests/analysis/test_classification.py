@@ -12,9 +12,9 @@ from eigenwalker.analysis import (
     N_PANELS,
     classify,
     jackknife_curves,
-    nested_regression,
+    nested_leave_one_out,
+    permutation_test,
     regress,
-    regression_permutation_test,
 )
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_population
@@ -89,8 +89,8 @@ def test_a_weight_that_no_walk_shows_is_not_told() -> None:
     for result, row in zip(found.results, table.to_dict("records"), strict=True):
         source = people.size_normalised() if result.input.size_normalised else people
         X = source.part(result.input.part)
-        assert row["nested RMSE"] == nested_regression(X, dealt).rmse
-        null = regression_permutation_test(X, dealt, n_permutations=40, random_state=1)
+        assert row["nested RMSE"] == nested_leave_one_out(X, dealt).rmse
+        null = permutation_test(X, dealt, n_permutations=40, random_state=1)
         assert row["p"] == null.p
     fewer = regress(people, "weight", n_permutations=0).table()
     assert (fewer["p"] == 1).all()

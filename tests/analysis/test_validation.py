@@ -6,10 +6,8 @@ import pytest
 from eigenwalker.analysis import (
     jackknife_curves,
     nested_leave_one_out,
-    nested_regression,
     permutation_test,
     regression_curves,
-    regression_permutation_test,
 )
 
 
@@ -59,7 +57,7 @@ def test_persons_of_unlike_many_trials_choose_as_a_jackknife_of_the_others(n_fea
     X, r = population(20, n_features, effect=0.3)
     weight = 70 + 5 * X[:, 0] + X[:, 1] ** 2
     chosen_of_sex = nested_leave_one_out(X, r, groups=UNLIKE).chosen_n
-    chosen_of_weight = nested_regression(X, weight, groups=UNLIKE).chosen_n
+    chosen_of_weight = nested_leave_one_out(X, weight, groups=UNLIKE).chosen_n
     for each in range(6):
         others = each != UNLIKE
         sex = jackknife_curves(X[others], r[others], groups=UNLIKE[others])
@@ -72,7 +70,7 @@ def test_persons_of_unlike_many_trials_choose_as_a_jackknife_of_the_others(n_fea
 @pytest.mark.parametrize("shape", [(14, 30), (24, 6)])
 def test_a_weight_is_nested_as_by_a_jackknife_of_the_others(shape, order):
     X, weight = heavy_population(*shape)
-    nested = nested_regression(X, weight, order=order)
+    nested = nested_leave_one_out(X, weight, order=order)
     predicted = regression_curves(X, weight, order=order).held_out
     for walker in range(len(X)):
         others = np.arange(len(X)) != walker
@@ -87,8 +85,8 @@ def test_a_weight_is_nested_as_by_a_jackknife_of_the_others(shape, order):
 
 
 def test_a_planted_weight_survives_nesting_and_chance_is_told_no_better_than_by_its_mean():
-    assert nested_regression(*heavy_population(30, 6, effect=2)).r2 > 0.8
-    chance = [nested_regression(*heavy_population(20, 40, 0, seed)) for seed in range(12)]
+    assert nested_leave_one_out(*heavy_population(30, 6, effect=2)).r2 > 0.8
+    chance = [nested_leave_one_out(*heavy_population(20, 40, 0, seed)) for seed in range(12)]
     assert np.mean([each.r2 for each in chance]) < 0
     assert abs(np.mean([each.correlation for each in chance])) < 0.25
 
@@ -96,7 +94,7 @@ def test_a_planted_weight_survives_nesting_and_chance_is_told_no_better_than_by_
 def test_the_best_of_a_regression_curve_flatters_where_nesting_does_not():
     chance = [heavy_population(20, 40, effect=0, seed=seed) for seed in range(12)]
     best = np.mean([regression_curves(*each).r2.max() for each in chance])
-    nested = np.mean([nested_regression(*each).r2 for each in chance])
+    nested = np.mean([nested_leave_one_out(*each).r2 for each in chance])
     assert best > nested + 0.1
 
 
@@ -104,7 +102,7 @@ def test_twins_are_nested_too():
     X, r = population()
     X[3] = X[1]
     assert (nested_leave_one_out(X, r).chosen_n >= 1).all()
-    assert np.isfinite(nested_regression(X, X[:, 0]).held_out).all()
+    assert np.isfinite(nested_leave_one_out(X, X[:, 0]).held_out).all()
 
 
 def test_a_planted_sex_survives_nesting_and_chance_is_no_better_than_chance():
@@ -124,7 +122,9 @@ def test_progress_is_told_pair_by_pair():
     told = []
     nested_leave_one_out(*population(), progress=lambda done, total: told.append((done, total)))
     assert told[-1] == (91, 91)
-    nested_regression(*heavy_population(), progress=lambda done, total: told.append((done, total)))
+    nested_leave_one_out(
+        *heavy_population(), progress=lambda done, total: told.append((done, total))
+    )
     assert told[91:] == told[:91]
 
 
@@ -140,7 +140,7 @@ def test_each_deal_is_a_jackknife_of_its_own(shape):
 @pytest.mark.parametrize("shape", [(14, 30), (24, 6)])
 def test_each_deal_of_weights_is_a_jackknife_of_its_own(shape):
     X, weight = heavy_population(*shape)
-    test = regression_permutation_test(X, weight, n_permutations=5, random_state=3)
+    test = permutation_test(X, weight, n_permutations=5, random_state=3)
     deals = np.random.default_rng(3).permuted(np.tile(weight[:, None], 5), axis=0)
     least = [regression_curves(X, deal).rmse.min() for deal in (weight, *deals.T)]
     np.testing.assert_allclose([test.least_error, *test.null], least / weight.std(), rtol=1e-9)
@@ -151,7 +151,7 @@ def test_weights_are_dealt_to_persons_whole():
     X, _ = heavy_population(20, 30)
     of_person = np.array([50.0, 60, 70, 80, 95, 120])
     weight = of_person[UNLIKE]
-    test = regression_permutation_test(X, weight, groups=UNLIKE, n_permutations=4, random_state=3)
+    test = permutation_test(X, weight, groups=UNLIKE, n_permutations=4, random_state=3)
     deals = np.random.default_rng(3).permuted(np.tile(of_person[:, None], 4), axis=0)[UNLIKE]
     least = [
         np.sqrt(1 - regression_curves(X, deal, groups=UNLIKE).r2.max())
@@ -162,9 +162,9 @@ def test_weights_are_dealt_to_persons_whole():
 
 def test_a_planted_weight_is_no_accident_and_no_weight_is():
     planted = heavy_population(30, 6, effect=2)
-    assert regression_permutation_test(*planted, n_permutations=99).p == 0.01
+    assert permutation_test(*planted, n_permutations=99).p == 0.01
     p = [
-        regression_permutation_test(*heavy_population(14, 20, 0, seed), n_permutations=49).p
+        permutation_test(*heavy_population(14, 20, 0, seed), n_permutations=49).p
         for seed in range(40)
     ]
     assert 0.35 < np.mean(p) < 0.65
@@ -173,7 +173,7 @@ def test_a_planted_weight_is_no_accident_and_no_weight_is():
 
 def test_a_deal_that_changes_nothing_counts_as_good_as_the_truth():
     X, weight = heavy_population(4, 6)
-    test = regression_permutation_test(X, weight, n_permutations=200)
+    test = permutation_test(X, weight, n_permutations=200)
     deals = np.random.default_rng(0).permuted(np.tile(weight[:, None], 200), axis=0)
     same = (deals == weight[:, None]).all(axis=0)
     assert same.any()
@@ -215,11 +215,11 @@ def test_pairs_need_four_walkers():
     with pytest.raises(ValueError, match="needs 4 walkers"):
         nested_leave_one_out(X[:3], r[:3])
     with pytest.raises(ValueError, match="needs 4 walkers"):
-        nested_regression(X[:3], X[:3, 0])
+        nested_leave_one_out(X[:3], X[:3, 0])
 
 
 def test_a_weight_that_is_the_same_for_all_is_refused():
     X, _ = heavy_population()
-    for validate in (nested_regression, regression_permutation_test):
+    for validate in (nested_leave_one_out, permutation_test):
         with pytest.raises(ValueError, match="The trait is 70 for all 14 walkers"):
             validate(X, np.full(14, 70.0))

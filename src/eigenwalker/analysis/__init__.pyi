@@ -28,12 +28,9 @@ from .plausibility import (
 )
 from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
 from .validation import (
-    NestedErrors as NestedErrors,
-    NestedRegression as NestedRegression,
+    NestedPredictions as NestedPredictions,
     PermutationTest as PermutationTest,
     nested_leave_one_out as nested_leave_one_out,
-    nested_regression as nested_regression,
     permutation_test as permutation_test,
-    regression_permutation_test as regression_permutation_test,
 )
 from .walker_space import WalkerSpace as WalkerSpace

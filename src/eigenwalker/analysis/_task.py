@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike
 
 from eigenwalker.analysis._leave_out import LeaveOutSVD
@@ -15,30 +15,47 @@ from eigenwalker.analysis.walker_space import Scale, constant_features
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Walkers, the trait to predict for each, the rows of each fold, and the scoring.
+    """Walkers X (walker, feature), the trait y to predict, and the rows that each fold leaves out.
 
-    `y` is -1 and +1 for two classes, else the trait; `offset` is taken off it before the
-    discriminant is solved for, and added to predictions. ``losses(sums, r, training_mean)`` is the
-    loss of sums of eq. 11, of shape (component, ...), for ``r = y - offset`` and its mean over the
-    walkers trained on; ``error(losses, R)`` the error of losses summed over all walkers, for each
-    column of R.
+    The trait is -1 and +1 for two classes; or else it is a number, predicted about its mean.
     """
 
     X: np.ndarray
     y: np.ndarray
-    offset: float
     folds: list[np.ndarray]
-    losses: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-    error: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    is_number: bool
+
+    @property
+    def offset(self) -> float:
+        """Taken off the trait before the discriminant is solved for, and added to predictions."""
+        return float(self.y.mean()) if self.is_number else 0.0
 
     @property
     def r(self) -> np.ndarray:
-        """What the discriminant is solved for (eq. 10)."""
+        """What the discriminant is solved for: Troje (2002), eq. 10."""
         return self.y - self.offset
+
+    def losses(self, sums: np.ndarray, r: np.ndarray, training_mean: np.ndarray) -> np.ndarray:
+        """Return the loss of sums of eq. 11, of shape (component, ...)."""
+        return (training_mean + sums - r) ** 2 if self.is_number else r * sums <= 0
+
+    def error(self, losses: np.ndarray, R: np.ndarray) -> np.ndarray:
+        """Return the error of losses summed over walkers, for each trait of R (walker, trait).
+
+        Misclassified walkers, or the root mean square error in standard deviations of the trait.
+        """
+        return np.sqrt(losses / len(R)) / R.std(axis=0) if self.is_number else losses
 
     def leave_out_svd(self, R: np.ndarray, scale: Scale, scale_in_fold: bool) -> LeaveOutSVD:
         """Return the walkers prepared for leaving out, with targets R of shape (walker, trait)."""
         return LeaveOutSVD.of(self.X, R, scale=scale, scale_in_fold=scale_in_fold)
+
+
+def task_of(X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, *, least_folds: int = 3) -> Task:
+    """Return the task that a trait stands for: classes if it is text or has two values."""
+    values = pd.Series(np.asarray(y))
+    is_number = pd.api.types.is_numeric_dtype(values) and values.nunique() != 2
+    return (number_task if is_number else class_task)(X, y, groups, least_folds=least_folds)
 
 
 def class_task(
@@ -49,7 +66,7 @@ def class_task(
     classes = np.asarray(y)
     walkers, folds = _walkers_and_folds(X, classes, groups, least_folds)
     _, which = two_classes(classes)
-    return Task(walkers, 2.0 * which - 1, 0.0, folds, _misclassified, lambda losses, _: losses)
+    return Task(walkers, 2.0 * which - 1, folds, is_number=False)
 
 
 def number_task(
@@ -61,20 +78,7 @@ def number_task(
     walkers, folds = _walkers_and_folds(X, trait, groups, least_folds)
     if np.ptp(trait) == 0:
         raise ValueError(f"The trait is {trait[0]:g} for all {len(trait)} walkers; it must vary.")
-    return Task(walkers, trait, trait.mean(), folds, _squared_errors, _standardised_rmse)
-
-
-def _misclassified(sums: np.ndarray, r: np.ndarray, _mean: np.ndarray) -> np.ndarray:
-    return r * sums <= 0
-
-
-def _squared_errors(sums: np.ndarray, r: np.ndarray, training_mean: np.ndarray) -> np.ndarray:
-    return (training_mean + sums - r) ** 2
-
-
-def _standardised_rmse(losses: np.ndarray, R: np.ndarray) -> np.ndarray:
-    """Root mean square errors in standard deviations of each trait."""
-    return np.sqrt(losses / len(R)) / R.std(axis=0)
+    return Task(walkers, trait, folds, is_number=True)
 
 
 def _walkers_and_folds(

@@ -11,6 +11,7 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 import pandas as pd
 
+from eigenwalker.analysis._task import Task, class_task, number_task
 from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.jackknife import (
     JackknifeCurves,
@@ -19,21 +20,16 @@ from eigenwalker.analysis.jackknife import (
     regression_curves,
 )
 from eigenwalker.analysis.validation import (
-    NestedErrors,
-    NestedRegression,
-    PermutationTest,
+    NestedPredictions,
     RandomState,
-    nested_leave_one_out,
-    nested_regression,
-    permutation_test,
-    regression_permutation_test,
+    nested_predictions,
+    permutation_test_of,
 )
 from eigenwalker.core.progress import Progress
 from eigenwalker.population.features import NAMED_PARTS
 from eigenwalker.population.population import Population
 
 _Curves = TypeVar("_Curves", JackknifeCurves, RegressionCurves)
-_Nested = TypeVar("_Nested", NestedErrors, NestedRegression)
 
 
 class Input(NamedTuple):
@@ -67,7 +63,7 @@ N_PANELS = 9
 
 
 @dataclass(frozen=True, eq=False)
-class InputResult(Generic[_Curves, _Nested]):
+class InputResult(Generic[_Curves]):
     """How well a trait is predicted from one input.
 
     Parameters
@@ -75,7 +71,7 @@ class InputResult(Generic[_Curves, _Nested]):
     input : Input
     curves : JackknifeCurves or RegressionCurves
         Over the number of components.
-    nested : NestedErrors or NestedRegression
+    nested : NestedPredictions
         When the number of components is chosen without the walker predicted.
     p : float
         Share of permuted traits that reach as small an error on the curve.
@@ -84,7 +80,7 @@ class InputResult(Generic[_Curves, _Nested]):
 
     input: Input
     curves: _Curves
-    nested: _Nested
+    nested: NestedPredictions
     p: float
 
 
@@ -104,7 +100,7 @@ class Classification:
     """
 
     contrast: Contrast
-    results: tuple[InputResult[JackknifeCurves, NestedErrors], ...]
+    results: tuple[InputResult[JackknifeCurves], ...]
     n_permutations: int = 0
 
     def table(self) -> pd.DataFrame:
@@ -172,7 +168,7 @@ class Regression:
     """
 
     contrast: Contrast
-    results: tuple[InputResult[RegressionCurves, NestedRegression], ...]
+    results: tuple[InputResult[RegressionCurves], ...]
     n_permutations: int = 0
 
     def table(self) -> pd.DataFrame:
@@ -266,7 +262,7 @@ def classify(
             f"instance {contrast.trait}=1:2."
         )
     results = _results(
-        jackknife_curves, nested_leave_one_out, permutation_test,
+        class_task, jackknife_curves,
         population, contrast, inputs, n_permutations, random_state, progress,
     )  # fmt: skip
     return Classification(contrast, results, n_permutations)
@@ -299,7 +295,7 @@ def regress(
 
     See Also
     --------
-    regression_curves, nested_regression, regression_permutation_test
+    regression_curves, nested_leave_one_out, permutation_test : What is done for each input.
 
     References
     ----------
@@ -316,34 +312,32 @@ def regress(
     """
     contrast = trait_contrast(population, trait)
     results = _results(
-        regression_curves, nested_regression, regression_permutation_test,
+        number_task, regression_curves,
         population, contrast, inputs, n_permutations, random_state, progress,
     )  # fmt: skip
     return Regression(contrast, results, n_permutations)
 
 
 def _results(
-    curves: Callable[..., _Curves],
-    nested: Callable[..., _Nested],
-    permutations: Callable[..., PermutationTest],
+    task_of: Callable[..., Task],
+    curves_of: Callable[..., _Curves],
     population: Population,
     contrast: Contrast,
     inputs: Sequence[Input],
     n_permutations: int,
     random_state: RandomState,
     progress: Progress | None,
-) -> tuple[InputResult[_Curves, _Nested], ...]:
-    tables, y = _tables(population, contrast, inputs), contrast.y
-    folds = {"groups": contrast.persons, "progress": _one_count(contrast, len(tables), progress)}
-    return tuple(
-        InputResult(
-            each,
-            curves(X, y, **folds),
-            nested(X, y, **folds),
-            permutations(X, y, n_permutations=n_permutations, random_state=random_state, **folds).p,
-        )
-        for each, X in tables.items()
-    )
+) -> tuple[InputResult[_Curves], ...]:
+    tables, y, groups = _tables(population, contrast, inputs), contrast.y, contrast.persons
+    progress = _one_count(contrast, len(tables), progress)
+    results: list[InputResult[_Curves]] = []
+    for each, X in tables.items():
+        curves = curves_of(X, y, groups=groups, progress=progress)
+        nested = nested_predictions(task_of(X, y, groups, least_folds=4), progress=progress)
+        task = task_of(X, y, groups)
+        test = permutation_test_of(task, n_permutations, random_state, groups, progress=progress)
+        results.append(InputResult(each, curves, nested, test.p))
+    return tuple(results)
 
 
 def _tables(

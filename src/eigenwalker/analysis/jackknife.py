@@ -147,7 +147,8 @@ class RegressionCurves(_Curves):
     def best_n(self) -> int:
         """Fewest components with the least error on walkers left out.
 
-        It is chosen on the curve itself, so the error there is too small: see `nested_regression`.
+        It is chosen on the curve itself, so the error there is too small: see
+        `nested_leave_one_out`.
         """
         return int(self.rmse.argmin()) + 1
 

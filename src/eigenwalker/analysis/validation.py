@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.metrics import r2_score, root_mean_squared_error
 
-from eigenwalker.analysis._task import Task, class_task, number_task, rows_of_groups
+from eigenwalker.analysis._task import Task, rows_of_groups, task_of
 from eigenwalker.analysis.discriminant import Order
 from eigenwalker.analysis.jackknife import correlation
 from eigenwalker.analysis.walker_space import Scale
@@ -23,37 +23,15 @@ RandomState = int | np.random.Generator | None
 
 
 @dataclass(frozen=True, eq=False)
-class NestedErrors:
-    """Errors of a classifier whose number of components is chosen without the walker predicted.
-
-    Parameters
-    ----------
-    misclassified : array of bool of shape (walker,)
-        Which walkers are misclassified.
-    chosen_n : array of int of shape (walker,)
-        The number of components chosen by the jack-knife of the others.
-
-    """
-
-    misclassified: np.ndarray
-    chosen_n: np.ndarray
-
-    @property
-    def errors(self) -> int:
-        """Number of walkers misclassified."""
-        return int(self.misclassified.sum())
-
-
-@dataclass(frozen=True, eq=False)
-class NestedRegression:
-    """Predictions of a trait with a number of components chosen without the walker predicted.
+class NestedPredictions:
+    """Predictions with a number of components that is chosen without the walker predicted.
 
     Parameters
     ----------
     y : array of shape (walker,)
-        The trait.
+        -1 and +1 for two classes, else the trait.
     held_out : array of shape (walker,)
-        Prediction for each walker left out.
+        Prediction for each walker left out: the sum of eq. 11 for two classes, else the trait.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
 
@@ -64,8 +42,18 @@ class NestedRegression:
     chosen_n: np.ndarray
 
     @property
+    def misclassified(self) -> np.ndarray:
+        """Which walkers are misclassified, of two classes: bool of shape (walker,)."""
+        return self.y * self.held_out <= 0
+
+    @property
+    def errors(self) -> int:
+        """Number of walkers misclassified, of two classes."""
+        return int(self.misclassified.sum())
+
+    @property
     def rmse(self) -> float:
-        """Root mean square error, in units of the trait."""
+        """Root mean square error of a trait that is a number, in its units."""
         return float(root_mean_squared_error(self.y, self.held_out))
 
     @property
@@ -88,27 +76,34 @@ def nested_leave_one_out(
     scale_in_fold: bool = True,
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
-) -> NestedErrors:
-    """Return the errors on walkers left out that have no part in choosing the number of components.
+) -> NestedPredictions:
+    """Return predictions for walkers left out of choosing the number of components, too.
 
     The least error of a generalisation curve is too small, since the number of components was
     chosen for it. Here a jack-knife of the other walkers chooses the number for each walker left
-    out; among equally good numbers the smallest.
+    out: the one with the fewest errors or the least root mean square error, and the smallest of
+    equally good ones.
 
     Parameters
     ----------
-    X, y, scale, order, scale_in_fold, groups, progress
+    X, scale, order, scale_in_fold, groups, progress
         As in `jackknife_curves`. Every pair of walkers is left out once, so n walkers take
         n (n + 1) / 2 folds; `progress` counts the pairs.
+    y : array of shape (walker,)
+        Two classes: text, or numbers of two values. Or else a trait that is a number.
 
     Returns
     -------
-    NestedErrors
+    NestedPredictions
+
+    Raises
+    ------
+    ValueError
+        As `jackknife_curves`; four walkers or groups are needed.
 
     See Also
     --------
-    nested_regression : The same for a trait that is a number.
-    permutation_test : How often random classes reach as few errors.
+    permutation_test : How often a permuted trait is predicted as well.
 
     Examples
     --------
@@ -119,59 +114,18 @@ def nested_leave_one_out(
     0
 
     """
-    task = class_task(X, y, groups, least_folds=4)
-    held_out, chosen_n = _nested(task, scale, order, scale_in_fold, progress)
-    return NestedErrors(task.y * held_out <= 0, chosen_n)
+    task = task_of(X, y, groups, least_folds=4)
+    return nested_predictions(task, scale, order, scale_in_fold, progress)
 
 
-def nested_regression(
-    X: ArrayLike,
-    y: ArrayLike,
-    *,
+def nested_predictions(
+    task: Task,
     scale: Scale = "sd",
     order: Order = "standardised",
     scale_in_fold: bool = True,
-    groups: ArrayLike | None = None,
     progress: Progress | None = None,
-) -> NestedRegression:
-    """Return predictions of a trait for walkers with no part in choosing the number of components.
-
-    As `nested_leave_one_out`: for each walker left out, the number with the least root mean square
-    error in a jack-knife of the others is taken.
-
-    Parameters
-    ----------
-    X, y, scale, order, scale_in_fold, groups, progress
-        As in `regression_curves` and `nested_leave_one_out`.
-
-    Returns
-    -------
-    NestedRegression
-
-    Examples
-    --------
-    >>> walkers = np.random.default_rng(0).normal(size=(30, 3))
-    >>> weight_kg = 70 + walkers @ [10, 0, 0]
-    >>> nested = nested_regression(walkers, weight_kg)
-    >>> round(nested.r2, 6), set(nested.chosen_n.tolist())
-    (1.0, {3})
-
-    """
-    task = number_task(X, y, groups, least_folds=4)
-    sums, chosen_n = _nested(task, scale, order, scale_in_fold, progress, fit_intercept=True)
-    return NestedRegression(task.y, sums, chosen_n)
-
-
-def _nested(
-    task: Task,
-    scale: Scale,
-    order: Order,
-    scale_in_fold: bool,
-    progress: Progress | None,
-    *,
-    fit_intercept: bool = False,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Prediction of each walker with the components that the others choose, and their number."""
+) -> NestedPredictions:
+    """Return what `nested_leave_one_out` does, for a task."""
     folds = task.folds
     pairs = list(combinations(range(len(folds)), 2))
     both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
@@ -189,9 +143,9 @@ def _nested(
             sums = fold.sums(order)
             n = min(int(losses.argmin()) + 1, len(sums))
             chosen_n[out], predictions[out] = n, sums[n - 1]
-            if fit_intercept:
+            if task.is_number:
                 predictions[out] += task.offset + svd.training_mean(out)
-    return predictions, chosen_n
+    return NestedPredictions(task.y, predictions, chosen_n)
 
 
 def _add(losses: np.ndarray, total: np.ndarray) -> None:
@@ -236,16 +190,17 @@ def permutation_test(
     groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> PermutationTest:
-    """Return how often randomly permuted classes reach as few errors as the true ones.
+    """Return how often a randomly permuted trait is predicted as well as the true one.
 
-    The statistic is the least error of the generalisation curve over all numbers of components. It
-    is chosen in the same way for each permutation, so choosing it is no advantage.
+    The statistic is the least error of the generalisation curve over all numbers of components:
+    misclassified walkers, or the root mean square error in standard deviations of the trait. It is
+    chosen in the same way for each permutation, so choosing it is no advantage.
 
     Parameters
     ----------
     X, y, scale, order, scale_in_fold, groups, progress
-        As in `jackknife_curves`. With `groups`, classes are permuted among whole groups where each
-        group has one class, and within groups otherwise.
+        As in `nested_leave_one_out`. With `groups`, the trait is permuted among whole groups where
+        it is constant within each, and within groups otherwise.
     n_permutations : int
         Number of permutations.
     random_state : int or numpy.random.Generator
@@ -255,10 +210,6 @@ def permutation_test(
     -------
     PermutationTest
 
-    See Also
-    --------
-    regression_permutation_test : The same for a trait that is a number.
-
     Examples
     --------
     >>> sex = np.repeat([-1, 1], 10)
@@ -267,62 +218,22 @@ def permutation_test(
     True
 
     """
-    task = class_task(X, y, groups)
-    R = _permuted_labels(task.r, groups, n_permutations, random_state)
-    return _permutation_test(task, R, scale, order, scale_in_fold, progress)
+    R = (n_permutations, random_state, groups)
+    return permutation_test_of(task_of(X, y, groups), *R, scale, order, scale_in_fold, progress)
 
 
-def regression_permutation_test(
-    X: ArrayLike,
-    y: ArrayLike,
-    *,
-    n_permutations: int = 1000,
-    random_state: RandomState = 0,
+def permutation_test_of(
+    task: Task,
+    n_permutations: int,
+    random_state: RandomState,
+    groups: ArrayLike | None,
     scale: Scale = "sd",
     order: Order = "standardised",
     scale_in_fold: bool = True,
-    groups: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> PermutationTest:
-    """Return how often a randomly permuted trait is predicted as well as the true one.
-
-    As `permutation_test`, of the least root mean square error over all numbers of components. It is
-    in standard deviations, since these change where a trait is permuted among groups of unequal
-    size.
-
-    Parameters
-    ----------
-    X, y, scale, order, scale_in_fold, groups, progress
-        As in `regression_curves`. With `groups`, values are permuted among whole groups where each
-        group has one value, and within groups otherwise.
-    n_permutations, random_state
-        As in `permutation_test`.
-
-    Returns
-    -------
-    PermutationTest
-
-    Examples
-    --------
-    >>> walkers = np.random.default_rng(0).normal(size=(20, 3))
-    >>> weight_kg = 70 + walkers @ [10, 0, 0]
-    >>> regression_permutation_test(walkers, weight_kg, n_permutations=199).p
-    0.005
-
-    """
-    task = number_task(X, y, groups)
+    """Return what `permutation_test` does, for a task."""
     R = _permuted_labels(task.r, groups, n_permutations, random_state)
-    return _permutation_test(task, R, scale, order, scale_in_fold, progress)
-
-
-def _permutation_test(
-    task: Task,
-    R: np.ndarray,
-    scale: Scale,
-    order: Order,
-    scale_in_fold: bool,
-    progress: Progress | None,
-) -> PermutationTest:
     with one_blas_thread():
         svd = task.leave_out_svd(R, scale, scale_in_fold)
         total = np.zeros((min(svd.Y.shape), R.shape[1]))
