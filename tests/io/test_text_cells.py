@@ -3,13 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenwalker.core.walker import Walker
 from eigenwalker.io.errors import UnreadableFile, printable
 from eigenwalker.io.file_types import file_type_of, with_article
 from eigenwalker.io.text_cells import cells, is_text, number, points_of, separator_of
 from eigenwalker.io.timestamps import on_even_clock, parse_rate
 from eigenwalker.io.to_trajectories import unit_named, without_subject
-from eigenwalker.io.writers.sampled_walk import sampled_walk
 
 
 def test_cells_are_what_separators_and_quotation_marks_enclose():
@@ -61,9 +59,3 @@ def test_types_of_files_are_known_by_their_first_bytes():
 
 def test_messages_do_not_control_a_terminal():
     assert printable("left\x1b[2Jknee\n") == "left\N{REPLACEMENT CHARACTER}[2Jknee "
-
-
-def test_a_walker_over_ground_moves_at_its_speed():
-    walker = Walker(["foot"], [[0, 0, 50]], [[[0, 0, 40]]], [1], [0], 2.0, speed_mm_s=1000)
-    walk = sampled_walk(walker, n_strides=1, rate_hz=8, overground=True)
-    assert walk.sel(marker="foot", axis="x").values.tolist() == [0, 125, 250, 375]

@@ -7,19 +7,24 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, NamedTuple
 
+import numpy as np
 import xarray as xr
 
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.trajectories import MILLIMETRES, check_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker
+from eigenwalker.io.to_trajectories import with_coordinate
 from eigenwalker.io.up_axis_and_unit import turn_upright
 from eigenwalker.io.writers.bvh import write_bvh
 from eigenwalker.io.writers.c3d import write_c3d
 from eigenwalker.io.writers.csv_trc import write_csv, write_trc
 from eigenwalker.io.writers.netcdf import write_netcdf
-from eigenwalker.io.writers.sampled_walk import RATE_HZ, sampled_walk, with_progress
 
 Up = Literal["y", "z"]
+RATE_HZ = 120.0
+"""Frames a second if none are named: those of the captures in Troje (2002)."""
+N_STRIDES = 4
+MAX_FRAMES = 10_000_000
 
 
 class Format(NamedTuple):
@@ -129,13 +134,7 @@ def write_mocap(
     if up not in ("y", "z"):
         raise ValueError(f"up={up!r} is not known; give 'y' or 'z'.")
     if isinstance(trajectories, Walker):
-        walk = sampled_walk(
-            trajectories,
-            n_strides=n_strides,
-            duration_s=duration_s,
-            rate_hz=rate_hz or RATE_HZ,
-            overground=overground,
-        )
+        walk = _sampled_walk(trajectories, n_strides, duration_s, rate_hz or RATE_HZ)
     elif (n_strides, duration_s, rate_hz) != (None, None, None):
         raise ValueError(
             "n_strides, duration_s and rate_hz are for walkers; these are trajectories, which are "
@@ -143,7 +142,8 @@ def write_mocap(
         )
     else:
         walk = check_trajectories(trajectories)
-        walk = with_progress(walk) if overground else walk
+    if overground:
+        walk = _with_progress(walk)
     sampling_rate(walk)  # which refuses uneven times
     turned = walk.copy(data=walk.values @ turn_upright(up) / MILLIMETRES[unit]).rename(path.name)
     with atomic_write(path) as unfinished:
@@ -157,3 +157,34 @@ def _format_of(path: Path) -> Format:
     if not path.parent.is_dir():
         raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
     return FORMATS[path.suffix.lower()]
+
+
+def _sampled_walk(
+    walker: Walker, n_strides: int | None, duration_s: float | None, rate_hz: float
+) -> xr.DataArray:
+    """Return a walker's trajectories in place; its clock starts when its first phase is 0."""
+    if n_strides is not None and duration_s is not None:
+        raise ValueError("n_strides and duration_s are both given; give one.")
+    if duration_s is None:
+        duration_s = (N_STRIDES if n_strides is None else n_strides) * walker.period_s
+    if not duration_s > 0 or not rate_hz > 0 or not 2 <= duration_s * rate_hz <= MAX_FRAMES:
+        raise ValueError(
+            f"{duration_s:g} s at {rate_hz:g} Hz are {duration_s * rate_hz:g} frames; "
+            f"choose 2 to {MAX_FRAMES} of them."
+        )
+    time = np.arange(round(duration_s * rate_hz)) / rate_hz
+    walk = with_coordinate(walker.trajectories(walker.time_origin_s + time), "time", time)
+    return walk.assign_attrs(speed_mm_s=walker.speed_mm_s)
+
+
+def _with_progress(walk: xr.DataArray) -> xr.DataArray:
+    """Return trajectories in place as a walk forward with their ``attrs["speed_mm_s"]``."""
+    speed = float(walk.attrs.get("speed_mm_s", np.nan))
+    if not np.isfinite(speed):
+        raise ValueError(
+            "overground=True puts forward progress back, but the speed of this walk is not known; "
+            "give a Walker its speed_mm_s, or trajectories attrs['speed_mm_s']."
+        )
+    values = walk.values.copy()
+    values[..., 0] += speed * (walk.time.values - walk.time.values[0])[:, None]
+    return walk.copy(data=values)

@@ -17,7 +17,7 @@ from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.mat_arrays import mat_arrays_npz
 from eigenwalker.io.sandbox import Job, JobError
 
-_SHOWN = 10
+_MAX_NAMES = 10
 
 
 def read_mat_arrays(path: str | os.PathLike[str]) -> dict[str, np.ndarray]:
@@ -89,7 +89,11 @@ def read_mat(
     UnreadableFile
         If the file is damaged, or the array is not there or of another shape.
     ValueError
-        If what is told of it makes no sense.
+        If an argument makes no sense.
+
+    See Also
+    --------
+    read_mocap : Reads files that name their markers and rate.
 
     Examples
     --------
@@ -108,12 +112,12 @@ def read_mat(
     path = Path(path)
     array = _chosen(read_mat_arrays(path), variable, path.name)
     sizes = {"marker": len(markers), "axis": 3, "column": 3 * len(markers)}
-    wanted = tuple(sizes.get(dim, "time") for dim in dims)
+    shape = tuple(sizes.get(dim, "time") for dim in dims)
     if array.ndim != len(dims) or any(
-        size not in (given, "time") for size, given in zip(wanted, array.shape, strict=True)
+        size not in (given, "time") for size, given in zip(shape, array.shape, strict=True)
     ):
         raise UnreadableFile(
-            path.name, f"an array of shape {wanted}", f"{array.shape}", "check markers and dims"
+            path.name, f"an array of shape {shape}", f"{array.shape}", "check markers and dims"
         )
     if np.isinf(array).any():
         raise UnreadableFile(path.name, "finite numbers", "infinite ones", "mark gaps by NaN")
@@ -129,7 +133,7 @@ def read_mat(
 def _chosen(arrays: dict[str, np.ndarray], variable: str | None, source: str) -> np.ndarray:
     name = next(iter(arrays)) if variable is None and len(arrays) == 1 else variable
     if name not in arrays:
-        held = {key: array.shape for key, array in list(arrays.items())[:_SHOWN]}
-        wanted = "one array" if variable is None else f"an array {variable!r}"
-        raise UnreadableFile(source, wanted, f"{held}", "name one of them: variable=...")
+        shapes = {key: array.shape for key, array in list(arrays.items())[:_MAX_NAMES]}
+        expected = "one array" if variable is None else f"an array {variable!r}"
+        raise UnreadableFile(source, expected, f"{shapes}", "name one of them: variable=...")
     return arrays[name]
