@@ -6,7 +6,7 @@ import { choice } from "../src/explorer/controls";
 import { make, signed } from "../src/page/elements";
 import { nearestPoint, nextPoint } from "../src/explorer/cloud";
 import { Notices } from "../src/explorer/notices";
-import { populationLabel, warnings } from "../src/explorer/about";
+import { populationLabel, warnings } from "../src/model/labels";
 import { bundles, bundleName, openFiles } from "../src/explorer/openFile";
 import { ownWalkerOf } from "../src/explorer/ownWalker";
 import { axesOf } from "../src/explorer/axis";
@@ -15,9 +15,8 @@ import { slider } from "../src/explorer/controls";
 import { Store } from "../src/explorer/store";
 import { goldenModel, posture, stimulusWith } from "./golden_model";
 import { mixedVector } from "../src/model/mixing";
-import { positionOf } from "../src/model/position";
+import { positionOf, walkerOf } from "../src/model/features";
 import { initialState } from "../src/model/state";
-import { walkerOf } from "../src/model/features";
 
 describe("a slider", () => {
   const made = (): { values: number[]; one: ReturnType<typeof slider> } => {

@@ -11,11 +11,10 @@ import { captionOf } from "../src/model/captions";
 import { measuresOf, type MeasureName } from "../src/model/measures";
 import { partsOf, mixedVector } from "../src/model/mixing";
 import type { Model } from "../src/model/model";
-import { cloudPositions, positionOf, traitPosition } from "../src/model/position";
+import { cloudPositions, positionOf, traitPosition, walkerOf } from "../src/model/features";
 import { pythonCode } from "../src/model/pythonCode";
 import { readModel } from "../src/model/readModel";
 import { initialState, type State } from "../src/model/state";
-import { walkerOf } from "../src/model/features";
 
 const CLOSE = 1e-6;
 

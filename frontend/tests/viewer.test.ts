@@ -13,7 +13,7 @@ import { initialState, initialSettings, type State } from "../src/model/state";
 import { animationOf, strideRates, type AnimationSpec } from "../src/viewer/animation";
 import { Viewer, type ViewerEvents } from "../src/viewer/viewer";
 import { arrange } from "../src/viewer/arrangement";
-import { extentFor, arrangedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
+import { arrangementFor, arrangedStimulus, stimulusOf } from "../src/viewer/viewedStimulus";
 import { WalkerBatch } from "../src/viewer/walkerBatch";
 
 const model = readModel(golden.model);
@@ -24,7 +24,7 @@ const SIZE = { width_px: 900, height_px: 600 };
 function specOf(part: Partial<State>, others: Partial<AnimationSpec> = {}): AnimationSpec {
   const state = chosen(part);
   const figures = figuresOf(model, state);
-  const arrangement = arrange(figures.length, extentFor(model, figures), SIZE, state.elevation_deg);
+  const arrangement = arrangementFor({ model, figures, state }, SIZE);
   const phases = figures.map(() => 0);
   return { model, figures, state, size: SIZE, arrangement, phases, time: 0, turned_deg: 0, mannequin: null, ...others };
 }
@@ -55,8 +55,8 @@ describe("what is drawn quickly is what the stimulus says", () => {
     ["a crowd", { scene: "crowd", traits: { weight_kg: 2 }, elevation_deg: 50 }],
   ])("%s", (_, part) => {
     const spec = specOf(part);
-    const { figures, state, arrangement } = spec;
-    const frames = framesOf(arrangedStimulus(model, figures, state, SIZE, arrangement));
+    const { arrangement } = spec;
+    const frames = framesOf(arrangedStimulus(spec, SIZE, arrangement));
     for (const time of [0, 0.3, 1.7]) {
       const expected = frames(time).flatMap(({ places }) => [...places]);
       expect(apart(batchPlaces(spec, time), expected)).toBeLessThan(1e-6);
@@ -108,7 +108,7 @@ describe("walkers stay in their boxes", () => {
 describe("the chain", () => {
   const steps = (part: Partial<State>) => {
     const state = chosen(part);
-    return stimulusOf(model, figuresOf(model, state), state).transforms;
+    return stimulusOf({ model, state, figures: figuresOf(model, state) }).transforms;
   };
 
   it("is empty for a walker as it is", () => expect(steps({})).toEqual([]));
@@ -159,10 +159,10 @@ describe("strides go on", () => {
   it("into a chain and out of it with every dot where it was", () => {
     // Twice a mirror image of walkers is they themselves, but through the chain.
     const spec = specOf({ azimuth_deg: 50 }, { phases: [0.37], time: 3 });
-    const { figures, state, arrangement } = spec;
+    const { figures, arrangement } = spec;
     const clock = 360 * (0.37 - strideRates(spec)[0]! * 3);
     const start = { name: "start", phase_deg: clock, figures: [0] } as const;
-    const chained = framesOf(arrangedStimulus(model, figures, state, SIZE, arrangement, [start]))(3);
+    const chained = framesOf(arrangedStimulus(spec, SIZE, arrangement, [start]))(3);
     const batch = new WalkerBatch(figures.map(({ walker }) => walker));
     batch.starts[0] = 0.37 - batch.rates[0]! * 3;
     batch.project(3, { axes: observerAxes(50, 0), eyeMm: null }, arrangement, SIZE);
@@ -230,7 +230,7 @@ describe("the viewer", () => {
     const show = (part: Partial<State>): void => {
       const state = chosen(part);
       const figures: readonly SceneFigure[] = figuresOf(model, state);
-      viewer.show(model, figures, state);
+      viewer.show({ model, figures, state });
     };
     show(part);
     return { viewer, show };

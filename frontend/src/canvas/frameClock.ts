@@ -15,6 +15,13 @@ export function everyFrame(draw: (elapsedMs: number, firstMs: number) => boolean
   return () => cancelAnimationFrame(request);
 }
 
+/** Play from a time in seconds, again and again, until the returned function is called. */
+export const playLoop = (from: number, durationS: number, show: (time: number) => void): (() => void) =>
+  everyFrame((elapsedMs) => {
+    show((from + elapsedMs / 1000) % durationS);
+    return true;
+  });
+
 export interface FrameTiming {
   /** Milliseconds from the first frame to each frame. */
   readonly times: readonly number[];

@@ -1,6 +1,6 @@
 /** Frames of a stimulus on a canvas: discs, sticks, blobs, or a mannequin. */
 
-import type { Link, Stimulus } from "../core/stimulus";
+import type { Display, Link, Stimulus } from "../core/stimulus";
 import { framesOf, type FigureFrame } from "./figureFrames";
 import { hasLimbs, type MannequinPainter } from "./mannequinLoader";
 
@@ -78,10 +78,10 @@ export function contextOf(
   return context;
 }
 
-function drawFrame(context: CanvasRenderingContext2D, frame: FigureFrame, { style, dot_px }: Stimulus["display"]): void {
-  const { moving: { body }, places, visible } = frame;
-  if (style === "sticks") drawSticks(context, places, body.dots.length, linksOf(body.dots, body.segments), dot_px, visible);
-  drawDots(context, places, body.dots.length, dot_px, visible);
+function drawFrame(context: CanvasRenderingContext2D, frame: FigureFrame, { style, dot_px }: Display): void {
+  const { moving: { body: { dots, segments } }, places, visible } = frame;
+  if (style === "sticks") drawSticks(context, places, dots.length, linksOf(dots, segments), dot_px, visible);
+  drawDots(context, places, dots.length, dot_px, visible);
 }
 
 /** Draw figures of `nDots` dots each: one path a figure, as a single path of all dots is slower to fill. */

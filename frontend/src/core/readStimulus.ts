@@ -3,7 +3,7 @@
 import schema from "../../../src/eigenwalker/stimulus/schema.json";
 import { checked, explained, InvalidFile, type Schema } from "./schema";
 import type { Figure, Step, Stimulus, Walker } from "./stimulus";
-import { addsFigure } from "./transforms";
+import { addsFigure } from "./scene";
 
 const SCHEMA = schema as Schema<Stimulus>;
 

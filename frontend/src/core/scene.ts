@@ -1,9 +1,14 @@
 /** The positions of all dots of a stimulus at any moment, in the scene and in the picture. */
 
-import { figureOf, isKnown, MovingDots, positionOf } from "./movingDots";
-import { mapPositions } from "./spatialTransforms";
-import type { Figure, Stimulus, View } from "./stimulus";
-import { addsFigure, transformed } from "./transforms";
+import { bodyTransforms } from "./bodyTransforms";
+import { dotTransforms } from "./dotTransforms";
+import {
+  figureOf, isKnown, MovingDots, positionOf,
+  type Transform, type TransformContext, type Transforms,
+} from "./movingDots";
+import { mapPositions, spatialTransforms } from "./spatialTransforms";
+import type { Figure, Step, Stimulus, TransformName, View } from "./stimulus";
+import { timeTransforms } from "./timeTransforms";
 import { dot, minus, observerAxes, radians } from "./vector";
 
 /** A dot nearer to the eye than this is not visible in perspective. */
@@ -71,3 +76,16 @@ export function inPicture(positions: Float64Array, view: View): Picture {
   }
   return { places, seen };
 }
+
+const TRANSFORMS: Transforms<TransformName> = {
+  ...spatialTransforms,
+  ...timeTransforms,
+  ...bodyTransforms,
+  ...dotTransforms,
+};
+
+export const transformed = (moving: MovingDots, step: Step, context: TransformContext): MovingDots =>
+  (TRANSFORMS[step.name] as Transform<never>)(moving, step as never, context);
+
+/** Whether the result of a transform joins the scene instead of replacing the figure. */
+export const addsFigure = (step: Step): boolean => step.name === "mask";

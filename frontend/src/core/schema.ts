@@ -5,8 +5,12 @@
  * long as the schema itself, and its messages say less.
  */
 
+type Limit =
+  | "minimum" | "exclusiveMinimum" | "maximum" | "maxProperties"
+  | "minLength" | "maxLength" | "minItems" | "maxItems";
+
 /** A schema of values of a type. */
-export interface Schema<T = unknown> {
+export interface Schema<T = unknown> extends Readonly<Partial<Record<Limit, number>>> {
   /** The type alone; no schema has this field. */
   readonly inferred?: T;
   readonly $ref?: string;
@@ -14,23 +18,15 @@ export interface Schema<T = unknown> {
   readonly type?: string;
   readonly enum?: readonly unknown[];
   readonly const?: unknown;
-  readonly minimum?: number;
-  readonly exclusiveMinimum?: number;
-  readonly maximum?: number;
-  readonly minLength?: number;
-  readonly maxLength?: number;
+  readonly default?: unknown;
   readonly pattern?: string;
   readonly items?: Schema;
-  readonly minItems?: number;
-  readonly maxItems?: number;
   readonly uniqueItems?: boolean;
   readonly properties?: Readonly<Record<string, Schema>>;
   readonly required?: readonly string[];
+  readonly propertyNames?: Schema;
   /** False: other names are refused. Left out: other names are ignored. */
   readonly additionalProperties?: boolean | Schema;
-  readonly maxProperties?: number;
-  readonly propertyNames?: Schema;
-  readonly default?: unknown;
   readonly anyOf?: readonly Schema[];
   readonly oneOf?: readonly Schema[];
 }
@@ -112,10 +108,9 @@ export function checked<T>(value: unknown, schema: Schema<T>, where: string): T 
 
   function checkList(value: unknown, schema: Schema, where: string): unknown[] {
     const { minItems = 0, maxItems = Infinity, items = {} } = schema;
-    if (!Array.isArray(value)) return refuse(where, `a list of ${span(minItems, maxItems)} values`, value);
-    if (value.length < minItems || value.length > maxItems) {
-      refuse(where, `a list of ${span(minItems, maxItems)} values`, value.length);
-    }
+    const expected = `a list of ${span(minItems, maxItems)} values`;
+    if (!Array.isArray(value)) return refuse(where, expected, value);
+    if (value.length < minItems || value.length > maxItems) refuse(where, expected, value.length);
     if (schema.uniqueItems && new Set(value).size < value.length) {
       refuse(where, "values that differ from each other", "some twice");
     }

@@ -3,7 +3,9 @@
 import { gathered, walking, type Moment, type MovingDots, type Transforms } from "./movingDots";
 import { Purpose, uniforms } from "./randomStream";
 
-export const timeTransforms: Transforms<"speed" | "reverse" | "start" | "freeze" | "phase_scramble" | "delay" | "morph"> = {
+type TimeTransform = "speed" | "reverse" | "start" | "freeze" | "phase_scramble" | "delay" | "morph";
+
+export const timeTransforms: Transforms<TimeTransform> = {
   /** Play faster or slower: the new figure at `t` is the old one at `factor t`. */
   speed: (moving, { factor }) =>
     moving.with({ at: (time) => moving.at(time * factor), periodS: moving.periodS / Math.abs(factor) }),

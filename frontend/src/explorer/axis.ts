@@ -1,8 +1,8 @@
 /** Directions of sliders and axes of plots: traits, then eigenwalkers. */
 
-import { capitalised, endLabels, mainTrait } from "../model/axisLabels";
+import { capitalised, endLabels, mainTrait } from "../model/labels";
 import type { Model, Numbers, Trait } from "../model/model";
-import { cloudPositions, type Position } from "../model/position";
+import { cloudPositions, type Position } from "../model/features";
 import type { State } from "../model/state";
 
 export interface Axis {

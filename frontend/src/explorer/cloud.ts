@@ -1,9 +1,9 @@
 /** The population as a cloud of points along two axes, with the present walker. */
 
-import { capitalised, classOf, colourLegend, mainTrait } from "../model/axisLabels";
+import { capitalised, classOf, colourLegend, mainTrait } from "../model/labels";
 import { mixedVector } from "../model/mixing";
 import type { Model } from "../model/model";
-import { positionOf } from "../model/position";
+import { positionOf } from "../model/features";
 import { clamped, RANGES } from "../model/state";
 import { draw, freshId, make, setAttributes } from "../page/elements";
 import type { Axis } from "./axis";
@@ -85,7 +85,10 @@ export function cloud(store: Store): Part | HTMLElement {
     store.change({ from: point.walker, scene: "one", ...unchanged });
   };
   const layOut = (): void => {
-    const placeOf = (cloud: number): Place => ({ x: across(inside(x.points[cloud]!)), y: down(inside(y.points[cloud]!)) });
+    const placeOf = (cloud: number): Place => ({
+      x: across(inside(x.points[cloud]!)),
+      y: down(inside(y.points[cloud]!)),
+    });
     for (const point of points) {
       Object.assign(point, placeOf(point.cloud));
       setAttributes(point.circle, { cx: point.x.toFixed(1), cy: point.y.toFixed(1) });
@@ -100,8 +103,9 @@ export function cloud(store: Store): Part | HTMLElement {
     const [h, v] = [across(inside(x.at(now.position))), down(inside(y.at(now.position)))];
     cross.setAttribute("transform", `translate(${h.toFixed(1)} ${v.toFixed(1)})`);
     setAttributes(trail, trailOf(now, first, x, y));
-    for (const mark of [cross, trail]) setAttributes(mark, { visibility: now.state.scene === "one" ? undefined : "hidden" });
-    for (const { circle, walker } of points) setAttributes(circle, { "aria-selected": String(now.state.from === walker) });
+    const { scene, from } = now.state;
+    for (const mark of [cross, trail]) setAttributes(mark, { visibility: scene === "one" ? undefined : "hidden" });
+    for (const { circle, walker } of points) setAttributes(circle, { "aria-selected": String(from === walker) });
   };
   const axisPick = (name: string, initial: Axis, choose: (axis: Axis) => void): HTMLElement => {
     const { element, show } = pick(name, axes.map((value) => ({ value, label: value.label })), (axis) => {

@@ -1,6 +1,6 @@
 /** Moler's controls: the strength of each component, each component alone, and the bias towards a class. */
 
-import { capitalised, endLabels } from "../model/axisLabels";
+import { capitalised, endLabels } from "../model/labels";
 import { componentName } from "../model/captions";
 import { RANGES } from "../model/state";
 import { button, signed } from "../page/elements";

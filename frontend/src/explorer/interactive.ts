@@ -1,14 +1,16 @@
 /** The interactive page: reads its model, assembles its parts, and opens files. */
 
 import { addressOf, stateOf } from "../model/address";
+import { populationLabel, warnings } from "../model/labels";
 import type { OwnWalker } from "../model/model";
 import type { State } from "../model/state";
 import { button, find, messageOf } from "../page/elements";
-import { populationLabel, warnings } from "./about";
-import { takeFiles, type DroppedFiles } from "./fileDrop";
-import { Notices } from "./notices";
-import { bundleName, bundles, modelSourceOf, openFiles, type ModelSource, type Opened } from "./openFile";
 import { panels } from "./panels";
+import {
+  bundleName, bundles, modelSourceOf, openFiles, takeFiles,
+  type DroppedFiles, type ModelSource, type Opened,
+} from "./openFile";
+import { Notices } from "./notices";
 import { Store, type View } from "./store";
 import { toolbar } from "./toolbar";
 import { mainSlider } from "./traitSliders";
@@ -100,7 +102,8 @@ function begin(source: ModelSource, address: string, own: OwnWalker | null = nul
   const store = new Store(source.model, stateFor(address, source, own), own);
   const main = mainSlider(store);
   find("#main-slider", HTMLDivElement).replaceChildren(main.element);
-  const views = [viewerPanel(store), main, toolbar(store, chooseFiles), panels(store, notices, chooseFiles), addressBar()];
+  const tools = toolbar(store, chooseFiles);
+  const views = [viewerPanel(store), main, tools, panels(store, notices, chooseFiles), addressBar()];
   session = { source, store, views };
   store.listen((now) => views.forEach((view) => view.show(now)));
   store.publish();
@@ -120,7 +123,8 @@ function start(): void {
   find("#notices", HTMLDivElement).append(notices.element);
   document.addEventListener("keydown", (event) => session && onKey(session.store, event));
   document.addEventListener("pointerdown", () => session?.store.setDragging(true), { capture: true });
-  for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, () => session?.store.setDragging(false));
+  const drop = (): void => session?.store.setDragging(false);
+  for (const end of ["pointerup", "pointercancel"]) window.addEventListener(end, drop);
   window.addEventListener("hashchange", () => {
     session?.store.change(stateFor(location.hash.slice(1), session.source, session.store.own));
   });

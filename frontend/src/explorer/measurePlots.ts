@@ -1,11 +1,10 @@
 /** The measures of the walker, as numbers with small plots. */
 
-import { capitalised, classOf, colourLegend } from "../model/axisLabels";
-import { walkerOf } from "../model/features";
+import { capitalised, classOf, colourLegend } from "../model/labels";
+import { positionOf, walkerOf } from "../model/features";
 import { MEASURES, measuresOf, type Measures } from "../model/measures";
 import { mixedVector } from "../model/mixing";
 import type { Model, OwnWalker } from "../model/model";
-import { positionOf } from "../model/position";
 import { clamped, initialState, RANGES, type State } from "../model/state";
 import { draw, make, setAttributes, signed } from "../page/elements";
 import type { Axis } from "./axis";
@@ -41,7 +40,8 @@ export function measurePlots(store: Store): Part {
   const average = spotOf(model, model.average, axis);
   const plots = MEASURES.filter(({ name }) => Number.isFinite(average.measures[name])).map((measure) => {
     const values = [average, ...initial, ...people].map(({ measures }) => measures[measure.name]);
-    return plot(model, axis, measure, people, average.measures[measure.name], [Math.min(...values), Math.max(...values)]);
+    const range = [Math.min(...values), Math.max(...values)] as const;
+    return plot(model, axis, measure, people, average.measures[measure.name], range);
   });
   const legend = ["Small points: people", colourLegend(axis?.trait), axis ? "line: where the large slider leads this walker" : ""];
   let line = initial;

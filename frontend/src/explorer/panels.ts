@@ -1,18 +1,19 @@
-/** All plots and controls beside the viewer. */
+/** All plots and controls beside the viewer, and the text about the population. */
 
-import { find } from "../page/elements";
-import { about } from "./about";
-import { classifierControls, eigenwalkerSliders, otherTraits } from "./traitSliders";
+import { warnings } from "../model/labels";
+import type { Model } from "../model/model";
+import { find, make } from "../page/elements";
 import { cloud } from "./cloud";
 import { biasControls, strengthControls } from "./componentControls";
 import { measurePlots } from "./measurePlots";
 import type { Notices } from "./notices";
-import { plausibility } from "./plausibility";
-import { sceneSelect, walkerSelect } from "./walkerSelect";
 import { note, section } from "./parts";
+import { plausibility } from "./plausibility";
 import { share } from "./share";
 import type { Part, Store, View } from "./store";
+import { classifierControls, eigenwalkerSliders, otherTraits } from "./traitSliders";
 import { transformControls, viewControls } from "./viewControls";
+import { sceneSelect, walkerSelect } from "./walkerSelect";
 
 /** Wide windows have a panel on the left as well, and more sections open. */
 const WIDE = window.matchMedia("(min-width: 100rem)");
@@ -57,4 +58,33 @@ function controlSections(store: Store, notices: Notices, open: () => void): Part
     section("Look", [viewControls(store), transformControls(store)]),
     section("Keep and share", [share(store, notices)]),
   ];
+}
+
+const IDEA =
+  "Fifteen points are enough to see who walks. Each walk here is a mean posture and four postures that " +
+  "ride on sines; so walks can be added, averaged and pushed past the end.";
+const SOURCES =
+  "After Troje (2002), Decomposing biological motion, and Moler (2016), The eigenwalker model of the human gait.";
+
+/** A link to the report, if the page names its relative address. */
+function reportLink(): HTMLElement[] {
+  const href = document.querySelector('meta[name="eigenwalker-report"]')?.getAttribute("content") ?? "";
+  if (!/^[\w.-]+(\/[\w.-]+)*$/.test(href)) return [];
+  return [make("p", {}, make("a", { href }, "The report of this population"))];
+}
+
+export function about(model: Model): HTMLElement {
+  const facts = [
+    ["walkers", String(model.n_walkers)],
+    ...(model.n_flagged > 0 ? [["left out", `${model.n_flagged}, doubtful captures`]] : []),
+    ...Object.entries(model.provenance).filter(([name]) => name !== "recipe"),
+    ["program", model.program],
+  ] as const;
+  const idea = [IDEA, ...(model.simulated ? ["The walkers here are simulated: nobody was captured."] : []), ...warnings(model)];
+  return section("About", [
+    ...idea.map((text) => make("p", {}, text)),
+    note(SOURCES),
+    ...reportLink(),
+    make("dl", { class: "facts" }, ...facts.flatMap(([term, fact]) => [make("dt", {}, term!), make("dd", {}, fact!)])),
+  ]).element;
 }

@@ -1,7 +1,7 @@
 /** The plausibility of the walker: how far it is from the people, as a sentence and as a bar. */
 
 import type { Model } from "../model/model";
-import type { Position } from "../model/position";
+import type { Position } from "../model/features";
 import { make } from "../page/elements";
 import type { Axis } from "./axis";
 import type { Part, Store } from "./store";

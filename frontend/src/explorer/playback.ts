@@ -6,11 +6,6 @@ import { choice, type Option, slider } from "./controls";
 import { bound, group } from "./parts";
 import type { Part, Store } from "./store";
 
-export interface Playback extends Part {
-  /** Move the scrub bar during playback. */
-  tick(phase: number): void;
-}
-
 const STYLES: readonly Option<State["style"]>[] = [
   { value: "dots", label: "Points" },
   { value: "sticks", label: "Sticks" },
@@ -44,7 +39,8 @@ function playButton(store: Store): Part {
   };
 }
 
-export function playback(store: Store): Playback {
+/** The part, and a function that moves the scrub bar during playback. */
+export function playback(store: Store): Part & { tick(phase: number): void } {
   const scrub = make("input", {
     type: "range", min: 0, max: 1, step: 1 / N_STEPS, value: 0, class: "scrub",
     "aria-label": "Moment of the stride",
@@ -69,8 +65,9 @@ export function playback(store: Store): Playback {
     format: (value) => `${value.toFixed(2)}\u00d7`,
     onInput: (value) => store.change({ tempo: value }),
   });
-  const view = choice("View", VIEWS, (azimuth_deg) => store.change({ azimuth_deg, elevation_deg: 0 }), { named: false });
-  const style = choice("Drawn as", STYLES, (value) => store.change({ style: value }), { named: false });
+  const unnamed = { named: false };
+  const view = choice("View", VIEWS, (azimuth_deg) => store.change({ azimuth_deg, elevation_deg: 0 }), unnamed);
+  const style = choice("Drawn as", STYLES, (value) => store.change({ style: value }), unnamed);
   const { element, show } = group({ class: "tools" },
     playButton(store),
     make("div", { class: "time" }, scrub, make("div", { class: "run", "aria-hidden": "true" }, fill, knob)),

@@ -44,7 +44,8 @@ function namesOf(files: readonly File[]): Record<string, string> {
 }
 
 const isText = (value: unknown): boolean => typeof value === "string";
-const isListOf = (value: unknown, isItem: (item: unknown) => boolean): boolean => Array.isArray(value) && value.every(isItem);
+const isListOf = (value: unknown, isItem: (item: unknown) => boolean): boolean =>
+  Array.isArray(value) && value.every(isItem);
 
 async function post(what: string, query: Readonly<Record<string, string>>, body: BodyInit): Promise<Response> {
   let answer: Response;

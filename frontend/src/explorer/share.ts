@@ -3,7 +3,10 @@
 import { addressOf } from "../model/address";
 import { pythonCode } from "../model/pythonCode";
 import { button, make } from "../page/elements";
-import { download, filmFile, pageFile, pictureFile, stimulusFile, type SavedFile, type Snapshot } from "../viewer/saving";
+import {
+  download, filmFile, pageFile, pictureFile, stimulusFile,
+  type SavedFile, type Snapshot,
+} from "../viewer/saving";
 import type { Notices } from "./notices";
 import { note } from "./parts";
 import { hasServer, makeFilm } from "./server";
@@ -20,7 +23,7 @@ export function share(store: Store, notices: Notices): Part {
     void copy(location.href.split("#")[0] + (address && `#${address}`), what, notices);
   };
   const film = filmButton(store, notices);
-  const saveButton = (label: string, fileOf: (snapshot: Snapshot) => SavedFile | Promise<SavedFile>): HTMLButtonElement =>
+  const saveButton = (label: string, fileOf: (snapshot: Snapshot) => SavedFile | Promise<SavedFile>) =>
     button(label, async () => {
       try {
         save(await fileOf(snapshotOf(store)), notices);
@@ -49,8 +52,7 @@ export function share(store: Store, notices: Notices): Part {
 }
 
 function snapshotOf(store: Store): Snapshot {
-  const { model, figures, state } = store.now();
-  return { model, figures, state, phase: store.viewer?.phase ?? 0, mannequin: store.viewer?.mannequin ?? null };
+  return { ...store.now(), phase: store.viewer?.phase ?? 0, mannequin: store.viewer?.mannequin ?? null };
 }
 
 function save(file: SavedFile, notices: Notices): void {

@@ -1,21 +1,17 @@
 /** The store of the page: the model, the state, its history, and all values that follow from the state. */
 
-import { walkerOf } from "../model/features";
-import { figuresOf, type SceneFigure } from "../model/figures";
+import { positionOf, walkerOf, type Position } from "../model/features";
+import { figuresOf, type Scene } from "../model/figures";
 import { measuresOf, type Measures } from "../model/measures";
 import { mixedVector } from "../model/mixing";
 import type { Model, OwnWalker } from "../model/model";
-import { positionOf, type Position } from "../model/position";
 import { initialState, WALKER_PARTS, type State } from "../model/state";
 import type { Viewer } from "../viewer/viewer";
 import { axesOf, type Axis } from "./axis";
 
 /** The state at one moment, with the values that are computed from it once for all parts of the page. */
-export interface Now {
-  readonly model: Model;
-  readonly state: State;
+export interface Now extends Scene {
   readonly own: OwnWalker | null;
-  readonly figures: readonly SceneFigure[];
   readonly position: Position;
   readonly measures: Measures;
 }

@@ -1,14 +1,13 @@
-/** Sliders of the traits, the first one large below the viewer, and of the eigenwalkers; the direction of the traits. */
+/** Sliders of the traits, the first one large with the density of people, and of the eigenwalkers. */
 
-import { capitalised } from "../model/axisLabels";
+import { capitalised, classOf } from "../model/labels";
 import { partsOf } from "../model/mixing";
-import type { Kind } from "../model/model";
+import type { Kind, Model } from "../model/model";
 import { clamped, RANGES, type State } from "../model/state";
-import { make, signed } from "../page/elements";
+import { draw, make, signed } from "../page/elements";
 import { rangeOf, type Axis } from "./axis";
-import { densityPlot } from "./densityPlot";
-import { bound, group, note } from "./parts";
 import { choice, pick, slider, type Option, type Slider } from "./controls";
+import { bound, group, note } from "./parts";
 import type { Part, Store } from "./store";
 
 /** The walker has a mark of its own if it is at least this far from the thumb. */
@@ -106,7 +105,9 @@ const KINDS: readonly Option<Kind>[] = [
 
 /** The part of the features that traits change, and the kind of their direction. */
 export function classifierControls(store: Store): Part {
-  const options = partsOf(store.model).map((value): Option<string> => ({ value, ...(PARTS[value] ?? { label: capitalised(value) }) }));
+  const options = partsOf(store.model).map((value): Option<string> => {
+    return { value, ...(PARTS[value] ?? { label: capitalised(value) }) };
+  });
   const [common, rest] = [true, false].map((is) => options.filter(({ value }) => COMMON.includes(value) === is));
   const choose = (part: string): void => store.change({ part: part || "all" });
   const parts = choice("What the sliders may change", common!, choose);
@@ -124,4 +125,36 @@ export function classifierControls(store: Store): Part {
     ...(rest!.length > 0 ? [bound(single, ({ part }) => (COMMON.includes(part) ? "" : part))] : []),
     bound(kind, (state) => state.kind),
     bound({ element: about, show: describe }, (state) => state.kind));
+}
+
+/** Standard deviation of the kernel, in standard deviations of the trait. */
+const KERNEL_SD = 0.32;
+const N_PLACES = 121;
+const HEIGHT = 100;
+
+/** Curves over the range of the slider: one for each class of a trait of two classes, else one. */
+export function densityPlot(model: Model, { points, trait }: Axis): SVGSVGElement {
+  const kinds = trait?.two_classes ? (["negative", "positive"] as const) : (["all"] as const);
+  const curves = kinds.map((kind) =>
+    density(points.filter((_, i) => kind === "all" || classOf(model, model.cloud.walker[i]!) === kind)),
+  );
+  const highest = Math.max(...curves.flat(), Number.MIN_VALUE);
+  return draw(
+    "svg",
+    { viewBox: `0 0 ${N_PLACES - 1} ${HEIGHT}`, preserveAspectRatio: "none", "aria-hidden": "true" },
+    ...kinds.map((kind, i) => draw("path", { class: `density ${kind}`, d: outline(curves[i]!, highest) })),
+  );
+}
+
+function density(positions: readonly number[]): number[] {
+  const [low, high] = RANGES.trait;
+  return Array.from({ length: N_PLACES }, (_, i) => {
+    const place = low + ((high - low) * i) / (N_PLACES - 1);
+    return positions.reduce((sum, at) => sum + Math.exp(-(((place - at) / KERNEL_SD) ** 2) / 2), 0);
+  });
+}
+
+function outline(heights: readonly number[], highest: number): string {
+  const points = heights.map((height, i) => `${i} ${(HEIGHT * (1 - height / highest)).toFixed(1)}`);
+  return `M0 ${HEIGHT}L${points.join("L")}L${N_PLACES - 1} ${HEIGHT}Z`;
 }

@@ -12,7 +12,8 @@ import type { Part, Store } from "./store";
 export function viewControls(store: Store): Part {
   const flag = (label: string, name: "trails" | "perspective", hint: string): Part =>
     bound(toggle(label, (on) => store.change({ [name]: on }), hint), (state) => state[name]);
-  const angle = (label: string, name: "azimuth_deg" | "elevation_deg" | "turning_deg_s", step: number, unit = ""): Part => {
+  type Angle = "azimuth_deg" | "elevation_deg" | "turning_deg_s";
+  const angle = (label: string, name: Angle, step: number, unit = ""): Part => {
     const [min, max] = RANGES[name];
     const one = slider({
       label, min, max, step, initial: initialState(store.model)[name],
@@ -86,7 +87,12 @@ function transformControl(store: Store, name: TransformName): Part {
   };
 }
 
-function fieldControl(transform: string, label: string, field: Field, onChange: (value: unknown) => void): Control<unknown> {
+function fieldControl(
+  transform: string,
+  label: string,
+  field: Field,
+  onChange: (value: unknown) => void,
+): Control<unknown> {
   if ("choices" in field) {
     const options = field.choices.map((value) => ({ value, label: value.replaceAll("_", " ") }));
     const { element, show } = pick(label, options, onChange);

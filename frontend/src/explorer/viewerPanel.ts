@@ -1,13 +1,12 @@
 /** The viewer on the page: its keys, the names of several walkers, the caption, and playback. */
 
-import { plural } from "../model/axisLabels";
+import { plural, populationLabel } from "../model/labels";
 import { captionOf } from "../model/captions";
 import type { SceneFigure } from "../model/figures";
 import { clamped, RANGES, wrappedDegrees } from "../model/state";
 import { find, make, setAttributes } from "../page/elements";
 import type { Box } from "../viewer/arrangement";
 import { Viewer } from "../viewer/viewer";
-import { populationLabel } from "./about";
 import { playback } from "./playback";
 import type { Now, Store, View } from "./store";
 
@@ -49,7 +48,7 @@ export function viewerPanel(store: Store): View {
     show(now) {
       last = now;
       const { model, figures, state } = now;
-      viewer.show(model, figures, state);
+      viewer.show(now);
       tools.show(now);
       const name = state.scene === "one" && state.from !== "average" ? [figures[0]!.name] : [];
       people.textContent = [populationLabel(model), ...name].join(" \u00b7 ");

@@ -1,6 +1,6 @@
 /** The walker that the changes start from: the average, one of the population, or the visitor's own. */
 
-import { endLabels, walkerLabel } from "../model/axisLabels";
+import { endLabels, walkerLabel } from "../model/labels";
 import { MAX_IN_CROWD, type SceneName, type State } from "../model/state";
 import { button, make } from "../page/elements";
 import { choice, pick, type Option } from "./controls";

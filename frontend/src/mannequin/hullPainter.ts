@@ -1,7 +1,10 @@
 /** Painters of mannequins, and one that needs no WebGL: outlines of hulls, shaded across, the farther first. */
 
 import { hasLimbs, type MannequinPainter } from "../canvas/mannequinLoader";
-import { bodyHeights, HULL, Hulls, LIGHT, litColour, mannequinOf, type DrawHulls, type Mannequin, type RenderSettings } from "./hulls";
+import {
+  bodyHeights, HULL, Hulls, LIGHT, litColour, mannequinOf,
+  type DrawHulls, type Mannequin, type RenderSettings,
+} from "./hulls";
 
 /** A small painter that needs no WebGL; pages with a viewer include it. */
 export const flatPainter = (): MannequinPainter => makePainter(drawFlat);

@@ -72,10 +72,8 @@ export function mannequinOf({ dots, segments }: Body, heightMm: number): Mannequ
     );
   const named = pieces.map(({ from, to }) => new Set(Object.keys({ ...from, ...to })));
   const others = segments.filter((ends) => !named.some((dots) => ends.every((end) => dots.has(end))));
-  const rods = others.map(([from, to]): Piece => {
-    const radii = [shape.other_radius, shape.other_radius];
-    return { from: { [from]: 1 }, to: { [to]: 1 }, radii };
-  });
+  const radii = [shape.other_radius];
+  const rods = others.map(([from, to]): Piece => ({ from: { [from]: 1 }, to: { [to]: 1 }, radii }));
   return [...pieces, ...rods].map(({ from, to = from, radii, tone = 1 }) => {
     const ball = (weights: Piece["from"], radius: number): Ball => ({
       dots: Object.keys(weights).map((dot) => dots.indexOf(dot)),

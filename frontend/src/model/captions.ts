@@ -1,6 +1,6 @@
 /** The present picture in one sentence, for screen readers. */
 
-import { endLabels } from "./axisLabels";
+import { endLabels } from "./labels";
 import { AVERAGE, comparedTrait, nameOf } from "./figures";
 import { traitOf } from "./mixing";
 import type { Model, OwnWalker } from "./model";

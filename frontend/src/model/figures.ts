@@ -1,7 +1,7 @@
 /** The figures of each scene. */
 
 import type { Walker } from "../core/stimulus";
-import { endLabels } from "./axisLabels";
+import { endLabels } from "./labels";
 import { walkerOf } from "./features";
 import { mixedVector, traitOf } from "./mixing";
 import type { Model, Numbers, OwnWalker, Trait } from "./model";
@@ -14,6 +14,13 @@ export interface SceneFigure {
   readonly walker: Walker;
   /** Its number among the model's walkers, if it is one of them. */
   readonly known: number | null;
+}
+
+/** A state of a model, with the figures that it shows. */
+export interface Scene {
+  readonly model: Model;
+  readonly figures: readonly SceneFigure[];
+  readonly state: State;
 }
 
 /** The last figures of each model: turning a crowd does not make it anew. */

@@ -119,10 +119,10 @@ export const cloudSchema = (n: number, { eigenwalkers, walkers }: Checked<Return
 
 type Part<F extends (...values: never[]) => Schema> = Checked<ReturnType<F>>;
 
-export type Model = Checked<typeof HEAD> & Part<typeof bodySchema> & Part<typeof featureSchema> & Part<typeof cloudSchema> & {
-  /** Name of the captures that the server has just made into this population. */
-  readonly captures?: string;
-};
+type Content = Part<typeof bodySchema> & Part<typeof featureSchema> & Part<typeof cloudSchema>;
+
+/** `captures` names the captures that the server has just made into this population. */
+export type Model = Checked<typeof HEAD> & Content & { readonly captures?: string };
 export type Trait = Model["traits"][number];
 export type KnownWalker = Model["walkers"][number];
 

@@ -22,8 +22,10 @@ export const readModel = (content: unknown): Model =>
     return model;
   });
 
+type Body = Pick<Model, "markers" | "harmonics" | "form" | "layout">;
+
 /** Blocks p0, p1 ... of all coordinates, the frequency, and free phases, without gaps. */
-function checkLayout({ markers, harmonics, form, layout }: Pick<Model, "markers" | "harmonics" | "form" | "layout">): void {
+function checkLayout({ markers, harmonics, form, layout }: Body): void {
   const where = "model.layout";
   const sizes = new Map([["frequency", 1]]);
   if (form === "eigenposture") sizes.set("phases", harmonics.length - 1);

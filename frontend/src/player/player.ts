@@ -1,12 +1,11 @@
 /** The stand-alone page: plays the stimulus that it holds, again and again. */
 
-import { everyFrame } from "../canvas/frameClock";
+import { playLoop } from "../canvas/frameClock";
 import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
 import { painterOn, type Painter } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
-import type { Stimulus } from "../core/stimulus";
+import type { Step, Stimulus } from "../core/stimulus";
 import { find, make, messageOf } from "../page/elements";
-import { stimulusFacts } from "./stimulusFacts";
 
 const canvas = find("canvas", HTMLCanvasElement);
 const footer = find("footer", HTMLElement);
@@ -33,7 +32,8 @@ function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
   let stop = (): void => {};
   let painter: Painter;
 
-  const show = (): void => {
+  const show = (at = time): void => {
+    time = at;
     painter.paint(time);
     slider.value = String(time);
     now.value = `${time.toFixed(2)} s`;
@@ -42,18 +42,11 @@ function play(stimulus: Stimulus, mannequin?: MannequinPainter): void {
     stop();
     playing = on;
     button.textContent = playing ? "Pause" : "Play";
-    const from = time;
-    if (!playing) return;
-    stop = everyFrame((elapsedMs) => {
-      time = (from + elapsedMs / 1000) % duration_s;
-      show();
-      return true;
-    });
+    if (playing) stop = playLoop(time, duration_s, show);
   };
   const seek = (to: number): void => {
     setPlaying(false);
-    time = Math.min(Math.max(to, 0), duration_s);
-    show();
+    show(Math.min(Math.max(to, 0), duration_s));
   };
   const layOut = (): void => {
     const scale = scaleFor(stimulus);
@@ -114,3 +107,24 @@ function askForFile(): void {
 const content = find("#stimulus", HTMLScriptElement).textContent ?? "null";
 if (content.trim() === "null") askForFile();
 else void playText(content);
+
+export function stimulusFacts(stimulus: Stimulus, scale: number): [string, string][] {
+  const { display, timing, view, provenance, transforms } = stimulus;
+  const eye = view.eye_distance_mm === null ? "orthographic" : `eye at ${view.eye_distance_mm} mm`;
+  const size = `${display.width_px} x ${display.height_px} px`;
+  return [
+    ["shown", `${timing.duration_s} s, again and again`],
+    ["view", `${view.view_deg} degrees, elevation ${view.elevation_deg}, ${eye}`],
+    ["size", scale < 1 ? `${size}, here at ${Math.round(100 * scale)} %` : size],
+    ...transforms.map((step, i): [string, string] => [`transform ${i + 1}`, stepText(step)]),
+    ...Object.entries(provenance),
+  ];
+}
+
+/** A transform with its parameters, without the walker of a morph. */
+function stepText({ name, ...parameters }: Step): string {
+  const texts = Object.entries(parameters)
+    .filter(([parameter, value]) => parameter !== "walker" && value !== null)
+    .map(([parameter, value]) => `${parameter} ${Array.isArray(value) ? value.join(", ") : value}`);
+  return texts.length > 0 ? `${name}: ${texts.join("; ")}` : name;
+}

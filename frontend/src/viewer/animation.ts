@@ -5,8 +5,7 @@ import type { MannequinPainter } from "../canvas/mannequinLoader";
 import { drawDots, drawingOf, drawSticks, linksOf } from "../canvas/painter";
 import type { Step } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
-import type { SceneFigure } from "../model/figures";
-import type { Model } from "../model/model";
+import type { Scene } from "../model/figures";
 import type { State } from "../model/state";
 import type { Arrangement, Size } from "./arrangement";
 import { clear, drawGround, drawTrails, paletteOf, type Brush } from "./drawing";
@@ -17,10 +16,7 @@ import { WalkerBatch, type ViewPoint } from "./walkerBatch";
 /** Trails and the ground are drawn for at most this many walkers. */
 const MAX_WITH_TRAILS = 4;
 
-export interface AnimationSpec {
-  readonly model: Model;
-  readonly figures: readonly SceneFigure[];
-  readonly state: State;
+export interface AnimationSpec extends Scene {
   readonly size: Size;
   readonly arrangement: Arrangement;
   /** The phase of each walker at `time`, in strides. */
@@ -103,7 +99,7 @@ function chainAnimation(spec: AnimationSpec): ViewerAnimation {
   const starts = rates.map((rate, i) => spec.phases[i]! - rate * (spec.time + direction * end));
   const clocks: Step[] = starts.map((phase, i) => ({ name: "start", phase_deg: 360 * phase, figures: [i] }));
   const turn = spec.turned_deg - state.turning_deg_s * spec.time;
-  const stimulus = arrangedStimulus(model, figures, { ...state, style }, size, arrangement, clocks, turn);
+  const stimulus = arrangedStimulus({ ...spec, state: { ...state, style } }, size, arrangement, clocks, turn);
   const draw = drawingOf(stimulus, mannequin ?? undefined);
   const frameAt = framesOf(stimulus);
   const trails = state.trails && figures.length <= MAX_WITH_TRAILS && !("limb_dots" in state.transforms);

@@ -1,6 +1,8 @@
 /** Films made in the browser: H.264 in MP4, or another codec that the browser has. */
 
-import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat } from "mediabunny";
+import {
+  BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat,
+} from "mediabunny";
 import { contextOf } from "../canvas/painter";
 
 /** This browser cannot make the film; the message names an alternative. */
@@ -24,21 +26,13 @@ export interface Film {
   readonly suffix: "mp4" | "webm";
 }
 
-type Codec = "avc" | "vp9" | "vp8";
-interface Encoding {
-  readonly codec: Codec;
-  /** Its name in WebCodecs: H.264 high and baseline, VP9, VP8. */
-  readonly string: string;
-  readonly suffix: Film["suffix"];
-}
-
-/** In order of preference. */
-const ENCODINGS: readonly Encoding[] = [
-  { codec: "avc", string: "avc1.640033", suffix: "mp4" },
-  { codec: "avc", string: "avc1.42003e", suffix: "mp4" },
-  { codec: "vp9", string: "vp09.00.51.08", suffix: "webm" },
-  { codec: "vp8", string: "vp8", suffix: "webm" },
-];
+/** Codec, its name in WebCodecs, and container, in order of preference: H.264 high and baseline, VP9, VP8. */
+const ENCODINGS = [
+  ["avc", "avc1.640033", "mp4"],
+  ["avc", "avc1.42003e", "mp4"],
+  ["vp9", "vp09.00.51.08", "webm"],
+  ["vp8", "vp8", "webm"],
+] as const;
 /** Enough for dots with sharp edges. */
 const BITS_PER_PIXEL = 0.2;
 const KEY_FRAME_S = 1;
@@ -47,42 +41,40 @@ const MAX_QUEUE = 8;
 
 /** Make a film, frame by frame. */
 export async function encodeFilm(spec: FilmSpec): Promise<Film> {
-  const { encoding, config } = await chooseEncoding(spec);
+  const { codec, suffix, config } = await chooseEncoding(spec);
   const output = new Output({
-    format: encoding.suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
+    format: suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
     target: new BufferTarget(),
   });
-  const source = new EncodedVideoPacketSource(encoding.codec);
+  const source = new EncodedVideoPacketSource(codec);
   output.addVideoTrack(source, { frameRate: spec.rateHz });
   await output.start();
   await encodeFrames(spec, config, source);
   await output.finalize();
-  const { buffer } = output.target;
-  if (!buffer) throw new FilmError("The film came out empty.");
-  return { blob: new Blob([buffer], { type: `video/${encoding.suffix}` }), suffix: encoding.suffix };
+  return { blob: new Blob([output.target.buffer!], { type: `video/${suffix}` }), suffix };
 }
 
 /** The first encoding that this browser supports. */
-async function chooseEncoding({ width, height, rateHz }: FilmSpec): Promise<{ encoding: Encoding; config: VideoEncoderConfig }> {
+async function chooseEncoding({ width, height, rateHz }: FilmSpec) {
   if (typeof VideoEncoder === "undefined") {
     throw new FilmError("This browser encodes no films; eigenwalker serve makes them, and so does eigenwalker stimulus of a saved stimulus file.");
   }
-  for (const encoding of ENCODINGS) {
+  const bitrate = Math.round(width * height * rateHz * BITS_PER_PIXEL);
+  for (const [codec, name, suffix] of ENCODINGS) {
     const config: VideoEncoderConfig = {
-      codec: encoding.string,
-      width,
-      height,
-      framerate: rateHz,
-      bitrate: Math.round(width * height * rateHz * BITS_PER_PIXEL),
-      latencyMode: "quality",
+      codec: name, width, height, framerate: rateHz, bitrate, latencyMode: "quality",
     };
     const support = await VideoEncoder.isConfigSupported(config).catch(() => null);
-    if (support?.supported) return { encoding, config };
+    if (support?.supported) return { codec, suffix, config };
   }
   throw new FilmError(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
 }
 
-async function encodeFrames(spec: FilmSpec, config: VideoEncoderConfig, source: EncodedVideoPacketSource): Promise<void> {
+async function encodeFrames(
+  spec: FilmSpec,
+  config: VideoEncoderConfig,
+  source: EncodedVideoPacketSource,
+): Promise<void> {
   const { width, height, frames, rateHz, progress, signal } = spec;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width, height });

@@ -4,19 +4,14 @@ import type { MannequinPainter } from "../canvas/mannequinLoader";
 import { contextOf, setResolution } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
 import type { Stimulus } from "../core/stimulus";
-import type { SceneFigure } from "../model/figures";
-import type { Model } from "../model/model";
-import type { State } from "../model/state";
+import type { Scene } from "../model/figures";
 import { animationOf, phaseOffset, type ViewerAnimation } from "./animation";
-import { arrange, type Size } from "./arrangement";
+import type { Size } from "./arrangement";
 import { encodeFilm, type FilmSpec } from "./filmEncoder";
-import { DURATION_S, extentFor, MAX_FIGURES, stimulusOf } from "./viewedStimulus";
+import { arrangementFor, DURATION_S, MAX_FIGURES, stimulusOf } from "./viewedStimulus";
 
 /** The picture to save. */
-export interface Snapshot {
-  readonly model: Model;
-  readonly figures: readonly SceneFigure[];
-  readonly state: State;
+export interface Snapshot extends Scene {
   /** Phase of the first walker, for pictures. */
   readonly phase?: number;
   readonly size?: Size;
@@ -42,7 +37,7 @@ const sizeOf = ({ size, figures }: Snapshot): Size => size ?? (figures.length ==
 
 /** The stimulus, checked against its schema: files that are written can be read. */
 const checkedStimulus = (snapshot: Snapshot): Stimulus =>
-  readStimulus(stimulusOf(snapshot.model, snapshot.figures, snapshot.state, sizeOf(snapshot)));
+  readStimulus(stimulusOf(snapshot, sizeOf(snapshot)));
 
 /** The stimulus file, which Python's `Stimulus.load` reads. */
 export function stimulusFile(snapshot: Snapshot): SavedFile {
@@ -115,11 +110,11 @@ function durationOf({ figures, state }: Snapshot): number {
 
 /** The animation from its beginning, as in the viewer. */
 function animationFor(snapshot: Snapshot): ViewerAnimation {
-  const { model, figures, state, phase = 0, mannequin = null } = snapshot;
+  const { figures, state, phase = 0, mannequin = null } = snapshot;
   const size = sizeOf(snapshot);
-  const arrangement = arrange(figures.length, extentFor(model, figures), size, state.elevation_deg);
   const phases = figures.map((_, i) => phase + phaseOffset(state, i));
-  return animationOf({ model, figures, state, size, arrangement, phases, time: 0, turned_deg: 0, mannequin });
+  const arrangement = arrangementFor(snapshot, size);
+  return animationOf({ ...snapshot, size, arrangement, phases, time: 0, turned_deg: 0, mannequin });
 }
 
 /** JSON with one figure and one transform a line, as Python writes it. */
@@ -135,7 +130,7 @@ function jsonOf(stimulus: Stimulus): string {
 
 /** A descriptive name that is valid on every disk: `average-walker_sex+3`. */
 function fileName({ figures, state }: Snapshot): string {
-  const who = state.scene === "one" ? figures[0]!.name : { four: "four", side: "side-by-side", crowd: "crowd" }[state.scene];
+  const who = { one: figures[0]!.name, four: "four", side: "side-by-side", crowd: "crowd" }[state.scene];
   const traits = Object.entries(state.traits).flatMap(([name, steps]) =>
     steps === 0 ? [] : [`${name}${steps > 0 ? "+" : ""}${Math.round(steps * 100) / 100}`],
   );

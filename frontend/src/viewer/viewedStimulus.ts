@@ -3,7 +3,7 @@
 import type { Figure, Step, Stimulus } from "../core/stimulus";
 import { observerAxes, type Vector } from "../core/vector";
 import { walkerOf } from "../model/features";
-import type { SceneFigure } from "../model/figures";
+import type { Scene, SceneFigure } from "../model/figures";
 import type { Model } from "../model/model";
 import type { State } from "../model/state";
 import { arrange, centreOf, sharedExtent, type Arrangement, type Extent, type Size } from "./arrangement";
@@ -18,19 +18,16 @@ const RATE_HZ = 60;
 const DEFAULT_SIZE: Size = { width_px: 640, height_px: 640 };
 
 /** The present picture as a stimulus that Python's `Stimulus.from_json` reads. */
-export function stimulusOf(
-  model: Model,
-  figures: readonly SceneFigure[],
-  state: State,
-  size: Size = DEFAULT_SIZE,
-): Stimulus {
-  const some = figures.slice(0, MAX_FIGURES);
-  const arrangement = arrange(some.length, extentFor(model, some), size, state.elevation_deg);
-  return arrangedStimulus(model, some, state, size, arrangement);
+export function stimulusOf(scene: Scene, size: Size = DEFAULT_SIZE): Stimulus {
+  const some = { ...scene, figures: scene.figures.slice(0, MAX_FIGURES) };
+  return arrangedStimulus(some, size, arrangementFor(some, size));
 }
 
+export const arrangementFor = (scene: Scene, size: Size): Arrangement =>
+  arrange(scene.figures.length, extentFor(scene), size, scene.state.elevation_deg);
+
 /** The space for each of some figures. */
-export const extentFor = (model: Model, figures: readonly SceneFigure[]): Extent =>
+export const extentFor = ({ model, figures }: Scene): Extent =>
   sharedExtent(walkerOf(model, model.average), figures.map(({ walker }) => walker));
 
 /**
@@ -39,9 +36,7 @@ export const extentFor = (model: Model, figures: readonly SceneFigure[]): Extent
  * Its chain begins with the steps `first`; a figure that turns by itself starts from the angle `turn_deg`.
  */
 export function arrangedStimulus(
-  model: Model,
-  figures: readonly SceneFigure[],
-  state: State,
+  { model, figures, state }: Scene,
   size: Size,
   arrangement: Arrangement,
   first: readonly Step[] = [],

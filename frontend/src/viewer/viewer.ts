@@ -4,14 +4,12 @@ import { everyFrame } from "../canvas/frameClock";
 import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
 import { contextOf, setResolution } from "../canvas/painter";
 import { flatPainter } from "../mannequin/hullPainter";
-import type { SceneFigure } from "../model/figures";
-import type { Model } from "../model/model";
+import type { Scene, SceneFigure } from "../model/figures";
 import { clamped, RANGES, wrappedDegrees, type State } from "../model/state";
 import { animationOf, phaseOffset, type ViewerAnimation } from "./animation";
 import { arrange, type Arrangement, type Box, type Extent, type Size } from "./arrangement";
-import { watchGestures } from "./dragging";
+import { watchGestures, watchSize, watchVisibility } from "./canvasEvents";
 import { extentFor } from "./viewedStimulus";
-import { watchSize, watchVisibility } from "./visibility";
 
 export interface ViewerEvents {
   /** It was turned by dragging. */
@@ -33,20 +31,16 @@ export interface ViewerEvents {
 
 type View = Pick<State, "azimuth_deg" | "elevation_deg">;
 
-interface Shown {
-  readonly model: Model;
-  readonly figures: readonly SceneFigure[];
-  readonly state: State;
-}
-
-/** What the animation was made of, and when. */
-interface Built extends Shown {
+/** The scene of the animation, and its time. */
+interface Built extends Scene {
   readonly time: number;
   readonly turned_deg: number;
 }
 
 /** Parts of the state that need a new animation, beside the figures. */
-const ANIMATED_PARTS = ["perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms"] as const;
+const ANIMATED_PARTS = [
+  "perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms",
+] as const;
 
 const DEGREES_PER_PX = 0.5;
 const TICK_S = 0.06;
@@ -57,7 +51,7 @@ const SLOWING_S = 0.28;
 const MIN_SPEED_DEG_S = 4;
 const NO_THROW = { right: 0, down: 0 };
 
-const sameAnimation = (one: Shown, other: Shown): boolean =>
+const sameAnimation = (one: Scene, other: Scene): boolean =>
   one.model === other.model &&
   one.figures === other.figures &&
   ANIMATED_PARTS.every((part) => one.state[part] === other.state[part]);
@@ -75,7 +69,7 @@ export class Viewer {
   readonly #context: CanvasRenderingContext2D;
   readonly #events: ViewerEvents;
   readonly #ending = new AbortController();
-  #shown: Shown | null = null;
+  #shown: Scene | null = null;
   #animation: ViewerAnimation | null = null;
   #built: Built | null = null;
   #boxes: readonly Box[] = [];
@@ -114,9 +108,10 @@ export class Viewer {
   }
 
   /** Show figures from the next frame on; strides continue. */
-  show(model: Model, figures: readonly SceneFigure[], state: State): void {
+  show(scene: Scene): void {
     const before = this.#shown;
-    this.#shown = { model, figures, state };
+    const { state } = scene;
+    this.#shown = scene;
     if (this.#hand && !sameView(this.#hand, state)) this.#throw = NO_THROW;
     this.#hand = null;
     if (state.style === "mannequin") this.#loadMannequin();
@@ -152,14 +147,16 @@ export class Viewer {
     const arrangement = this.#arrange(shown, state.elevation_deg);
     const phases = shown.figures.map((_, i) => strides + this.#phaseOf(i, shown.state));
     const [time, turned_deg] = [this.#time, this.#turnedBy(this.#time)];
-    this.#built = { ...shown, state, time, turned_deg };
-    this.#animation = animationOf({ ...this.#built, size: this.#size, arrangement, phases, mannequin: this.#mannequin });
+    const [{ model, figures }, size, mannequin] = [shown, this.#size, this.#mannequin];
+    this.#built = { model, figures, state, time, turned_deg };
+    this.#animation = animationOf({ ...this.#built, size, arrangement, phases, mannequin });
     this.#wake();
   }
 
   /** Arrange the figures, and report their cells. */
-  #arrange({ model, figures }: Shown, elevationDeg: number): Arrangement {
-    if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(model, figures) };
+  #arrange(scene: Scene, elevationDeg: number): Arrangement {
+    const { figures } = scene;
+    if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(scene) };
     const arrangement = arrange(figures.length, this.#extent.extent, this.#size, elevationDeg);
     this.#boxes = arrangement.boxes;
     this.#events.arranged?.(this.#boxes);

@@ -1,16 +1,16 @@
 /** A walker in a notebook, for anywidget: shows the values that Python sets, and sends changes by hand back. */
 
-import { everyFrame } from "../canvas/frameClock";
+import { playLoop } from "../canvas/frameClock";
 import { mannequinFrom, type MannequinPainter } from "../canvas/mannequinLoader";
 import { painterOn } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
 import { figuresOf } from "../model/figures";
-import type { Model, OwnWalker } from "../model/model";
+import { endLabels } from "../model/labels";
+import type { Model, OwnWalker, Trait } from "../model/model";
 import { readModel } from "../model/readModel";
-import { initialState, type State } from "../model/state";
-import { button, make, messageOf } from "../page/elements";
+import { initialState, RANGES, type State } from "../model/state";
+import { button, make, messageOf, signed } from "../page/elements";
 import { Viewer } from "../viewer/viewer";
-import { controlsOf } from "./traitControls";
 import style from "./widget.css?inline";
 
 /** The values that Python and the page share, from anywidget. */
@@ -60,13 +60,11 @@ function showStimulus(shared: SharedModel, box: HTMLElement): () => void {
     stop();
     const playing = Boolean(shared.get("playing"));
     play.textContent = playing ? "Pause" : "Play";
-    const from = time;
     painter.paint(time);
     if (!playing) return;
-    stop = everyFrame((elapsedMs) => {
-      time = (from + elapsedMs / 1000) % stimulus.timing.duration_s;
+    stop = playLoop(time, stimulus.timing.duration_s, (now) => {
+      time = now;
       painter.paint(time);
-      return true;
     });
   };
   shared.on("change:playing", show);
@@ -100,7 +98,7 @@ function showWalker(shared: SharedModel, box: HTMLElement): () => void {
     const state = stateOf(shared, model);
     box.classList.toggle("light", !state.dark);
     canvas.setAttribute("aria-label", `${model.title}, seen from ${Math.round(state.azimuth_deg)} degrees`);
-    viewer.show(model, figuresOf(model, state, ownWalker(shared)), state);
+    viewer.show({ model, state, figures: figuresOf(model, state, ownWalker(shared)) });
     controls?.show(state);
   };
   // Values that change together are shown together.
@@ -175,3 +173,55 @@ function requestMannequin(shared: SharedModel): Promise<MannequinPainter> {
 }
 
 export default { render };
+
+export interface Controls {
+  readonly element: HTMLElement;
+  show(state: State): void;
+}
+
+type Change = (part: Record<string, unknown>) => void;
+
+const MAX_SLIDERS = 8;
+
+export function controlsOf(model: Model, change: Change): Controls {
+  let shown: State | null = null;
+  const sliders = model.traits.slice(0, MAX_SLIDERS).map((trait) =>
+    traitSlider(trait, (alpha) => change({ alpha: { ...shown?.traits, [trait.name]: alpha } })),
+  );
+  const play = button("Pause", () => change({ playing: !shown?.playing }));
+  const back = button("Back to average", () =>
+    change({ alpha: {}, bias: null, strengths: [], eigenwalkers: [], start: "average" }),
+  );
+  const bar = make("div", { class: "bar" }, play, ...(model.traits.length > 0 ? [back] : []));
+  return {
+    element: make("div", { class: "controls" }, ...sliders.map(({ element }) => element), bar),
+    show(state) {
+      shown = state;
+      play.textContent = state.playing ? "Pause" : "Play";
+      for (const slider of sliders) slider.show(state);
+    },
+  };
+}
+
+/** From one end of a trait to the other; a double click sets it to 0. */
+function traitSlider(trait: Trait, onInput: (alpha: number) => void): Controls {
+  const { name } = trait;
+  const [left, right] = endLabels(trait);
+  const [min, max] = RANGES.trait;
+  const label = `${name}: from ${left} to ${right}`;
+  const input = make("input", { type: "range", min, max, step: 0.1, value: 0, "aria-label": label });
+  const number = make("output");
+  input.addEventListener("input", () => onInput(Number(input.value)));
+  input.addEventListener("dblclick", () => onInput(0));
+  return {
+    element: make("label", {}, make("span", {}, left), input, make("span", {}, right), number),
+    show({ traits }) {
+      const alpha = traits[name] ?? 0;
+      if (Number(input.value) !== alpha) input.value = String(alpha);
+      input.style.setProperty("--now", String((Number(input.value) - min) / (max - min)));
+      input.classList.toggle("below", alpha < 0);
+      number.textContent = signed(alpha);
+      input.setAttribute("aria-valuetext", `${number.textContent} standard deviations`);
+    },
+  };
+}

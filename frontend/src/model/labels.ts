@@ -1,4 +1,4 @@
-/** Names of traits, of their two ends and of walkers, as users read them. */
+/** Names of traits, of their two ends, of walkers and of populations, as users read them. */
 
 import type { KnownWalker, Model, Trait } from "./model";
 
@@ -43,4 +43,21 @@ export function classOf(model: Model, walker: number): "negative" | "positive" |
   const trait = mainTrait(model);
   const value = trait?.two_classes ? String(model.walkers[walker]?.traits[trait.column]) : null;
   return value === trait?.negative ? "negative" : value === trait?.positive ? "positive" : "";
+}
+
+/** Populations below this number are small. */
+const FEW = 10;
+
+/** One line: the number of walkers, whether they are simulated, and their file. */
+export function populationLabel({ n_walkers, simulated, source, captures }: Model): string {
+  const people = `${n_walkers} ${simulated ? "simulated " : ""}${n_walkers === 1 ? "walker" : "walkers"}`;
+  const from = captures ?? source;
+  return from ? `${people} of ${from}` : people;
+}
+
+/** Warnings about a population that is small, or that has no traits. */
+export function warnings({ n_walkers, traits }: Model): string[] {
+  const few = `${n_walkers} walkers are few: sliders push what sets just these apart, and say little of others.`;
+  const blank = "No trait tells these walkers apart, for want of a table of traits or of walkers: the large slider is what varies most among them.";
+  return [...(n_walkers < FEW ? [few] : []), ...(traits.length === 0 ? [blank] : [])];
 }
