@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 from math import comb
-from typing import Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
 
-from eigenwalker.analysis._task import Task, class_task, number_task
 from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.jackknife import (
     JackknifeCurves,
@@ -22,8 +21,8 @@ from eigenwalker.analysis.jackknife import (
 from eigenwalker.analysis.validation import (
     NestedPredictions,
     RandomState,
-    nested_predictions,
-    permutation_test_of,
+    nested_leave_one_out,
+    permutation_test,
 )
 from eigenwalker.core.progress import Progress
 from eigenwalker.population.features import NAMED_PARTS
@@ -262,9 +261,8 @@ def classify(
             f"instance {contrast.trait}=1:2."
         )
     results = _results(
-        class_task, jackknife_curves,
-        population, contrast, inputs, n_permutations, random_state, progress,
-    )  # fmt: skip
+        jackknife_curves, population, contrast, inputs, n_permutations, random_state, progress
+    )
     return Classification(contrast, results, n_permutations)
 
 
@@ -291,7 +289,7 @@ def regress(
     Raises
     ------
     ValueError
-        As `trait_contrast`.
+        If the trait has two classes, or as `trait_contrast`.
 
     See Also
     --------
@@ -311,15 +309,15 @@ def regress(
 
     """
     contrast = trait_contrast(population, trait)
+    if contrast.two_classes:
+        raise ValueError(f"{contrast.trait} has two classes, not a range of values; classify it.")
     results = _results(
-        number_task, regression_curves,
-        population, contrast, inputs, n_permutations, random_state, progress,
-    )  # fmt: skip
+        regression_curves, population, contrast, inputs, n_permutations, random_state, progress
+    )
     return Regression(contrast, results, n_permutations)
 
 
 def _results(
-    task_of: Callable[..., Task],
     curves_of: Callable[..., _Curves],
     population: Population,
     contrast: Contrast,
@@ -328,16 +326,21 @@ def _results(
     random_state: RandomState,
     progress: Progress | None,
 ) -> tuple[InputResult[_Curves], ...]:
-    tables, y, groups = _tables(population, contrast, inputs), contrast.y, contrast.persons
-    progress = _one_count(contrast, len(tables), progress)
-    results: list[InputResult[_Curves]] = []
-    for each, X in tables.items():
-        curves = curves_of(X, y, groups=groups, progress=progress)
-        nested = nested_predictions(task_of(X, y, groups, least_folds=4), progress=progress)
-        task = task_of(X, y, groups)
-        test = permutation_test_of(task, n_permutations, random_state, groups, progress=progress)
-        results.append(InputResult(each, curves, nested, test.p))
-    return tuple(results)
+    tables, y = _tables(population, contrast, inputs), contrast.y
+    folds: dict[str, Any] = {
+        "groups": contrast.persons,
+        "progress": _one_count(contrast, len(tables), progress),
+    }
+    permutations: dict[str, Any] = {"n_permutations": n_permutations, "random_state": random_state}
+    return tuple(
+        InputResult(
+            each,
+            curves_of(X, y, **folds),
+            nested_leave_one_out(X, y, **folds),
+            permutation_test(X, y, **permutations, **folds).p,
+        )
+        for each, X in tables.items()
+    )
 
 
 def _tables(

@@ -96,13 +96,11 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
             "population.without_flags(), or --with-flagged on the command line."
         )
     known = values.notna() & (_as_text(values) != "") & ~population.flagged
-    if pair:
-        negative, positive = _two_poles(pair, column, values[known])
-        known &= _as_text(values).isin([negative, positive])
-    elif _is_continuous(values[known]):
+    if not pair and pd.api.types.is_numeric_dtype(values) and values[known].nunique() > 2:
         return _continuous(population, column, np.flatnonzero(known))
-    else:
-        negative, positive = _both_values(column, values[known])
+    negative, positive = _poles(column, pair, values[known])
+    if pair:
+        known &= _as_text(values).isin([negative, positive])
     rows = np.flatnonzero(known)
     y = np.where(_as_text(values.iloc[rows]) == positive, 1.0, -1.0)
     return Contrast(column, rows, y, negative, positive, True, _persons(population, rows))
@@ -113,11 +111,6 @@ def _as_text(values: pd.Series) -> pd.Series:
     if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):
         return values.fillna("").astype(str)
     return values.map(lambda value: "" if pd.isna(value) else f"{value:.15g}")
-
-
-def _sorted(values: pd.Series) -> list[str]:
-    """Each value once, as text; numbers in the order of numbers."""
-    return _as_text(values.drop_duplicates().sort_values()).tolist()
 
 
 def trait_column(traits: pd.DataFrame, name: str) -> str:
@@ -131,41 +124,30 @@ def trait_column(traits: pd.DataFrame, name: str) -> str:
     raise ValueError(f"There is no trait {name!r}; the population has {columns}.")
 
 
-def _two_poles(pair: str, column: str, values: pd.Series) -> tuple[str, str]:
-    known = _sorted(values)
-    negative, positive = _split(pair, known)
-    if negative == positive or not {negative, positive} <= set(known):
-        raise ValueError(
-            f"{pair!r} does not name two values of {column}; it has {known}. "
-            f"Write, for instance, {column}={known[0]}:{known[-1]}."
-        )
-    return negative, positive
-
-
-def _split(pair: str, known: list[str]) -> tuple[str, str]:
-    """The two values of ``negative:positive``, which may themselves hold a colon."""
-    parts = pair.split(":")
-    splits = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
-    return next((each for each in splits if set(each) <= set(known)), (pair, pair))
-
-
-def _both_values(column: str, values: pd.Series) -> tuple[str, str]:
-    known = _sorted(values)
-    if len(known) == 2:
-        return known[0], known[1]
+def _poles(column: str, pair: str, values: pd.Series) -> tuple[str, str]:
+    """The negative and the positive value: those of ``negative:positive``, or the only two."""
+    known = _as_text(values.drop_duplicates().sort_values()).tolist()
+    if pair:
+        parts = pair.split(":")  # values may themselves hold a colon
+        splits = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
+        poles = next((each for each in splits if set(each) <= set(known)), ("", ""))
+        if poles[0] == poles[1]:
+            raise ValueError(
+                f"{pair!r} does not name two values of {column}; it has {known}. "
+                f"Write, for instance, {column}={known[0]}:{known[-1]}."
+            )
+        return poles
     if len(known) < 2:
         raise ValueError(
             f"The trait {column} is the same, {known}, for all walkers that may be used, so there "
             "is nothing to tell apart."
         )
-    raise ValueError(
-        f"The trait {column} has {len(known)} values, {known}; choose two, for instance "
-        f"{column}={known[0]}:{known[1]}."
-    )
-
-
-def _is_continuous(values: pd.Series) -> bool:
-    return pd.api.types.is_numeric_dtype(values) and values.nunique() > 2
+    if len(known) > 2:
+        raise ValueError(
+            f"The trait {column} has {len(known)} values, {known}; choose two, for instance "
+            f"{column}={known[0]}:{known[1]}."
+        )
+    return known[0], known[1]
 
 
 def _continuous(population: Population, column: str, rows: np.ndarray) -> Contrast:

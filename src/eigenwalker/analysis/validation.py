@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.metrics import r2_score, root_mean_squared_error
 
-from eigenwalker.analysis._task import Task, rows_of_groups, task_of
+from eigenwalker.analysis._task import rows_of_groups, task_of
 from eigenwalker.analysis.discriminant import Order
 from eigenwalker.analysis.jackknife import correlation
 from eigenwalker.analysis.walker_space import Scale
@@ -115,17 +115,6 @@ def nested_leave_one_out(
 
     """
     task = task_of(X, y, groups, least_folds=4)
-    return nested_predictions(task, scale, order, scale_in_fold, progress)
-
-
-def nested_predictions(
-    task: Task,
-    scale: Scale = "sd",
-    order: Order = "standardised",
-    scale_in_fold: bool = True,
-    progress: Progress | None = None,
-) -> NestedPredictions:
-    """Return what `nested_leave_one_out` does, for a task."""
     folds = task.folds
     pairs = list(combinations(range(len(folds)), 2))
     both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
@@ -218,21 +207,7 @@ def permutation_test(
     True
 
     """
-    R = (n_permutations, random_state, groups)
-    return permutation_test_of(task_of(X, y, groups), *R, scale, order, scale_in_fold, progress)
-
-
-def permutation_test_of(
-    task: Task,
-    n_permutations: int,
-    random_state: RandomState,
-    groups: ArrayLike | None,
-    scale: Scale = "sd",
-    order: Order = "standardised",
-    scale_in_fold: bool = True,
-    progress: Progress | None = None,
-) -> PermutationTest:
-    """Return what `permutation_test` does, for a task."""
+    task = task_of(X, y, groups)
     R = _permuted_labels(task.r, groups, n_permutations, random_state)
     with one_blas_thread():
         svd = task.leave_out_svd(R, scale, scale_in_fold)
