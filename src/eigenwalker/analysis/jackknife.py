@@ -48,10 +48,6 @@ class JackknifeCurves(_Curves):
     held_out : array of shape (walker, component)
         The same for each walker left out, by a discriminant trained on the others.
 
-    See Also
-    --------
-    jackknife_curves : Makes them.
-
     References
     ----------
     Troje (2002), fig. 4.
@@ -111,10 +107,6 @@ class RegressionCurves(_Curves):
         Prediction by 1, 2, ... components, for the walkers trained on.
     held_out : array of shape (walker, component)
         The same for each walker left out, by a discriminant trained on the others.
-
-    See Also
-    --------
-    regression_curves : Makes them.
 
     """
 

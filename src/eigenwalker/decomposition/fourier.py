@@ -42,11 +42,6 @@ def decompose_fourier(
     Walker
         In the Fourier form; ``walker.fit`` says how well it explains the walk.
 
-    Raises
-    ------
-    ValueError
-        As `decompose_pca`.
-
     See Also
     --------
     decompose_pca : The same sum with free phases.

@@ -131,7 +131,7 @@ class FeatureLayout:
         wrapped = wrap_phase(free)
         return np.concatenate([walker.p0.ravel(), walker.p.ravel(), [walker.frequency_hz], wrapped])
 
-    def walker(self, vector: np.ndarray, *, speed_mm_s: float = float("nan")) -> Walker:
+    def walker(self, vector: np.ndarray) -> Walker:
         """Return the walker that a feature vector describes."""
         vector = np.asarray(vector, dtype=float)
         if vector.shape != (len(self),):
@@ -151,7 +151,6 @@ class FeatureLayout:
             phases=np.array(phases),
             frequency_hz=vector[self.blocks["frequency"]].item(),
             form=self.form,
-            speed_mm_s=speed_mm_s,
         )
 
 
