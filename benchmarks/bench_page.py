@@ -19,8 +19,7 @@ from playwright.sync_api import CDPSession, Page, sync_playwright
 from side_by_side import machine
 
 import eigenwalker as ew
-from eigenwalker.explorer.interactive_page import interactive_page
-from eigenwalker.explorer.model import page_model
+from eigenwalker.explorer import interactive_page, page_model
 
 SECONDS = 5.0
 SCENES = {

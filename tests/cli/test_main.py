@@ -14,11 +14,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.io.write import write_mocap
-from eigenwalker.population.population import Population
-from eigenwalker.simulation.overground import Route
-from eigenwalker.simulation.people import simulate_captures, simulate_population
-from eigenwalker.simulation.walk import simulate_walk
+from eigenwalker.io import write_mocap
+from eigenwalker.population import Population
+from eigenwalker.simulation import Route, simulate_captures, simulate_population, simulate_walk
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ import typer
 from eigenwalker.cli import options
 from eigenwalker.cli.main import COMMANDS, app
 from eigenwalker.cli.options import EXIT_FAILED, parse_trait_steps, progress_bar
+from eigenwalker.simulation import simulate_population
 
 
 @pytest.mark.parametrize("text", ["sex", "sex=", "sex=much", "sex=nan", "sex=inf", "=3", ""])
@@ -32,8 +33,6 @@ TAKE_A_TRAIT = {
 @pytest.mark.parametrize("command", TAKE_A_TRAIT)
 def test_every_trait_that_is_not_there_is_named(command, run_command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    from eigenwalker.simulation.people import simulate_population
-
     simulate_population(2, 2, seed=1).save("people.nc")
     code, _, errors = run_command(command, *TAKE_A_TRAIT[command])
     assert (code, "'beauty'" in errors) == (EXIT_FAILED, True)

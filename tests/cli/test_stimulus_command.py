@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus import Stimulus
 
 
 @pytest.fixture

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.walker import Walker
+from eigenwalker.core import JOINTS, Walker
 from eigenwalker.datasets.bml import POSITIVE_POLES, BmlModel, read_bml_axes
+from eigenwalker.gait import gait_parameters
 from eigenwalker.gait.heading import stance_speed
-from eigenwalker.gait.parameters import gait_parameters
-from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io import UnreadableFile
 
 POINTS = [
     *("head", "sternum"),

@@ -18,8 +18,7 @@ import pytest
 from eigenwalker.cli.options import EXIT_FAILED
 from eigenwalker.datasets import downloads
 from eigenwalker.datasets.downloads import Collection, PublishedFile, collections, fetch_captures
-from eigenwalker.io.read import read_mocap
-from eigenwalker.io.up_axis_and_unit import UnitGuessed
+from eigenwalker.io import UnitGuessed, read_mocap
 
 WALKS = {"walk 1.c3d": b"one walk" * 1000, "walk_2.c3d": b"another", "LICENSE": b"Be kind."}
 COMMIT = "0" * 40

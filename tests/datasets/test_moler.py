@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.walker import Walker
-from eigenwalker.datasets.built_in import load_population
-from eigenwalker.datasets.moler import read_mm, read_walkers_mat
+from eigenwalker.core import JOINTS, Walker
+from eigenwalker.datasets import load_population, read_mm, read_walkers_mat
 from eigenwalker.decomposition import decompose_fourier
-from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.walker_tables import walker_to_mm
+from eigenwalker.io import UnreadableFile, walker_to_mm
 
 MOLERS_POINTS = [
     *("head", "right_wrist", "right_elbow", "right_shoulder"),

@@ -23,7 +23,7 @@ from fastapi import FastAPI
 import eigenwalker as ew
 from eigenwalker.explorer import app as explorer_app, tasks
 from eigenwalker.explorer.app import make_app
-from eigenwalker.simulation.people import simulate_population
+from eigenwalker.simulation import simulate_population
 from eigenwalker.study.process_capture import process_capture
 from eigenwalker.web import upload
 from eigenwalker.web.host_check import HEADERS

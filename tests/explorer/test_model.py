@@ -15,9 +15,8 @@ import pytest
 from hypothesis import given, strategies as st
 
 import eigenwalker as ew
-from eigenwalker.explorer.interactive_page import interactive_page
+from eigenwalker.explorer import interactive_page, page_model
 from eigenwalker.explorer.mixing import mixed_vector, mixed_walker, model_layout
-from eigenwalker.explorer.model import page_model
 from eigenwalker.population.population import FLAG, Population
 
 GOLDEN = Path(__file__).parents[1] / "golden"

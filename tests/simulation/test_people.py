@@ -4,18 +4,27 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from eigenwalker.analysis.jackknife import jackknife_curves
-from eigenwalker.datasets.built_in import load_population
+from eigenwalker.analysis import jackknife_curves
+from eigenwalker.datasets import load_population
 from eigenwalker.decomposition import decompose_pca
-from eigenwalker.gait.in_place import in_place
-from eigenwalker.io.read import read_mocap
-from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.simulation.people import simulate_captures, simulate_population, write_captures
-from eigenwalker.simulation.person import PARAMETERS
-from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect, random_effect
-from eigenwalker.simulation.trait_effects import EFFECTS, TRAITS, draw_people
-from eigenwalker.simulation.truth import true_direction, truth_of
-from eigenwalker.simulation.walk import simulate_walk
+from eigenwalker.gait import in_place
+from eigenwalker.io import read_mocap
+from eigenwalker.markers import virtual_markers
+from eigenwalker.simulation import (
+    EFFECTS,
+    PARAMETERS,
+    TRAITS,
+    PlantedEffect,
+    add_effect,
+    draw_people,
+    random_effect,
+    simulate_captures,
+    simulate_population,
+    simulate_walk,
+    true_direction,
+    truth_of,
+    write_captures,
+)
 
 SHORT = {"duration_s": 6.0}
 

@@ -7,16 +7,18 @@ import pandas as pd
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.gait.events import gait_events
-from eigenwalker.gait.frequency import fundamental_frequency
-from eigenwalker.gait.in_place import in_place
-from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.simulation.body import TOE_BEND
-from eigenwalker.simulation.overground import Route
-from eigenwalker.simulation.person import PARAMETERS, average_person
-from eigenwalker.simulation.trait_effects import draw_people
-from eigenwalker.simulation.walk import simulate_walk, true_events
+from eigenwalker.core import JOINTS
+from eigenwalker.gait import fundamental_frequency, gait_events, in_place
+from eigenwalker.markers import virtual_markers
+from eigenwalker.simulation import (
+    PARAMETERS,
+    TOE_BEND,
+    Route,
+    average_person,
+    draw_people,
+    simulate_walk,
+    true_events,
+)
 
 BONES = [
     *(("sternum", "pelvis"), ("left_hip", "right_hip")),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -27,8 +27,6 @@ from eigenwalker.cli.options import (
 
 if TYPE_CHECKING:
     from eigenwalker.study.fit_folder import Study
-
-T = TypeVar("T")
 
 
 def fit(
@@ -150,6 +148,7 @@ def simulate(
     captures_as: Annotated[str, option("Format of the captures: c3d, trc or csv.")] = "c3d",
 ) -> None:
     """Simulate walkers of known truth, and the raw captures of a whole study to rehearse with."""
+    from eigenwalker.core.progress import ticked
     from eigenwalker.simulation.people import (
         simulate_captures,
         simulate_population,
@@ -163,12 +162,6 @@ def simulate(
         population.save(output)
         print(f"Population: {output} ({len(population)} walkers)")
         if captures is not None:
-            walks = _counted(simulate_captures(**people, markers="skin"), women + men, progress)
+            walks = ticked(simulate_captures(**people, markers="skin"), women + men, progress)
             table = write_captures(walks, captures, format=captures_as)
             print(f"Captures: {captures}; who is who: {table}")
-
-
-def _counted(things: Iterable[T], total: int, progress: Callable[[int, int], None]) -> Iterator[T]:
-    for done, thing in enumerate(things, start=1):
-        yield thing
-        progress(done, total)

@@ -10,7 +10,7 @@ import csv
 import logging
 import os
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -21,6 +21,8 @@ from urllib.parse import quote
 
 import pooch
 import requests
+
+from eigenwalker.core.progress import Progress
 
 SOURCE_URL = "https://raw.githubusercontent.com"
 """Where the repositories' files are, as ``<repository>/<commit>/<path>``."""
@@ -96,7 +98,7 @@ def fetch_captures(
     *,
     accept_licence: bool = False,
     base_url: str | None = None,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Path:
     """Return a folder with a collection of published captures, fetching what is not yet there.
 

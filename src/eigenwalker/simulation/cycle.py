@@ -27,10 +27,10 @@ _LEAST_GAIN = 1.0
 class Cycle:
     """Fourier coefficients of one stride: angles in radians, the pelvis' path in millimetres.
 
-    `legs` has shape (side, joint, coefficient) for thigh, knee and pitch of the foot over the
-    side's own phase, which is 0 at its heel strike (at phase `onsets` of the left side); `pelvis`
-    has shape (axis, coefficient) over the left side's phase. `legs_slope` and `pelvis_slope`
-    are what is added for each unit by which a step is longer than the person's own.
+    `legs` (side, joint, coefficient) are thigh, knee and pitch of the foot over the side's own
+    phase, 0 at its heel strike (at phase `onsets` of the left side); `pelvis` (axis, coefficient)
+    is over the left side's phase. `legs_slope` and `pelvis_slope` are added for each unit by which
+    a step is longer than the person's own.
     """
 
     legs: np.ndarray

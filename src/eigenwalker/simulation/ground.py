@@ -49,15 +49,9 @@ _Residual = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
 class Ground:
     """What a person's stride should be, and by how much a stride misses it.
 
-    Attributes
-    ----------
-    prior, precision : array of shape (unknown,)
-        What the person was drawn to do, and one over its variance.
-    onsets : array of shape (side,)
-        When the feet strike, shares of a stride.
-    sway : array of shape (coefficient,)
-        The pelvis' path to the side, which is as drawn.
-
+    `prior` is what the person was drawn to do, `precision` one over its variance (unknown,);
+    `onsets` (side,) are the moments when the feet strike, in strides; `sway` (coefficient,) is the
+    pelvis' path to the side, which stays as drawn.
     """
 
     def __init__(self, person: Mapping[str, float], body: Body, gait: GaitParameters) -> None:
@@ -67,17 +61,17 @@ class Ground:
         phases = (phase - self.onsets[:, None]) % 1.0
         self._phase, self._side = phases.ravel(), np.repeat(list(SIDES.values()), _FRAMES)
         self._legs = [harmonic_basis(own, LEG_HARMONICS) for own in phases]
-        self._trunk = harmonic_basis(phase, PELVIS_HARMONICS)
-        self._paths = np.concatenate([self._trunk, self._trunk])
+        trunk = harmonic_basis(phase, PELVIS_HARMONICS)
+        self._paths = np.concatenate([trunk, trunk])
+        self._by = _derivatives(self._legs, self._paths)
         self._yaw = np.radians(person["foot_progression_deg"])
         curves = trunk_curves(person, gait.effort)
-        angles = {name: self._trunk @ curve for name, curve in curves.items()}
-        rotations = trunk_rotations(angles, "pelvis")
+        rotations = trunk_rotations({name: trunk @ curves[name] for name in curves}, "pelvis")
         ahead, self.sway, rise = pelvis_paths(person, gait)
         self._hips = np.concatenate(
             [rotated(body.hip * [1, side, 1], rotations) for side in SIDES.values()]
         )
-        self._hips[:, 1] += np.tile(self._trunk @ self.sway, 2)
+        self._hips[:, 1] += np.tile(trunk @ self.sway, 2)
         rise[0] = 0.985 * (body.thigh + body.shank) + body.foot.height - body.hip[2]
         self.prior = self._prior(person, rise, ahead[1:])
         self.precision = _precision()
@@ -115,16 +109,16 @@ class Ground:
 
     def linearised(self, unknown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return all residuals, each divided by its tolerance, and their Jacobian."""
-        active = [
-            (residual, slopes, rows, tolerance)
-            for residual, slopes, when, tolerance in self._residuals(unknown)
-            if len(rows := np.flatnonzero(when))
-        ]
-        jacobian = np.zeros((sum(len(rows) for _, _, rows, _ in active), len(self.prior)))
-        blocks = np.split(jacobian, np.cumsum([len(rows) for _, _, rows, _ in active])[:-1])
-        for (_, slopes, rows, tolerance), block in zip(active, blocks, strict=True):
-            self._fill(block, {name: slope / tolerance for name, slope in slopes.items()}, rows)
-        return np.concatenate([each[rows] / tol for each, _, rows, tol in active]), jacobian
+        residuals, blocks = [], []
+        for residual, slopes, when, tolerance in self._residuals(unknown):
+            rows = np.flatnonzero(when)
+            residuals.append(residual[rows] / tolerance)
+            block = np.zeros((len(rows), len(self.prior)))
+            for name, slope in slopes.items():
+                columns, derivative = self._by[name]
+                block[:, columns] += (slope[rows] / tolerance)[:, None] * derivative[rows]
+            blocks.append(block)
+        return np.concatenate(residuals), np.concatenate(blocks)
 
     def _residuals(self, unknown: np.ndarray) -> Iterator[_Residual]:
         """Yield what the legs miss, its slopes, the frames where it counts, and the tolerance.
@@ -163,24 +157,21 @@ class Ground:
             low = ~stands & (miss < 0)
             yield miss, by_z | {"pitch": swinging[:, point, 1]}, low, 2 * _CONTACT_MM
 
-    def _fill(self, block: np.ndarray, slopes: Mapping[str, np.ndarray], rows: np.ndarray) -> None:
-        """Fill in derivatives by the unknowns, given those by angles, print and pelvis."""
-        n_left = int(np.searchsorted(rows, _FRAMES))
-        legs = (slice(0, n_left), slice(n_left, None))
-        for leg, (here, waves) in enumerate(zip(legs, self._legs, strict=True)):
-            first, frames = leg * _ONE_LEG, rows[here]
-            waves = waves[frames - leg * _FRAMES]
-            for number, angle in enumerate(("thigh", "knee", "pitch")):
-                if angle in slopes:
-                    start = first + number * _LEG
-                    block[here, start : start + _LEG] = slopes[angle][frames, None] * waves
-            if "print" in slopes:
-                block[here, first + 3 * _LEG] = slopes["print"][frames]
-        rise = 2 * _ONE_LEG
-        if "rise" in slopes:
-            block[:, rise : rise + _PELVIS] = slopes["rise"][rows, None] * self._paths[rows]
-        if "ahead" in slopes:
-            block[:, rise + _PELVIS :] = slopes["ahead"][rows, None] * self._paths[rows, 1:]
+
+def _derivatives(legs: list[np.ndarray], paths: np.ndarray) -> dict[str, tuple[slice, np.ndarray]]:
+    """Return of angles, print and pelvis the derivatives by the unknowns, in some columns."""
+    end = 2 * _ONE_LEG + _PELVIS
+    by = {
+        "rise": (slice(2 * _ONE_LEG, end), paths),
+        "ahead": (slice(end, end + _PELVIS - 1), paths[:, 1:]),
+    }
+    ones = [np.ones((_FRAMES, 1))] * 2
+    for number, name in enumerate(("thigh", "knee", "pitch", "print")):
+        first, second = ones if name == "print" else legs
+        both = np.zeros((2 * _FRAMES, _ONE_LEG + first.shape[1]))
+        both[:_FRAMES, : first.shape[1]], both[_FRAMES:, _ONE_LEG:] = first, second
+        by[name] = slice(number * _LEG, number * _LEG + both.shape[1]), both
+    return by
 
 
 def _precision() -> np.ndarray:

@@ -96,12 +96,5 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
 
 
 def delay(coefficients: np.ndarray, lag: float) -> np.ndarray:
-    """Return the Fourier coefficients of a curve that is late by a share of the cycle.
-
-    Examples
-    --------
-    >>> delay(np.array([0.0, 0.0, 1.0]), 0.25).round(9).tolist()
-    [0.0, 1.0, 0.0]
-
-    """
+    """Return the Fourier coefficients of a curve that is late by a share of the cycle."""
     return np.append(coefficients[:1], shift_origin(coefficients[1:], -2 * np.pi * lag))

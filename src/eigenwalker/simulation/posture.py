@@ -30,17 +30,7 @@ Rotations = tuple[Rotation, ...]
 
 
 def rotated(vector: np.ndarray, rotations: Rotations) -> np.ndarray:
-    """Return a vector of a segment after the rotations, one after the other: shape (frame, 3).
-
-    Examples
-    --------
-    A thigh lifted to the horizontal points forward:
-
-    >>> lift = rotation("y", np.array([-np.pi / 2]))
-    >>> rotated(np.array([0.0, 0.0, -400.0]), (lift,)).round(6).tolist()
-    [[400.0, 0.0, -0.0]]
-
-    """
+    """Return a vector of a segment after the rotations, one after the other: shape (frame, 3)."""
     parts = list(vector)
     for axis, cos, sin in rotations:
         a, b = (axis + 1) % 3, (axis + 2) % 3

@@ -21,21 +21,12 @@ _PER_STRIDE = 200
 class Strides:
     """The course of a capture, frame by frame.
 
-    Attributes
-    ----------
-    phase : array of shape (frame,)
-        Cycles since the first left heel strike.
-    lengthening : array of shape (side, frame)
-        By which share the present step of a leg is longer than usual: constant while it stands.
-    body_lengthening : array of shape (frame,)
-        The same for pelvis and trunk, handed over from leg to leg in double support.
-    foot_shift : array of shape (side, frame)
-        How far to the left of its usual place a foot is, in millimetres.
-    wander : array of shape (frame, 2)
-        Forward and lateral place of the body on the belt, in millimetres.
-    noise : array of shape (stream, frame)
-        Smooth unit noise, one stream for each angle that varies from stride to stride.
-
+    `phase` (frame,) counts cycles since the first left heel strike. By `lengthening` (side, frame)
+    the present step of a leg is longer than usual, constant while it stands; `body_lengthening`
+    (frame,) is the same for pelvis and trunk, handed over from leg to leg in double support.
+    `foot_shift` (side, frame) is how far to the left of its usual place a foot is, `wander`
+    (frame, 2) the forward and lateral place of the body on the belt, in millimetres. `noise`
+    (stream, frame) is smooth and of unit SD, one stream for each angle that varies.
     """
 
     phase: np.ndarray
@@ -126,15 +117,7 @@ def _foot_shift(
 
 
 def persistent_noise(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Return noise of unit SD whose power falls with frequency, as that of stride times does.
-
-    Examples
-    --------
-    >>> noise = persistent_noise(np.random.default_rng(0), 4096)
-    >>> bool(np.corrcoef(noise[:-1], noise[1:])[0, 1] > 0.3)
-    True
-
-    """
+    """Return noise of unit SD whose power falls with frequency, as that of stride times does."""
     frequency = np.fft.rfftfreq(4 * n)
     weights = np.zeros(len(frequency))
     weights[1:] = frequency[1:] ** -0.4

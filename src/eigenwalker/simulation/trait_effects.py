@@ -64,11 +64,6 @@ _SCALES = {
 """Mean, SD, lowest and highest score of each continuous trait on its own scale."""
 
 
-def _on_scale(trait: str, score: np.ndarray) -> np.ndarray:
-    mean, sd, _, _ = _SCALES[trait]
-    return mean + sd * score
-
-
 def draw_people(
     n_women: int,
     n_men: int,
@@ -121,9 +116,10 @@ def draw_people(
     _check(n_women, n_men, effects)
     rng = np.random.default_rng(seed)
     n_people = n_women + n_men
-    scores = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}
-    for trait, (_, _, lowest, highest) in _SCALES.items():
+    scores, rated = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}, {}
+    for trait, (mean, sd, lowest, highest) in _SCALES.items():
         scores[trait] = np.clip(rng.standard_normal(n_people), lowest, highest)
+        rated[trait] = mean + sd * scores[trait]
     own = np.clip(rng.standard_normal((len(PARAMETERS), n_people)), -2.5, 2.5)
     own[list(PARAMETERS).index("body_mass_index")] = scores["weight"]
     amounts = scores | {"sex": sex_effect * scores["sex"]}
@@ -137,11 +133,11 @@ def draw_people(
         values[name] = mean + parameter.sd * (score + shift)
     traits = {
         "sex": np.where(scores["sex"] > 0, "male", "female"),
-        "age_years": _on_scale("age", scores["age"]),
+        "age_years": rated["age"],
         "weight_kg": values["body_mass_index"] * (values["height_mm"] / 1000) ** 2,
         "height_mm": values["height_mm"],
-        "happy": _on_scale("happy", scores["happy"]),
-        "nervous": _on_scale("nervous", scores["nervous"]),
+        "happy": rated["happy"],
+        "nervous": rated["nervous"],
     }
     named = {f"{trait}_score": score for trait, score in scores.items()}
     return pd.DataFrame(traits | {n: v for n, v in values.items() if n not in traits} | named)

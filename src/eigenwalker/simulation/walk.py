@@ -192,18 +192,17 @@ def _check(
     duration_s: float, rate_hz: float, noise_mm: float, gap_share: float, markers: str,
     sex: str | None,
 ) -> None:  # fmt: skip
-    problems = []
-    if not (duration_s > 0 and rate_hz > 0 and duration_s * rate_hz >= 2):
-        problems.append(f"duration_s={duration_s} at rate_hz={rate_hz} holds fewer than two frames")
-    if not noise_mm >= 0:
-        problems.append(f"noise_mm={noise_mm} must be 0 or more")
-    if not 0 <= gap_share < 1:
-        problems.append(f"gap_share={gap_share} must be from 0 to below 1")
-    if markers not in ("joints", "full", "skin"):
-        problems.append(f"markers={markers!r} is not known; give 'joints', 'full' or 'skin'")
-    if sex not in (None, "female", "male"):
-        problems.append(f"sex={sex!r} is not known; give 'female' or 'male'")
-    if problems:
+    frames = duration_s > 0 and rate_hz > 0 and duration_s * rate_hz >= 2
+    checks = {
+        f"duration_s={duration_s} at rate_hz={rate_hz} holds fewer than two frames": frames,
+        f"noise_mm={noise_mm} must be 0 or more": noise_mm >= 0,
+        f"gap_share={gap_share} must be from 0 to below 1": 0 <= gap_share < 1,
+        f"markers={markers!r} is not known; give 'joints', 'full' or 'skin'": (
+            markers in ("joints", "full", "skin")
+        ),
+        f"sex={sex!r} is not known; give 'female' or 'male'": sex in (None, "female", "male"),
+    }
+    if problems := [problem for problem, fine in checks.items() if not fine]:
         raise ValueError("This walk cannot be simulated: " + "; ".join(problems) + ".")
 
 
