@@ -63,7 +63,7 @@ def test_missed_walkers_are_named_with_their_class(people) -> None:
     sex = np.random.default_rng(0).permutation(people.traits["sex"].to_numpy())
     people = replace(people, traits=people.traits.assign(sex=sex))
     found = classify(people, "sex", inputs=INPUTS[:4], n_permutations=0)
-    table = missed_table(people, found)
+    table = missed_table(people.names, found)
     assert table is not None
     row = int(found.often_misclassified().index[0])
     assert table.rows[0][0] == f"walker {row} ({sex[row]})"

@@ -27,6 +27,11 @@ from .plausibility import (
     position_in_space as position_in_space,
 )
 from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
+from .trait_study import (
+    AlongTrait as AlongTrait,
+    TraitStudy as TraitStudy,
+    study_trait as study_trait,
+)
 from .validation import (
     NestedPredictions as NestedPredictions,
     PermutationTest as PermutationTest,

@@ -34,6 +34,7 @@ def classify(
     with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
+    from eigenwalker.analysis.trait_study import study_trait
     from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
@@ -41,7 +42,7 @@ def classify(
     with progress_bar("Classifying") as progress:
         result = _classify(population, trait, n_permutations=permutations, progress=progress)
         if output is not None:
-            page = write_classification_report(result, population, output)
+            page = write_classification_report(study_trait(population, result), output)
     classes = result.contrast
     print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
     _print_result(result)
@@ -63,6 +64,7 @@ def demo(
     index.html holds the walkers, report.html beside it what tells the trait from gait; both work
     from the disk, without a network.
     """
+    from eigenwalker.analysis.trait_study import study_trait
     from eigenwalker.datasets.built_in import built_in_capture
     from eigenwalker.explorer.interactive_page import interactive_page
     from eigenwalker.explorer.model import page_model
@@ -73,8 +75,7 @@ def demo(
     with progress_bar("Classifying and filming") as progress:
         result = _classify(population, trait, progress=progress)
         page = write_classification_report(
-            result,
-            population,
+            study_trait(population, result),
             output,
             example=built_in_capture() if people is None else None,
             beside=Link("Play with these walkers", INDEX),

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
 from eigenwalker.analysis.classification import N_PANELS, Classification, Regression
 from eigenwalker.analysis.contrast import Contrast
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.plotting.components import figure_scores, figure_variance
@@ -102,11 +101,16 @@ def class_averages_figure(walkers: Mapping[str, Walker]) -> Figure:
     )
 
 
-def space_figure(X: np.ndarray, contrast: Contrast, step: np.ndarray) -> Figure:
+def space_figure(study: TraitStudy) -> Figure:
     """Return walkers on the first two eigenwalkers, with the axis of the trait."""
-    poles = (contrast.negative, contrast.positive)
+    contrast = study.result.contrast
     drawing = figure_space(
-        WalkerSpace().fit(X), X, contrast.labels, trait_name=contrast.trait, step=step, poles=poles
+        study.space,
+        study.X,
+        contrast.labels,
+        trait_name=contrast.trait,
+        step=study.views["discriminant"].step,
+        poles=(contrast.negative, contrast.positive),
     )
     return Figure(
         drawing,

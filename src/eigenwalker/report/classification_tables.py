@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -11,7 +11,6 @@ from eigenwalker.analysis.classification import N_PANELS, Classification, Regres
 from eigenwalker.analysis.plausibility import Plausibility
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
-from eigenwalker.population.population import Population
 from eigenwalker.report.blocks import Table
 
 _GAIT = {
@@ -115,13 +114,12 @@ def plausibility_table(walkers: Mapping[str, Plausibility]) -> Table:
     )
 
 
-def missed_table(population: Population, result: Classification, most: int = 10) -> Table | None:
+def missed_table(names: Sequence[str], result: Classification, most: int = 10) -> Table | None:
     """Return the walkers that several classifiers misclassify, with their class; None if none."""
     counts = result.often_misclassified().head(most)
     if counts.empty:
         return None
     classes = dict(zip(result.contrast.rows, result.contrast.labels, strict=True))
-    names = population.names
     rows = [
         [f"{names[row]} ({classes[row]})", int(count)]
         for row, count in zip(counts.index.to_numpy(), counts, strict=True)
@@ -132,10 +130,10 @@ def missed_table(population: Population, result: Classification, most: int = 10)
     )
 
 
-def traits_table(population: Population) -> Table | None:
+def traits_table(traits: pd.DataFrame) -> Table | None:
     """Return what is known of the traits of a population; None if nothing is."""
     rows = []
-    for name, values in population.traits.drop(columns=["flag", "file"], errors="ignore").items():
+    for name, values in traits.drop(columns=["flag", "file"], errors="ignore").items():
         known = values[values.notna() & (values.astype(str) != "")]
         if known.empty:
             continue
@@ -149,13 +147,12 @@ def traits_table(population: Population) -> Table | None:
     return Table("Traits", ["trait", "values", "known of"], rows) if rows else None
 
 
-def flags_table(population: Population) -> Table | None:
+def flags_table(names: Sequence[str], flags: pd.Series) -> Table | None:
     """Return the flagged walkers and why they are flagged; None if none is."""
-    if not population.flagged.any():
-        return None
-    flags = zip(population.names, population.traits["flag"], population.flagged, strict=True)
-    rows = [[name, flag] for name, flag, is_flagged in flags if is_flagged]
-    return Table("Flagged, and left out of all that follows", ["walk", "why"], rows)
+    rows = [[name, flag] for name, flag in zip(names, flags, strict=True) if flag]
+    return (
+        Table("Flagged, and left out of all that follows", ["walk", "why"], rows) if rows else None
+    )
 
 
 def correlations_table(correlations: pd.DataFrame) -> Table:

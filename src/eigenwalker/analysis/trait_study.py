@@ -1,0 +1,152 @@
+"""Everything about a trait of a population: how well it is predicted, and how it looks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from eigenwalker.analysis.classification import Classification, Regression
+from eigenwalker.analysis.contrast import Contrast
+from eigenwalker.analysis.direction import Kind
+from eigenwalker.analysis.plausibility import Plausibility, plausibility
+from eigenwalker.analysis.trait_axis import trait_axis
+from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.core.walker import Walker
+from eigenwalker.population.population import Population
+
+ALPHAS = (-6, -3, 0, 3, 6)
+"""Standard deviations along the trait at which walkers are shown, up to the paper's 6."""
+SIZE_NORMALISED: Mapping[Kind, bool] = {"discriminant": False, "mean_difference": True}
+"""The axes along which a trait is shown, and whether of walkers without their size."""
+
+
+@dataclass(frozen=True, eq=False)
+class AlongTrait:
+    """Walkers from one pole of a trait to the other, by title, and how plausible each is."""
+
+    walkers: Mapping[str, Walker]
+    plausibility: Mapping[str, Plausibility]
+    step: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class TraitStudy:
+    """Everything about a trait of a population.
+
+    Parameters
+    ----------
+    result : Classification or Regression
+        How well the trait is predicted.
+    names : list of str
+        Names of all walkers.
+    traits : DataFrame of walkers
+        Their traits and flags.
+    provenance : mapping
+        Where the population is from.
+    walkers : tuple of Walker
+        Those that are not flagged.
+    average : Walker
+        The average walker.
+    correlations : DataFrame or None
+        How alike their postures are (`Population.posture_correlations`), of two walkers or more.
+    views : mapping of str to AlongTrait
+        Walkers along the ``discriminant``, and along the ``mean_difference`` with size divided out.
+    class_averages : mapping of str to Walker
+        The average of either class and both with their difference tripled; empty for a number.
+    X : array of shape (walker, feature)
+        The walkers that have the trait.
+    space : WalkerSpace
+        Fitted to them.
+
+    """
+
+    result: Classification | Regression
+    names: list[str]
+    traits: pd.DataFrame
+    provenance: Mapping[str, str]
+    walkers: tuple[Walker, ...]
+    average: Walker
+    correlations: pd.DataFrame | None
+    views: Mapping[Kind, AlongTrait]
+    class_averages: Mapping[str, Walker]
+    X: np.ndarray
+    space: WalkerSpace
+
+
+def study_trait(population: Population, result: Classification | Regression) -> TraitStudy:
+    """Return everything about a trait that its report shows.
+
+    Parameters
+    ----------
+    population : Population
+        Its flagged walkers are named and left out of all else.
+    result : Classification or Regression
+        Of `classify` or `regress`.
+
+    Returns
+    -------
+    TraitStudy
+
+    See Also
+    --------
+    eigenwalker.report.write_classification_report : Makes a page of it.
+
+    References
+    ----------
+    Troje (2002), eq. 13 and figure 6: walkers up to 6 standard deviations along an axis.
+
+    Examples
+    --------
+    >>> people = ew.simulate_population(4, 4, seed=1)
+    >>> result = ew.classify(people, "sex", n_permutations=0)
+    >>> list(study_trait(people, result).views["discriminant"].walkers)
+    ['female 6 SD', 'female 3 SD', 'average', 'male 3 SD', 'male 6 SD']
+
+    """
+    contrast = result.contrast
+    trait = contrast.trait
+    if contrast.two_classes:
+        trait += f"={contrast.negative}:{contrast.positive}"
+    normalised = population.size_normalised()
+    views: dict[Kind, AlongTrait] = {}
+    for kind, without_size in SIZE_NORMALISED.items():
+        shown = normalised if without_size else population
+        step = trait_axis(shown, trait, kind=kind).step
+        vectors = {_title(contrast, alpha): shown.average + alpha * step for alpha in ALPHAS}
+        plausible = {title: plausibility(shown, vector) for title, vector in vectors.items()}
+        walkers = {title: shown.walker(vector) for title, vector in vectors.items()}
+        views[kind] = AlongTrait(walkers, plausible, step)
+    used = population.unflagged() if not population.flagged.all() else population
+    X = population.X[contrast.rows]
+    return TraitStudy(
+        result=result,
+        names=population.names,
+        traits=population.traits,
+        provenance=population.provenance,
+        walkers=tuple(used.walkers),
+        average=population.walker(population.average),
+        correlations=used.posture_correlations() if len(used) > 1 else None,
+        views=views,
+        class_averages=_class_averages(population, contrast, X) if contrast.two_classes else {},
+        X=X,
+        space=WalkerSpace().fit(X),
+    )
+
+
+def _title(contrast: Contrast, alpha: float) -> str:
+    if alpha == 0:
+        return "average"
+    return f"{contrast.positive if alpha > 0 else contrast.negative} {abs(alpha):g} SD"
+
+
+def _class_averages(population: Population, contrast: Contrast, X: np.ndarray) -> dict[str, Walker]:
+    low, high = X[contrast.y < 0].mean(axis=0), X[contrast.y > 0].mean(axis=0)
+    middle, half = (high + low) / 2, (high - low) / 2
+    return {
+        f"{pole}, {name}": population.walker(middle + times * half)
+        for name, factor in (("average", 1), ("tripled", 3))
+        for pole, times in ((contrast.negative, -factor), (contrast.positive, factor))
+    }
