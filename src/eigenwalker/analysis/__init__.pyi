@@ -28,8 +28,8 @@ from .plausibility import (
 )
 from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
 from .trait_study import (
-    AlongTrait as AlongTrait,
     TraitStudy as TraitStudy,
+    TraitView as TraitView,
     study_trait as study_trait,
 )
 from .validation import (

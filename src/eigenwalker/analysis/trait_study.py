@@ -24,7 +24,7 @@ SIZE_NORMALISED: Mapping[Kind, bool] = {"discriminant": False, "mean_difference"
 
 
 @dataclass(frozen=True, eq=False)
-class AlongTrait:
+class TraitView:
     """Walkers from one pole of a trait to the other, by title, and how plausible each is."""
 
     walkers: Mapping[str, Walker]
@@ -52,7 +52,7 @@ class TraitStudy:
         The average walker.
     correlations : DataFrame or None
         How alike their postures are (`Population.posture_correlations`), of two walkers or more.
-    views : mapping of str to AlongTrait
+    views : mapping of str to TraitView
         Walkers along the ``discriminant``, and along the ``mean_difference`` with size divided out.
     class_averages : mapping of str to Walker
         The average of either class and both with their difference tripled; empty for a number.
@@ -70,7 +70,7 @@ class TraitStudy:
     walkers: tuple[Walker, ...]
     average: Walker
     correlations: pd.DataFrame | None
-    views: Mapping[Kind, AlongTrait]
+    views: Mapping[Kind, TraitView]
     class_averages: Mapping[str, Walker]
     X: np.ndarray
     space: WalkerSpace
@@ -111,14 +111,14 @@ def study_trait(population: Population, result: Classification | Regression) -> 
     if contrast.two_classes:
         trait += f"={contrast.negative}:{contrast.positive}"
     normalised = population.size_normalised()
-    views: dict[Kind, AlongTrait] = {}
+    views: dict[Kind, TraitView] = {}
     for kind, without_size in SIZE_NORMALISED.items():
         shown = normalised if without_size else population
         step = trait_axis(shown, trait, kind=kind).step
         vectors = {_title(contrast, alpha): shown.average + alpha * step for alpha in ALPHAS}
         plausible = {title: plausibility(shown, vector) for title, vector in vectors.items()}
         walkers = {title: shown.walker(vector) for title, vector in vectors.items()}
-        views[kind] = AlongTrait(walkers, plausible, step)
+        views[kind] = TraitView(walkers, plausible, step)
     used = population.unflagged() if not population.flagged.all() else population
     X = population.X[contrast.rows]
     return TraitStudy(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from eigenwalker.metric.frame_metrics import GroupMetric
-    from eigenwalker.study.walks import CapturedWalk, Walks
+    from eigenwalker.study.walks import CaptureWalk, Walks
 
 MAX_NEAREST = 10
 N_CLUSTERS = 2
@@ -259,7 +259,7 @@ def _fit(walks: Walks, answers: pd.DataFrame, output: Path | None, metric: Group
         print(f"Report: {write_metric_fit_report(fit, output)}")
 
 
-def _print_nearest(path: Path, query: CapturedWalk, walks: Walks, metric: GroupMetric) -> None:
+def _print_nearest(path: Path, query: CaptureWalk, walks: Walks, metric: GroupMetric) -> None:
     from eigenwalker.metric.neighbours import nearest_walks
     from eigenwalker.report.pair_report import remark_sentences
 
@@ -277,7 +277,7 @@ def _print_nearest(path: Path, query: CapturedWalk, walks: Walks, metric: GroupM
     _print_remarks(remark_sentences({path.name: query.remark}))
 
 
-def _captured(path: Path, reading: dict[str, Any]) -> CapturedWalk:
+def _captured(path: Path, reading: dict[str, Any]) -> CaptureWalk:
     """Return the walk of a capture; errors name its file."""
     from eigenwalker.study.walks import walk_of_capture
 

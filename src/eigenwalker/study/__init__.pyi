@@ -14,7 +14,7 @@ from .reference_pairs import (
     simulated_distances as simulated_distances,
 )
 from .walks import (
-    CapturedWalk as CapturedWalk,
+    CaptureWalk as CaptureWalk,
     Walks as Walks,
     walk_of_capture as walk_of_capture,
     walker_space_distances as walker_space_distances,

@@ -60,7 +60,7 @@ class Walks:
         )
 
 
-class CapturedWalk(NamedTuple):
+class CaptureWalk(NamedTuple):
     """The walk of a capture; what is wrong with the capture, and a remark on both, in words."""
 
     clip: PreparedClip
@@ -74,7 +74,7 @@ def walk_of_capture(
     mannequin: bool = True,
     default_unit: str | None = None,
     default_rate_hz: float | None = None,
-) -> CapturedWalk:
+) -> CaptureWalk:
     """Return the steady strides of a capture, to be compared with other walks.
 
     Parameters
@@ -88,7 +88,7 @@ def walk_of_capture(
 
     Returns
     -------
-    CapturedWalk
+    CaptureWalk
 
     See Also
     --------
@@ -102,7 +102,7 @@ def walk_of_capture(
     if mannequin:
         walk = retarget(result.walk)
         warnings = retargeting_warnings(result.walk, walk)
-    return CapturedWalk(prepare(walk), flag, capture_remark(flag, warnings))
+    return CaptureWalk(prepare(walk), flag, capture_remark(flag, warnings))
 
 
 def walks_of_folder(
