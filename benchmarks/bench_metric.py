@@ -16,10 +16,10 @@ from scipy.spatial.distance import cdist
 from side_by_side import machine, print_table, seconds
 
 import eigenwalker as ew
-from eigenwalker.metric import FrameMetric, least_cost_path, pair_table, prepare, shaped
+from eigenwalker.metric import FrameMetric, pair_table, prepare, shaped
 from eigenwalker.metric.frame_metrics import Shape
 from eigenwalker.metric.kernels import n_threads
-from eigenwalker.metric.paths import SLOPE_LIMIT
+from eigenwalker.metric.paths import SLOPE_LIMIT, least_cost_path
 from eigenwalker.metric.point_maps import point_map
 
 N_FRAMES, N_JOINTS, N_CLIPS = 1400, 15, 21

@@ -9,6 +9,7 @@ import xarray as xr
 
 import eigenwalker as ew
 from eigenwalker import metric
+from eigenwalker.metric.retargeting import is_mannequin
 
 KINDS = {
     "trajectories": lambda walk: walk,
@@ -139,4 +140,4 @@ def test_attributes_do_not_change_the_groups_of_the_mannequin(walks):
         tables = [metric.group_table(clips, by) for clips in (placed, bare)]
         pd.testing.assert_frame_equal(*tables)
         assert "clavicle" not in tables[0]
-    assert not any(metric.is_mannequin(walk) for walk in walks)
+    assert not any(is_mannequin(walk) for walk in walks)

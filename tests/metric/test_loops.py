@@ -9,7 +9,8 @@ from hypothesis import given, settings, strategies as st
 import eigenwalker as ew
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.gait.frequency import NoStrideError
-from eigenwalker.metric import CYCLE_FRAMES, FrameMetric, common_clock, loop, motion_map
+from eigenwalker.metric import FrameMetric, loop, motion_map
+from eigenwalker.metric.cycles import CYCLE_FRAMES, common_clock
 from eigenwalker.metric.loops import period_of
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.walk import simulate_walk

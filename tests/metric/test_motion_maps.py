@@ -11,15 +11,9 @@ from scipy.spatial.distance import cdist
 from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.metric import (
-    FrameMetric,
-    common_clock,
-    loop,
-    motion_map,
-    motion_maps,
-    shaped,
-)
+from eigenwalker.metric import FrameMetric, loop, motion_map, motion_maps, shaped
 from eigenwalker.metric.alignment import align_windows
+from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.kernels import diagonal_means
 from eigenwalker.metric.point_maps import EXACT, point_distances, point_map
 from eigenwalker.metric.points import points_of

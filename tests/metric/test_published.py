@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.metric import BONES, FIGURE_5, PUBLISHED, GroupMetric, metric_named
+from eigenwalker.metric import BONES, FIGURE_5, PUBLISHED, GroupMetric
+from eigenwalker.metric.published import metric_named
 
 ROWS = [
     f"{by}-{shape}"

@@ -12,11 +12,11 @@ from eigenwalker.core.walker import Walker
 from eigenwalker.metric import (
     FrameMetric,
     find_transitions,
-    least_cost_path,
     register,
     register_by_spline,
     register_walks,
 )
+from eigenwalker.metric.paths import least_cost_path
 from eigenwalker.simulation.overground import Route
 from eigenwalker.simulation.walk import simulate_walk
 

@@ -10,10 +10,7 @@ import pytest
 from scipy.optimize import minimize
 from sklearn.linear_model import LogisticRegression
 
-from eigenwalker.metric import (
-    PUBLISHED,
-    group_table,
-)
+from eigenwalker.metric import PUBLISHED, group_table
 from eigenwalker.psychophysics.choice_prediction import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.conditional_logit import (
     bootstrap_choices,

@@ -16,11 +16,11 @@ from sklearn.utils.estimator_checks import parametrize_with_checks
 from eigenwalker.metric import (
     PUBLISHED,
     collinear_groups,
-    group_means,
     group_table,
     missing_groups,
     pair_components,
 )
+from eigenwalker.metric.joint_groups import group_means
 from eigenwalker.psychophysics.cross_validation import compare_metrics, goodness, leave_walkers_out
 from eigenwalker.psychophysics.fit_to_answers import fit_to_answers
 from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric

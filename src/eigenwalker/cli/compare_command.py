@@ -170,7 +170,7 @@ def _check_output(output: Path | None) -> None:
 def _compare_two(
     first: Path, second: Path, output: Path | None, metric: GroupMetric, reading: dict[str, Any]
 ) -> None:
-    from eigenwalker.metric.comparison import compare_walks
+    from eigenwalker.metric.clip_distances import compare_walks
     from eigenwalker.metric.published import PUBLISHED
     from eigenwalker.report.pair_report import pair_sentences, remark_sentences, write_pair_report
     from eigenwalker.study.reference_pairs import compare_with_references

@@ -1,13 +1,13 @@
 from .alignment import Alignment as Alignment
 from .clip_distances import (
+    Comparison as Comparison,
     clip_components as clip_components,
     clip_distance as clip_distance,
+    compare_walks as compare_walks,
     step_distances as step_distances,
 )
 from .clips import Clip as Clip, Clips as Clips, Loop as Loop, PreparedClip as PreparedClip
-from .comparison import Comparison as Comparison, compare_walks as compare_walks
 from .comparison_pipeline import prepare_walk as prepare_walk
-from .cycles import CYCLE_FRAMES as CYCLE_FRAMES, common_clock as common_clock
 from .frame_metrics import (
     FrameMetric as FrameMetric,
     GroupMetric as GroupMetric,
@@ -23,11 +23,9 @@ from .joint_angles import angle_between as angle_between, joint_quaternions as j
 from .joint_groups import (
     BONES as BONES,
     GROUPS as GROUPS,
-    group_means as group_means,
     group_points as group_points,
 )
 from .loops import loop as loop
-from .mannequin import HEIGHT_MM as HEIGHT_MM, SHARES as SHARES, is_mannequin as is_mannequin
 from .motion_maps import motion_map as motion_map, motion_maps as motion_maps
 from .neighbours import label_table as label_table, nearest_walks as nearest_walks
 from .pairwise import (
@@ -36,19 +34,17 @@ from .pairwise import (
     pair_distances as pair_distances,
     pair_table as pair_table,
 )
-from .paths import least_cost_path as least_cost_path
 from .prepared import prepare as prepare
 from .published import (
     FIGURE_5 as FIGURE_5,
     PUBLISHED as PUBLISHED,
     PrintedRow as PrintedRow,
-    metric_named as metric_named,
 )
 from .registration import (
     Registration as Registration,
     register as register,
     register_walks as register_walks,
 )
-from .retargeting import retarget as retarget
+from .retargeting import HEIGHT_MM as HEIGHT_MM, SHARES as SHARES, retarget as retarget
 from .spline_warps import register_by_spline as register_by_spline
 from .transitions import find_transitions as find_transitions

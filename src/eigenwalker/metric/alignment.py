@@ -44,9 +44,9 @@ class Alignment(NamedTuple):
 def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
     r"""Return how each window of frames of one clip is laid over each window of another.
 
-    The rotation :math:`\theta` about the vertical and the shift that minimise the summed squared
-    distance between the points of both windows (Kovar, Gleicher & Pighin 2002, section 3.1). With
-    means over all points and frames of the windows, and primes for the second clip:
+    The rotation and shift that minimise the summed squared distance between the points of both
+    windows (Kovar, Gleicher & Pighin 2002, section 3.1), with means over all points and frames of
+    the windows, and primes for the second clip:
 
     .. math::
 
@@ -54,11 +54,10 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
         {\langle y x' - x y' \rangle - \langle y \rangle\langle x' \rangle
         + \langle x \rangle\langle y' \rangle}
         {\langle x x' + y y' \rangle - \langle x \rangle\langle x' \rangle
-        - \langle y \rangle\langle y' \rangle}, \qquad
+        - \langle y \rangle\langle y' \rangle}, \quad
         s = \langle (x, y) \rangle - R_\theta\, \langle (x', y') \rangle
 
-    Positions are of shape (frame, point, axis), none missing; `half` is the number of frames of the
-    window on either side, fewer at the ends. The alignment is of shape (frame, other frame).
+    Positions are of shape (frame, point, axis); windows have `half` frames on either side.
     """
     n_points = a.shape[1]
     middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)
@@ -75,10 +74,7 @@ def align_windows(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
 
 
 def align_steps(a: np.ndarray, b: np.ndarray, half: int = 0) -> Alignment:
-    """Return how corresponding positions of shape (step, point, axis) are aligned, step by step.
-
-    Up to `half` steps on either side count too.
-    """
+    """Return how corresponding positions of shape (step, point, axis) are aligned step by step."""
     middle_a, middle_b = horizontal_mean(a), horizontal_mean(b)
     (xa, ya), (xb, yb) = _horizontal(a, middle_a), _horizontal(b, middle_b)
     means = [values.mean(axis=1) for values in (xa, ya, xb, yb)]
@@ -129,8 +125,7 @@ def aligned_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of all pairs of frames, the second clip aligned to the first.
 
-    a, b: positions or velocities of shape (frame, point, axis), none missing; `translate` is False
-    for velocities, which are only rotated. The map is of shape (frame, other frame).
+    Positions, or velocities, which are only rotated, are of shape (frame, point, axis).
     """
     rows, columns = np.ascontiguousarray(a), np.ascontiguousarray(b.transpose(1, 2, 0))
     moves = np.zeros((4, len(a), len(b)))

@@ -142,10 +142,7 @@ def _resampled(clip: xr.DataArray, rate_hz: float) -> xr.DataArray:
 
 
 def positions_at(clip: xr.DataArray, time: np.ndarray, *, periodic: bool = False) -> np.ndarray:
-    """Return positions at any times, by cubic splines; NaN for markers with gaps.
-
-    A periodic clip is repeated without end; at times outside any other clip its ends are taken.
-    """
+    """Return positions at any times, by cubic splines; NaN for markers with gaps."""
     values, clock = clip.values, clip.time.values
     if periodic:
         values = np.concatenate([values, values[:1]])

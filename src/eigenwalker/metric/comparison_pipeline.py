@@ -50,9 +50,8 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
 
     Examples
     --------
-    >>> walk = prepare_walk(ew.simulate_walk(seed=1, markers="skin"))
-    >>> ew.metric.is_mannequin(walk), "left_toe" in walk.marker
-    (True, True)
+    >>> "left_toe" in prepare_walk(ew.simulate_walk(seed=1, markers="skin")).marker
+    True
 
     """
     walk = in_place(full_joints(capture))
@@ -60,10 +59,7 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
 
 
 def full_joints(capture: Clip) -> xr.DataArray:
-    """Return the joints of a capture with feet, hands and captured rotations, where it has them.
-
-    Those hidden for longer than gaps are filled are left out (``attrs["hidden_markers"]``).
-    """
+    """Return the joints of a capture with feet, hands and captured rotations."""
     capture = as_trajectories(capture)
     joints = with_rotations(virtual_markers(capture, joints="full"), capture)
     longest = MAX_GAP_S * sampling_rate(joints) if len(joints) > 1 else 0

@@ -35,29 +35,10 @@ _PAIRS = 16
 def common_clock(loop: Loop) -> xr.DataArray:
     r"""Return a loop in `CYCLE_FRAMES` frames that begins at a phase given by its own movement.
 
-    Uniform time scaling: every stride gets the same number of frames, while its times keep its
-    duration. It is resampled by its Fourier coefficients X and begins at the phase
-
-    .. math:: \theta = -\tfrac12 \arg \sum_{marker, axis} X_1^2
-
-    at which the fundamental of all markers together is farthest from its mean (one of two such
-    phases, half a stride apart).
-
-    Parameters
-    ----------
-    loop : Loop
-
-    Returns
-    -------
-    DataArray of shape (time, marker, axis)
-        Positions in mm, from 0 s.
-
-    Examples
-    --------
-    >>> cycle = common_clock(ew.loop(ew.simulate_walk(seed=1, frequency_hz=0.8)))
-    >>> cycle.sizes["time"], round(float(cycle.time[-1]) * 120 / 119, 2)
-    (120, 1.25)
-
+    Uniform time scaling: every stride gets the same number of frames, its times keep its duration.
+    With the Fourier coefficients X of all coordinates it begins at the phase
+    :math:`-\tfrac12 \arg \sum X_1^2`, at which the fundamental of all markers together is farthest
+    from its mean (one of two such phases, half a stride apart).
     """
     cycle = loop.cycle
     n_frames = cycle.sizes["time"]
@@ -76,11 +57,9 @@ def common_clock(loop: Loop) -> xr.DataArray:
 
 
 class RegisteredPairs(NamedTuple):
-    """Registered pairs of cycles.
+    """Pairs of cycles (pair, 2), rotations of the second in radians, and closed paths round both.
 
-    pairs: indices of both cycles, (pair, 2); angles: rotations of the second about the vertical in
-    radians, (pair,); steps: frames of both along the closed path, (pair, step, 2); lengths: steps
-    of each path, (pair,).
+    `steps` has shape (pair, step, 2), of which each pair uses as many as `lengths` says.
     """
 
     pairs: np.ndarray
@@ -94,9 +73,8 @@ class RegisteredPairs(NamedTuple):
 
 
 def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
-    """Return how pairs of cycles correspond in phase, heading and place, as in `register_walks`.
+    """Return how pairs of cycles (cycle, frame, point, axis) correspond, as in `register_walks`.
 
-    cycles: strides on the common clock, (cycle, frame, point, axis), mm; pairs: indices, (pair, 2).
     The sums of its second step are correlations, computed from `N_HARMONICS` Fourier coefficients.
     """
     centred = cycles.copy()
@@ -119,10 +97,7 @@ def register_pairs(cycles: np.ndarray, pairs: np.ndarray) -> RegisteredPairs:
 
 
 def mean_distances(points: np.ndarray, registered: RegisteredPairs, metric: Metric) -> np.ndarray:
-    """Return the mean of F(d) along the path of each pair of cycles, of shape (pair, point).
-
-    points: positions, velocities or orientations of shape (cycle, frame, point, part).
-    """
+    """Return means of F(d) along the path of each pair of cycles, of shape (pair, point)."""
     if metric.by == "positions":
         points = points.copy()
         points[..., :2] -= points[..., :2].mean(axis=(1, 2), keepdims=True)

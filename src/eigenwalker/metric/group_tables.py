@@ -9,10 +9,10 @@ from eigenwalker.core.progress import Progress
 from eigenwalker.metric.clips import Clips
 from eigenwalker.metric.frame_metrics import Metric
 from eigenwalker.metric.joint_groups import GROUPS, group_means
-from eigenwalker.metric.mannequin import is_mannequin
 from eigenwalker.metric.pairwise import pair_components
 from eigenwalker.metric.prepared import prepare_together
 from eigenwalker.metric.published import metric_named
+from eigenwalker.metric.retargeting import is_mannequin
 
 COLLINEAR = 0.95
 """Correlation above which a fit can hardly separate the weights of two columns."""

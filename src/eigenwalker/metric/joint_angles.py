@@ -13,16 +13,13 @@ from scipy.spatial.transform import Rotation
 from eigenwalker.core.kinematics import shortest_turn
 from eigenwalker.metric.clips import Clip, as_trajectories
 from eigenwalker.metric.joint_groups import BONES
-from eigenwalker.metric.mannequin import SIDES, is_mannequin
+from eigenwalker.metric.retargeting import SHORTEST_MM, SIDES, body_frame, is_mannequin
 
 AngleDistance = Literal["angle", "one_minus_dot", "as_printed"]
 
 HALF_TWIST_BEND = np.sin(np.deg2rad(15))
 """Sine of the bend of a knee or elbow at which the plane of the limb and the assumption of no twist
 count equally: straight limbs have no plane, and that of nearly straight ones is noise."""
-
-SHORTEST_MM = 1.0
-"""Vectors shorter than this have no direction."""
 
 
 class _Bone(NamedTuple):
@@ -195,23 +192,6 @@ def _carrier(part: Literal["pelvis", "trunk"], place: Mapping[str, np.ndarray]) 
     return _Orientation(Rotation.from_matrix(axes), known)
 
 
-def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> np.ndarray:
-    """Return the axes of pelvis or trunk in the room as the columns of rotation matrices.
-
-    x is forward, y the line of the hips for the pelvis, of the shoulders for the trunk, z the
-    direction from pelvis to sternum, made orthogonal to y. Positions are of shape (time, 3) by
-    name, matrices of shape (time, 3, 3); NaN where joints are missing.
-    """
-    joint = {"pelvis": "hip", "trunk": "shoulder"}[part]
-    left, right = (place[f"{side}_{joint}"] for side in SIDES)
-    y, up = left - right, place["sternum"] - place["pelvis"]
-    x = np.cross(y, up)
-    axes = np.stack([x, y, np.cross(x, y)], axis=2)
-    lengths = np.linalg.norm(axes, axis=1, keepdims=True)
-    known = (lengths > SHORTEST_MM).all(axis=2, keepdims=True)
-    return np.divide(axes, lengths, out=np.full_like(axes, np.nan), where=known) + 0.0
-
-
 def _swing_and_twist(
     place: Mapping[str, np.ndarray], bone: _Bone, carrier: _Orientation
 ) -> _Orientation:
@@ -237,9 +217,7 @@ def _direction(vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") -> np.ndarray:
-    r"""Return the distance between orientations.
-
-    .. math:: d(q_a, q_b) = 2 \arccos |q_a \cdot q_b|
+    r"""Return the distance between orientations, :math:`2 \arccos |q_a \cdot q_b|`.
 
     Eq. 1 of Pražák et al. (2010) prints the dot product alone, which is 1 for equal orientations
     and changes its sign between q and -q, although both are the same rotation.

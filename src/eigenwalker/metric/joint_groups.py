@@ -45,7 +45,7 @@ def group_points(
     by : {"positions", "velocities", "angles"}
         What is compared.
     mannequin : bool
-        Whether the clip is of the mannequin (`is_mannequin`), whose shoulders are fixed to its
+        Whether the clip is of the mannequin (`retarget`), whose shoulders are fixed to its
         sternum, so that the sternum does not stand for clavicles.
 
     Returns
@@ -93,25 +93,7 @@ def _members(group: str, present: set[str], by: By) -> tuple[str, ...]:
 
 
 def group_means(points: pd.DataFrame, by: By, *, mannequin: bool = False) -> pd.DataFrame:
-    """Return the means of a table of points over the points of each joint group.
-
-    Parameters
-    ----------
-    points : DataFrame of pairs by points
-    by, mannequin
-        As in `group_points`.
-
-    Returns
-    -------
-    DataFrame of pairs by groups
-
-    Examples
-    --------
-    >>> points = pd.DataFrame({"left_knee": [10.0], "right_knee": [20.0], "head": [5.0]})
-    >>> group_means(points, "positions").to_dict("records")
-    [{'head': 5.0, 'calf': 15.0}]
-
-    """
+    """Return the means of a table of pairs by points over the points of each joint group."""
     groups = group_points([str(name) for name in points.columns], by, mannequin=mannequin)
     means = {group: points[list(names)].mean(axis=1) for group, names in groups.items()}
     return pd.DataFrame(means, index=points.index)

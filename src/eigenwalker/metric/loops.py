@@ -16,8 +16,8 @@ from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import closes, closing_step
 from eigenwalker.metric.clips import Clip, Loop, as_trajectories
-from eigenwalker.metric.mannequin import is_mannequin
 from eigenwalker.metric.points import refuse_duplicate_names
+from eigenwalker.metric.retargeting import is_mannequin
 
 REPEATS_BELOW = 0.4
 """Mean squared distance of postures one period apart, relative to that of any two postures, above

@@ -25,43 +25,11 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     r"""Return the monotone path from the first frames to the last with the least sum of cells.
 
     Of all sequences of cells from (0, 0) to (n - 1, m - 1) whose steps are (1, 1), (1, 0) or (0, 1)
-    the one that minimises
-
-    .. math:: \sum_{(i, j)} D(i, j) + \epsilon\, n_{held}
-
-    By a slope limit L, at most L steps (1, 0) or (0, 1) follow a step (1, 1), all of one kind: one
-    clip is held while at most L frames of the other pass. :math:`\epsilon` is `HOLD_COST` times
-    the median of D, and 0 without a limit (plain dynamic time warping, Sakoe & Chiba 1978).
-
-    Parameters
-    ----------
-    cost : array of shape (frame, other frame)
-        Distances, 0 or more, none missing.
-    slope_limit : int, optional
-        L; left out, there is none.
-
-    Returns
-    -------
-    array of int of shape (step, 2)
-        Frames of the first and of the second clip, from beginning to end.
-
-    Raises
-    ------
-    ValueError
-        If there are no frames, a cell is missing, or no path within the limit joins the ends.
-
-    References
-    ----------
-    Kovar & Gleicher (2003), Flexible automatic motion blending with registration curves, section
-    3.1.
-
-    Examples
-    --------
-    >>> clip, slower = np.arange(3.0), np.array([0, 0, 1, 1, 2, 2.0])
-    >>> cost = np.abs(clip[:, None] - slower)
-    >>> least_cost_path(cost, slope_limit=2).tolist()
-    [[0, 0], [0, 1], [1, 2], [1, 3], [2, 4], [2, 5]]
-
+    the one that minimises :math:`\sum_{(i, j)} D(i, j) + \epsilon\, n_{held}`. By a slope limit L,
+    at most L steps (1, 0) or (0, 1) follow a step (1, 1), all of one kind: one clip is held while
+    at most L frames of the other pass. :math:`\epsilon` is `HOLD_COST` times the median of D, and 0
+    without a limit (plain dynamic time warping). Costs are of shape (frame, other frame), 0 or
+    more, none missing; paths of shape (step, 2).
     """
     n, m = cost.shape
     if not n or not m:

@@ -30,18 +30,9 @@ def point_map(
 ) -> np.ndarray:
     """Return ``sum_k w_k F(d_k)`` of every frame of one clip with every frame of another.
 
-    a, b: arrays of shape (frame, point, part); three parts are a position or velocity, compared by
-    Euclidean distance, four a unit quaternion, compared by `angle_between`. `parameter` is the
-    scale or exponent of F. Points with a missing part (NaN) in either frame are left out and the
-    weights of the others grow; a cell is NaN where no point is left.
-
-    Examples
-    --------
-    >>> a = np.array([[[0.0, 0, 0], [0, 0, 0]]])
-    >>> b = np.array([[[3.0, 4, 0], [0, 0, 1]]])
-    >>> point_map(a, b, np.array([0.5, 0.5]), shape="absolute").tolist()
-    [[3.0]]
-
+    Arrays are of shape (frame, point, part): three parts are a position or velocity, four a unit
+    quaternion (`angle_between`). Points with a missing part (NaN) in either frame are left out and
+    the weights of the others grow; a cell is NaN where no point is left.
     """
     a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     weighed = weights > 0

@@ -50,10 +50,7 @@ def _velocities(values: np.ndarray, rate_hz: float, periodic: bool) -> np.ndarra
 
 
 def match_rotations(clips: Sequence[xr.DataArray]) -> list[xr.DataArray]:
-    """Return clips without captured rotations, unless all of them have some.
-
-    Orientations from positions and captured ones differ, so one kind is compared at a time.
-    """
+    """Return clips without captured rotations, unless all have some: one kind is compared."""
     captured = ["rotation" in clip.coords for clip in clips]
     if all(captured) or not any(captured):
         return list(clips)
@@ -116,10 +113,7 @@ def common_positions(a: xr.DataArray, b: xr.DataArray) -> tuple[np.ndarray, np.n
 
 
 def content_ranks(clips: Sequence[np.ndarray]) -> np.ndarray:
-    """Return ranks of clips by their bytes: an order that does not depend on how they are given.
-
-    Clips of a pair are registered in this order, so that distances are exactly symmetric.
-    """
+    """Return ranks of clips by their bytes, so that distances do not depend on their order."""
     contents = [clip.tobytes() for clip in clips]
     ranks = np.empty(len(contents), dtype=int)
     ranks[sorted(range(len(contents)), key=contents.__getitem__)] = np.arange(len(contents))

@@ -64,8 +64,7 @@ def prepare_together(
 ) -> dict[str, PreparedClip]:
     """Return clips prepared to be compared with each other, with the points that all have.
 
-    Clips in a sequence are named "0", "1" and so on. Prepared clips stay as they are. `done` is
-    called after each clip.
+    Clips in a sequence are named "0", "1" and so on; `done` is called after each clip.
     """
     clips = getattr(clips, "walkers", clips)
     if not isinstance(clips, Mapping):

@@ -86,22 +86,7 @@ not at hand."""
 
 
 def metric_named(metric: str | Metric) -> Metric:
-    """Return a published metric by its name; any other metric unchanged.
-
-    Parameters
-    ----------
-    metric : str, FrameMetric or GroupMetric
-
-    Returns
-    -------
-    FrameMetric or GroupMetric
-
-    Examples
-    --------
-    >>> metric_named("positions-sigmoid").shape
-    'sigmoid'
-
-    """
+    """Return a published metric by its name; any other metric unchanged."""
     if not isinstance(metric, str):
         return metric
     if metric not in PUBLISHED:

@@ -311,10 +311,7 @@ def _is_swapped(a: xr.DataArray, b: xr.DataArray) -> bool:
 
 
 def register_strides(first: xr.DataArray, second: xr.DataArray) -> Registration:
-    """Return which phases of two strides on the common clock (`common_clock`) correspond.
-
-    Whichever comes first, the path is the same.
-    """
+    """Return which phases of two strides on the common clock correspond; symmetric."""
     names = common_names(first.marker.values, second.marker.values)
     first, second = first.sel(marker=names), second.sel(marker=names)
     if _is_swapped(first, second):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -12,8 +13,51 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import missing_markers, sampling_rate, trajectories_at
 from eigenwalker.gait.filtering import low_passed
 from eigenwalker.metric.clips import Clip, as_trajectories
-from eigenwalker.metric.joint_angles import body_frame
-from eigenwalker.metric.mannequin import LENGTHS_MM, SHARES, SIDES
+
+HEIGHT_MM = 1693.0
+"""Midway between the mean woman and the mean man of ANSUR II (Gordon et al. 2014)."""
+
+SHARES: Mapping[str, float] = {
+    "hip_width": 0.103,
+    "hip_below": 0.049,
+    "hip_before": 0.017,
+    "shoulder_width": 0.2025,
+    "spine": 0.240,
+    "shoulder_below": 0.008,
+    "neck": 0.124,
+    "upper_arm": 0.173,
+    "forearm": 0.1504,
+    "hand": 0.058,
+    "thigh": 0.2459,
+    "calf": 0.2275,
+    "foot": 0.100,
+    "ankle_height": 0.0400,
+    "toe_height": 0.0120,
+}
+"""Lengths as shares of height, midway between women and men. From ANSUR II: biacromial breadth,
+heights of acromion, trochanter, tibiale and malleolus, acromion-radiale and radiale-stylion,
+converted to joint centres as in `simulation` (Bell 1989 for the width of the hips, Harrington 2007
+for their place in the pelvis); foot: ankle to ball, from foot length and heel-to-ball length.
+Chosen: the hand, to the knuckles; the neck, from sternum to the centre of the head; the height of
+the ball of the foot."""
+
+SIDES = ("left", "right")
+
+_RECOGNISED_BY = {
+    ("pelvis", "sternum"): "spine",
+    ("left_shoulder", "right_shoulder"): "shoulder_width",
+    ("left_hip", "right_hip"): "hip_width",
+    **{(f"{side}_hip", f"{side}_knee"): "thigh" for side in SIDES},
+    **{(f"{side}_knee", f"{side}_ankle"): "calf" for side in SIDES},
+}
+_TOLERANCE = 0.01
+"""Relative difference of lengths: no person has all of them so near to the mannequin's."""
+
+
+LENGTHS_MM = {part: HEIGHT_MM * share for part, share in SHARES.items()}
+
+SHORTEST_MM = 1.0
+"""Vectors shorter than this have no direction."""
 
 _LIMBS = {
     f"{side}_{joint}": (f"{side}_{carrier}", part)
@@ -104,6 +148,36 @@ def retarget(walk: Clip) -> xr.DataArray:
     result = trajectories_at(walk.time.values, positions, names)
     result.attrs = walk.attrs | {"retargeted": True}
     return _with_rotations(result, walk)
+
+
+def is_mannequin(clip: xr.DataArray) -> bool:
+    """Return whether a clip is of the mannequin: trunk and legs have its lengths."""
+    index = {str(name): i for i, name in enumerate(clip.marker.values)}
+    ratios = []
+    for (start, end), part in _RECOGNISED_BY.items():
+        if start in index and end in index:
+            link = clip.values[:, index[start]] - clip.values[:, index[end]]
+            link = link[np.isfinite(link).all(axis=1)]
+            length = np.linalg.norm(link, axis=1).sum() / max(len(link), 1)
+            ratios.append(length / LENGTHS_MM[part])
+    return len(ratios) >= 3 and float(np.abs(np.subtract(ratios, 1)).max()) <= _TOLERANCE
+
+
+def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> np.ndarray:
+    """Return the axes of pelvis or trunk in the room as the columns of rotation matrices.
+
+    x is forward, y the line of the hips for the pelvis, of the shoulders for the trunk, z the
+    direction from pelvis to sternum, made orthogonal to y. Positions are of shape (time, 3) by
+    name, matrices of shape (time, 3, 3); NaN where joints are missing.
+    """
+    joint = {"pelvis": "hip", "trunk": "shoulder"}[part]
+    left, right = (place[f"{side}_{joint}"] for side in SIDES)
+    y, up = left - right, place["sternum"] - place["pelvis"]
+    x = np.cross(y, up)
+    axes = np.stack([x, y, np.cross(x, y)], axis=2)
+    lengths = np.linalg.norm(axes, axis=1, keepdims=True)
+    known = (lengths > SHORTEST_MM).all(axis=2, keepdims=True)
+    return np.divide(axes, lengths, out=np.full_like(axes, np.nan), where=known) + 0.0
 
 
 def _placed(seen: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import xarray as xr
 
-from eigenwalker.metric.mannequin import is_mannequin
+from eigenwalker.metric.retargeting import is_mannequin
 
 CITE = (
     "Pražák, M., McDonnell, R., Kavan, L., & O'Sullivan, C. (2010). A perception based metric for "

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from eigenwalker.metric.comparison import PLAIN, Comparison
+from eigenwalker.metric.clip_distances import PLAIN, Comparison
 from eigenwalker.metric.loops import loop
 from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.transitions import find_transitions

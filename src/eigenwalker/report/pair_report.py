@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenwalker.metric.comparison import Comparison
+from eigenwalker.metric.clip_distances import Comparison
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.loops import loop
 from eigenwalker.plotting.difference_maps import figure_two_walks

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.metric.mannequin import SHARES
+from eigenwalker.metric.retargeting import SHARES
 
 WIDE_HIPS = 1.5
 """Hip ratio above which hips must be points on the skin."""
