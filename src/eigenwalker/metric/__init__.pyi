@@ -38,7 +38,7 @@ from .prepared import prepare as prepare
 from .published import (
     FIGURE_5 as FIGURE_5,
     PUBLISHED as PUBLISHED,
-    PrintedRow as PrintedRow,
+    PublishedFit as PublishedFit,
 )
 from .registration import (
     Registration as Registration,

@@ -78,10 +78,6 @@ def clip_components(a: Clip, b: Clip, *, metric: str | Metric = POSITIONS) -> pd
     Series of points
         In the unit of F(d).
 
-    References
-    ----------
-    Pražák et al. (2010), eqs. 1 to 3.
-
     Examples
     --------
     >>> walk = ew.simulate_walk(seed=1, rate_hz=60)

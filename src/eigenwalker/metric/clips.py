@@ -75,9 +75,8 @@ class Loop:
 
         """
         time = np.atleast_1d(np.asarray(time, dtype=float))
-        values = np.concatenate([self.cycle.values, self.cycle.values[:1]])
-        spline = CubicSpline(np.linspace(0, self.period_s, len(values)), values, bc_type="periodic")
-        return trajectories_at(time, spline(time % self.period_s), self.cycle.marker.values)
+        values = positions_at(self.cycle, time, periodic=True)
+        return trajectories_at(time, values, self.cycle.marker.values)
 
 
 @dataclass(frozen=True, eq=False)

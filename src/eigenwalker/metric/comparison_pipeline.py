@@ -39,11 +39,6 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
         Positions in mm. ``attrs["hidden_markers"]`` names hands, feet and the like that were
         hidden for too long and are left out.
 
-    Raises
-    ------
-    ValueError
-        As `virtual_markers` and `in_place` do.
-
     References
     ----------
     Pražák et al. (2010), section 3.

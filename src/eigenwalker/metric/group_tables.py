@@ -39,10 +39,6 @@ def group_table(
         ``"positions forearm"``. Groups without points are left out, among them the clavicles of
         the mannequin, whose shoulders are fixed to its sternum.
 
-    See Also
-    --------
-    missing_groups, collinear_groups : What a fit cannot determine.
-
     References
     ----------
     Pražák et al. (2010), eqs. 1 to 3 and section 5.

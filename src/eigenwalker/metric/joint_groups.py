@@ -54,11 +54,6 @@ def group_points(
         Points by group, in the order of `GROUPS`, without groups that the clip lacks. Where one
         side is missing, the other stands for both.
 
-    Raises
-    ------
-    ValueError
-        If the clip has no point of any group.
-
     References
     ----------
     Pražák et al. (2010), fig. 5 and section 5.

@@ -10,7 +10,12 @@ from scipy.interpolate import CubicSpline
 
 from eigenwalker.core.quaternions import between, quaternions_at, vectors_of
 from eigenwalker.core.smoothing import parabola_vertex
-from eigenwalker.core.trajectories import check_trajectories, sampling_rate, trajectories_at
+from eigenwalker.core.trajectories import (
+    DIMS,
+    check_trajectories,
+    sampling_rate,
+    trajectories_at,
+)
 from eigenwalker.gait.floor_origin import find_origin
 from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.in_place import in_place
@@ -82,10 +87,6 @@ def loop(clip: Clip, *, already_in_place: bool = False) -> Loop:
         If samples are missing for too long or markers share a name.
     NoStrideError
         A ValueError: if the clip holds less than one period, or nothing repeats.
-
-    See Also
-    --------
-    register_walks : Which phases of two loops correspond.
 
     References
     ----------
@@ -220,15 +221,12 @@ def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
     weight = (1 - np.cos(np.pi * within / period))[:, None, None] / 2
     values = weight * path(first) + (1 - weight) * path(second)
     gaps = np.linalg.norm(path(first) - path(second), axis=2).mean(axis=1)
-    cycle = _as_cycle(walk, values, period / rate_hz)
+    rotation = None
     if "rotation" in walk.coords:
-        vectors = walk.rotation.values
-        turns = between(
-            quaternions_at(vectors, second), quaternions_at(vectors, first), weight[..., 0]
-        )
-        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, vectors_of(turns)))
+        ends = (quaternions_at(walk.rotation.values, frames) for frames in (second, first))
+        rotation = vectors_of(between(*ends, weight[..., 0]))
     return Loop(
-        cycle,
+        _as_cycle(walk, values, rotation, period / rate_hz),
         period_s=period / rate_hz,
         start_s=float(walk.time.values[0] + start / rate_hz),
         seam_mm=float(gaps[0]),
@@ -261,11 +259,9 @@ def _closed(walk: xr.DataArray, movement: np.ndarray, rate_hz: float) -> Loop:
             "for the same moment of it: it seems to be less than a whole one."
         )
     share = np.arange(n_frames) / n_frames - 0.5
-    cycle = _as_cycle(walk, values - share[:, None, None] * gap, n_frames / rate_hz)
-    if "rotation" in walk.coords:
-        cycle = cycle.assign_coords(rotation=(walk.rotation.dims, walk.rotation.values))
+    rotation = walk.rotation.values if "rotation" in walk.coords else None
     return Loop(
-        cycle,
+        _as_cycle(walk, values - share[:, None, None] * gap, rotation, n_frames / rate_hz),
         period_s=n_frames / rate_hz,
         start_s=float(walk.time.values[0]),
         seam_mm=_mean_norm(gap),
@@ -278,7 +274,11 @@ def _mean_norm(vectors: np.ndarray) -> float:
     return float(np.linalg.norm(vectors, axis=1).mean())
 
 
-def _as_cycle(walk: xr.DataArray, values: np.ndarray, period_s: float) -> xr.DataArray:
+def _as_cycle(
+    walk: xr.DataArray, values: np.ndarray, rotation: np.ndarray | None, period_s: float
+) -> xr.DataArray:
     time = np.arange(len(values)) * period_s / len(values)
     cycle = trajectories_at(time, values, walk.marker.values)
+    if rotation is not None:
+        cycle = cycle.assign_coords(rotation=(DIMS, rotation))
     return cycle.assign_attrs(walk.attrs, frequency_hz=1 / period_s, n_strides=1)

@@ -120,11 +120,6 @@ def motion_maps(
     DataArray of shape (group, time_a, time_b)
         In the unit of F(d).
 
-    Raises
-    ------
-    ValueError
-        If no group has points that both clips have.
-
     References
     ----------
     Pražák et al. (2010), fig. 6.

@@ -39,11 +39,6 @@ def nearest_walks(
     -------
     Series of walks
 
-    Raises
-    ------
-    ValueError
-        If there are no walks to search.
-
     Examples
     --------
     >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}

@@ -54,7 +54,7 @@ def pair_table(
 
     See Also
     --------
-    pair_distances, pair_components : The same as one column, or by points.
+    pair_components, group_table : The same by points and joint groups.
     nearest_walks, label_table : Which walks are near to each other.
 
     References
@@ -156,10 +156,6 @@ def pair_components(
     -------
     DataFrame of pairs by points
         Pairs in the order of `itertools.combinations`; points that are known in all clips.
-
-    See Also
-    --------
-    group_table : The same by joint groups.
 
     References
     ----------

@@ -22,7 +22,7 @@ from eigenwalker.metric.frame_metrics import GroupMetric, Metric, Shape
 from eigenwalker.metric.joint_groups import GROUPS, By
 
 
-class PrintedRow(NamedTuple):
+class PublishedFit(NamedTuple):
     """A row of figure 5: the difference from the observers, both constants and the weights."""
 
     difference: float
@@ -44,12 +44,12 @@ velocities sigmoid     21.993 0.189   36.532 0.000 0.000 0.000 0.000 0.564 0.000
 """
 
 
-def _row(numbers: list[str]) -> PrintedRow:
+def _row(numbers: list[str]) -> PublishedFit:
     difference, constant, normalisation, *weights = map(float, numbers)
-    return PrintedRow(difference, constant, normalisation, tuple(weights))
+    return PublishedFit(difference, constant, normalisation, tuple(weights))
 
 
-FIGURE_5: Mapping[tuple[By, Shape], PrintedRow] = {
+FIGURE_5: Mapping[tuple[By, Shape], PublishedFit] = {
     (by, shape): _row(numbers)  # pyright: ignore[reportAssignmentType] - words of the table above
     for by, shape, *numbers in map(str.split, _FIGURE_5.strip().splitlines())
 }

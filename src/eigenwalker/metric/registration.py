@@ -269,11 +269,6 @@ def register_walks(a: Clip, b: Clip) -> Registration:
     Registration
         Of one stride of each. The path is the same whichever walk comes first.
 
-    Raises
-    ------
-    ValueError
-        If a clip does not repeat, or they have no points in common.
-
     References
     ----------
     Pražák et al. (2010), section 2; Kovar & Gleicher (2003), section 3; Kovar, Gleicher & Pighin
