@@ -14,9 +14,8 @@ from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.datasets.built_in import load_population
-from eigenwalker.metric.clip_distances import clip_distance
+from eigenwalker.metric.clip_distances import Comparison, clip_distance
 from eigenwalker.metric.clips import PreparedClip
-from eigenwalker.metric.clip_distances import Comparison
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.loops import loop
 from eigenwalker.metric.pairwise import pair_distances
