@@ -20,7 +20,7 @@ from scipy.linalg.lapack import dsyevr  # pyright: ignore[reportAttributeAccessI
 from eigenwalker.core.fourier import centred_harmonics, fit_harmonics, shift_origin
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.core.walker import CaptureFit, Form, Walker
-from eigenwalker.gait.frequency import frequency_of_centred
+from eigenwalker.gait.frequency import frequency_of_scores
 
 PHASE_REFERENCE = ("left_ankle", "right_ankle")
 """The markers whose distance along x sets the time origin: first minus second rises through 0."""
@@ -92,7 +92,7 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     power, axes = _largest_eigenpairs(scatter, min(2 * n_harmonics, postures.shape[1]))
     scores = postures @ axes
     scores -= mean @ axes
-    frequency_hz = frequency_of_centred(scores, rate_hz, n_harmonics=n_harmonics)
+    frequency_hz = frequency_of_scores(scores, rate_hz, n_harmonics=n_harmonics)
     sines = centred_harmonics(len(postures), frequency_hz / rate_hz, n_harmonics)[1:]
     harmonics, amplitudes, phases, sine_r2 = _fit_sines(
         sines @ scores, sines @ sines.T, np.maximum(power, 0.0)

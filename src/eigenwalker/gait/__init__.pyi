@@ -1,6 +1,7 @@
 from .appearance import walker_measures as walker_measures
 from .events import gait_events as gait_events
 from .frequency import (
+    NoStrideError as NoStrideError,
     frequency_of_scores as frequency_of_scores,
     fundamental_frequency as fundamental_frequency,
 )

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.fourier import share_explained, unit_phasors
+from eigenwalker.core.fourier import centred_harmonics, share_explained
 from eigenwalker.core.smoothing import parabola_vertex
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
@@ -61,7 +60,8 @@ def fundamental_frequency(trajectories: xr.DataArray, *, n_harmonics: int = 2) -
     Raises
     ------
     ValueError
-        If samples are missing, nothing moves, or the capture holds less than a stride.
+        If samples are missing; its subclass `NoStrideError` if nothing moves, or the capture holds
+        less than a stride.
 
     See Also
     --------
@@ -86,12 +86,7 @@ def fundamental_frequency(trajectories: xr.DataArray, *, n_harmonics: int = 2) -
 
 
 def frequency_of_scores(
-    scores: np.ndarray,
-    rate_hz: float,
-    *,
-    n_harmonics: int = 2,
-    bounds_hz: tuple[float, float] = BOUNDS_HZ,
-    trend: bool = False,
+    scores: np.ndarray, rate_hz: float, *, n_harmonics: int = 2, trend: bool = False
 ) -> float:
     """Return the frequency whose harmonics explain most of the variance of all columns together.
 
@@ -107,8 +102,6 @@ def frequency_of_scores(
         Frames a second.
     n_harmonics : int
         Harmonics that every column may hold in the refinement.
-    bounds_hz : pair of float
-        Range of the search.
     trend : bool
         Whether each column may also have a constant velocity.
 
@@ -119,7 +112,7 @@ def frequency_of_scores(
 
     Raises
     ------
-    ValueError
+    NoStrideError
         If nothing moves or there is less than about a stride.
 
     References
@@ -134,56 +127,35 @@ def frequency_of_scores(
     5.0
 
     """
-    least = 1e-9 * max(1.0, np.abs(scores[:1]).max(initial=0))
-    centred = scores - np.full(len(scores), 1 / max(len(scores), 1)) @ scores
-    return frequency_of_centred(
-        centred, rate_hz, n_harmonics=n_harmonics, bounds_hz=bounds_hz, trend=trend, least=least
-    )
-
-
-def frequency_of_centred(
-    centred: np.ndarray,
-    rate_hz: float,
-    *,
-    n_harmonics: int = 2,
-    bounds_hz: tuple[float, float] = BOUNDS_HZ,
-    trend: bool = False,
-    least: float = 1e-9,
-) -> float:
-    """Return the same as `frequency_of_scores`, of columns whose mean is 0.
-
-    Shapes: centred (time, component).
-    """
-    n_frames = len(centred)
+    n_frames = len(scores)
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")
-    lowest = max(bounds_hz[0], _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
-    if n_frames < 8 or lowest >= 0.9 * bounds_hz[1]:
+    lowest, highest = BOUNDS_HZ
+    lowest = max(lowest, _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
+    if n_frames < 8 or lowest >= 0.9 * highest:
         raise NoStrideError(
             f"The part that could be used lasts {n_frames / rate_hz:.3g} s, too short for "
-            f"a stride; give {_FEWEST_STRIDES / bounds_hz[0]:.2g} s or more."
+            f"a stride; give {_FEWEST_STRIDES / BOUNDS_HZ[0]:.2g} s or more."
         )
+    least = 1e-9 * max(1.0, np.abs(scores[:1]).max(initial=0))
+    centred = scores - np.full(n_frames, 1 / n_frames) @ scores
     if not np.vdot(centred, centred) > n_frames * least**2:
         raise NoStrideError("Nothing moves here but all as one, so there is no stride frequency.")
     block = max(1, int(rate_hz / _COARSE_RATE_HZ))
     n_blocks = n_frames // block
     blocks = np.add.reduceat(centred[: n_blocks * block], np.arange(0, n_blocks * block, block))
     angle = 2 * np.pi / rate_hz
-    candidates = _coarse_frequencies(blocks, rate_hz / block, (lowest, bounds_hz[1]))
+    candidates = _coarse_frequencies(blocks, rate_hz / block, (lowest, highest))
     # Sums of a few frames have the frequency of the sine, so most of the search runs on them.
-    starts = [_stepped(blocks, each * angle * block, n_harmonics, trend) for each in candidates]
-    return _refined(centred, _of_octaves(blocks, starts) / block, n_harmonics, trend=trend) / angle
+    angles = [
+        _refined(blocks, each * angle * block, n_harmonics, trend, max_steps=1)
+        for each in candidates
+    ]
+    return _refined(centred, _of_octaves(blocks, angles) / block, n_harmonics, trend) / angle
 
 
 _FEWEST_STRIDES = 0.9
 """Below about one stride two harmonics fit anything."""
-
-
-def _stepped(values: np.ndarray, angle: float, n_harmonics: int, trend: bool) -> float:
-    """Return an angle after one limited step of variable projection."""
-    step = _gauss_newton_step(values, angle, n_harmonics, trend=trend)
-    reach = np.pi / len(values) / 2
-    return angle + min(max(step, -reach), reach)
 
 
 def _of_octaves(values: np.ndarray, angles: list[float]) -> float:
@@ -217,7 +189,7 @@ def _coarse_frequencies(
     first = max(1, int(np.ceil(bounds_hz[0] / spacing_hz)))
     last = min(size // 4, int(bounds_hz[1] / spacing_hz))
     spectrum = np.fft.rfft(velocity, size, axis=0)
-    explained = _normal_equations(len(velocity), size, first, last).explained(spectrum)
+    explained = _explained(spectrum, len(velocity), first, last)
     best = int(explained.argmax())
     offset, top = _peak(explained, best)
     candidates = [(first + best + offset) * spacing_hz]
@@ -234,37 +206,36 @@ def _coarse_frequencies(
     return candidates
 
 
-class _NormalEquations(NamedTuple):
-    """Least squares of mean, first and second harmonic at each frequency of a grid.
+def _explained(spectrum: np.ndarray, n: int, first: int, last: int) -> np.ndarray:
+    """Return the sum of squares over all columns that mean and two harmonics explain.
 
-    Time runs from the middle, where cosines are orthogonal to sines. They depend on the number of
-    samples only, so walks of one length share them.
+    At each frequency of the grid from `first` to `last`, of `n` samples.
     """
-
-    harmonics: np.ndarray
-    turns: np.ndarray
-    inverses: np.ndarray
-
-    def explained(self, spectrum: np.ndarray) -> np.ndarray:
-        """Return the sum of squares explained at each frequency, over all columns."""
-        turned = spectrum[self.harmonics] * self.turns[..., None]
-        explained = np.zeros(turned.shape[1])
-        for b, weights in zip((np.real(turned), np.imag(turned)), self.inverses, strict=True):
-            squares = np.einsum("hfc,hfc->hf", b, b)
-            explained += np.einsum("hf,hf->f", weights[:2], squares)
-            explained += weights[2] * np.einsum("fc,fc->f", b[0], b[1])
-        return explained
+    bins, turns, inverses = _normal_equations(n, 2 * (len(spectrum) - 1), first, last)
+    turned = spectrum[bins] * turns[..., None]
+    explained = np.zeros(turned.shape[1])
+    for b, weights in zip((np.real(turned), np.imag(turned)), inverses, strict=True):
+        explained += np.einsum("hf,hf->f", weights[:2], np.einsum("hfc,hfc->hf", b, b))
+        explained += weights[2] * np.einsum("fc,fc->f", b[0], b[1])
+    return explained
 
 
 @lru_cache(maxsize=16)
-def _normal_equations(n: int, size: int, first: int, last: int) -> _NormalEquations:
+def _normal_equations(
+    n: int, size: int, first: int, last: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the least squares of mean, first and second harmonic at each frequency of a grid.
+
+    Bins of the spectrum, what turns their time to run from the middle, where cosines are orthogonal
+    to sines, and inverses. They depend on the number of samples only, so walks share them.
+    """
     grid = np.arange(first, last + 1)
     theta = 2 * np.pi / size * grid
     d1, d2, d3, d4 = (np.sin(n * h / 2 * theta) / np.sin(h / 2 * theta) for h in (1, 2, 3, 4))
     even = _inverse((n + d2) / 2 - d1**2 / n, (d1 + d3) / 2 - d1 * d2 / n, (n + d4) / 2 - d2**2 / n)
     odd = _inverse((n - d2) / 2, (d1 - d3) / 2, (n - d4) / 2)
     turns = np.exp(0.5j * (n - 1) * np.multiply.outer([1, 2], theta))
-    return _NormalEquations(np.multiply.outer([1, 2], grid), turns, np.stack([even, odd]))
+    return np.multiply.outer([1, 2], grid), turns, np.stack([even, odd])
 
 
 def _inverse(g11: np.ndarray, g12: np.ndarray, g22: np.ndarray) -> np.ndarray:
@@ -280,16 +251,17 @@ def _peak(values: np.ndarray, peak: int) -> tuple[float, float]:
     return parabola_vertex(*around)
 
 
-def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool) -> float:
+def _refined(
+    scores: np.ndarray, angle: float, n_harmonics: int, trend: bool, max_steps: int = _MAX_STEPS
+) -> float:
     """Return the angle a frame at which harmonics leave the smallest residual.
 
     By Gauss-Newton steps of the variable projection functional (Golub & Pereyra 1973).
     """
-    n = len(scores)
-    reach = np.pi / n
+    reach = np.pi / len(scores)
     lowest, highest = angle - reach, angle + reach
-    for _ in range(_MAX_STEPS):
-        step = _gauss_newton_step(scores, angle, n_harmonics, trend=trend)
+    for _ in range(max_steps):
+        step = _gauss_newton_step(scores, angle, n_harmonics, trend)
         step = min(max(step, -reach / 2), reach / 2)
         angle = min(max(angle + step, lowest), highest)
         if abs(step) < _CONVERGED * angle:
@@ -297,7 +269,7 @@ def _refined(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool)
     return angle
 
 
-def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, trend: bool) -> float:
+def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, trend: bool) -> float:
     """Return the Gauss-Newton step of the angle.
 
     All sums over frames come from one product of the basis, and of its derivative by the angle,
@@ -305,20 +277,13 @@ def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, *, tr
     """
     n = len(scores)
     frames = np.arange(n) - (n - 1) / 2
-    n_fixed = 2 if trend else 1
-    n_basis = n_fixed + 2 * n_harmonics
-    rows = np.empty((n_basis + 2 * n_harmonics, n))
-    rows[0] = 1
-    if trend:
-        rows[1] = frames / n
-    turning = power = unit_phasors(angle, n)
-    for h in range(1, n_harmonics + 1):
-        cos, sin = n_fixed + 2 * h - 2, n_fixed + 2 * h - 1
-        rows[cos], rows[sin] = np.real(power), np.imag(power)
-        faster = h * frames
-        np.multiply(rows[cos], faster, out=rows[sin + 2 * n_harmonics])
-        np.multiply(rows[sin], -faster, out=rows[cos + 2 * n_harmonics])
-        power = power * turning
+    harmonics = centred_harmonics(n, angle / (2 * np.pi), n_harmonics)[1:]
+    slopes = np.empty_like(harmonics)
+    faster = np.multiply.outer(np.arange(1, n_harmonics + 1), frames)
+    slopes[0::2], slopes[1::2] = faster * harmonics[1::2], -faster * harmonics[0::2]
+    fixed = np.stack([np.ones(n), frames / n] if trend else [np.ones(n)])
+    rows = np.concatenate([fixed, harmonics, slopes])
+    n_fixed, n_basis = len(fixed), len(fixed) + len(harmonics)
     products, with_data = rows @ rows.T, rows @ scores
     inverse = np.linalg.inv(products[:n_basis, :n_basis])
     weights = inverse @ with_data[:n_basis]

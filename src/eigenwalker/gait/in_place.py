@@ -45,16 +45,14 @@ def in_place(
 ) -> xr.DataArray:
     """Return the steady strides of a capture as a walk in place, facing +x.
 
-    In this order:
-
     1. Points of the room, such as the origin of a skeleton, are left out, labels are repaired
        (`repair_labels`) and short gaps filled by cubic splines.
     2. Standing, starting, stopping and turning are left out, and the rest is trimmed to whole
        strides, to the nearest frame. Of a walk there and back the straight pass with most strides
        is taken. A walk with too few straight strides, in a circle or a figure of eight, is unwound:
        each frame is turned back by the slow heading of the body.
-    3. Forward progress and slow drift of the body are taken out together. They are regressed beside
-       the harmonics of the stride, which stay as they are.
+    3. Forward progress and slow drift of the body are taken out together, by regression beside the
+       harmonics of the stride, which stay as they are.
     4. The direction of walking is turned to +x. The pelvis (else the middle of the hips, else of
        all markers) is at x = y = 0 in the mean, and z = 0 is the floor: 0.084 of the length of
        thigh and shank below the lowest standing ankle, or, without legs, at the lowest marker.
@@ -64,37 +62,30 @@ def in_place(
     Parameters
     ----------
     trajectories : DataArray of shape (time, marker, axis)
-        A capture in millimetres of someone who walks, in a room or on a treadmill; any markers.
-        With the usual names of joints, facing and standing feet are known, otherwise only the path.
+        A walk through a room or on a treadmill, in millimetres; any markers. With the usual names
+        of joints, facing and standing feet are known, otherwise only the path.
     max_gap_s : float
         Longest gap to be filled, in seconds.
     low_pass_hz : float, optional
-        Cut-off in hertz of a low-pass filter (`low_passed`), for noisy captures; 6 is usual for
-        walking. Without it nothing is filtered.
+        Cut-off in hertz of a low-pass filter for noisy captures; 6 is usual for walking.
     speed_mm_s, heading_deg : float, optional
         Speed in mm/s, and direction in degrees from +x towards +y, of a walk on a treadmill or in
-        place, where they are known. Otherwise the standing feet tell them. A walk through a room
-        tells both itself.
+        place, if known; otherwise those of the standing feet. A walk through a room has its own.
     repair : bool
         Whether to repair labels; False for a capture whose labels are repaired already.
 
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        In millimetres, on the clock of the capture; a coordinate ``rotation`` is turned too. In
-        ``attrs``, beside those of the capture:
-
-        - ``speed_mm_s``: forward speed, NaN if unknown; ``treadmill``: whether the body stays in
-          its place;
-        - ``heading_deg``: direction of walking in the capture, from +x towards +y; ``feet_deg``:
-          direction of the standing feet beside it;
-        - ``steady_start_s``, ``steady_end_s``, ``n_strides``, ``frequency_hz``: the strides;
-        - ``straight_passes``: number of straight passes from which the strides were chosen, 1
-          without turns, 0 if unwound; ``unwound_deg``: range of the heading that was taken out;
-        - ``climb_mm``: how far the body rose; ``wander_mm``: root mean square distance of its path
-          from a straight line at constant speed;
-        - ``filled_samples``, ``repairs`` (see `repair_labels`), ``still_points`` (names of points
-          of the room), ``low_pass_hz``.
+        In millimetres, on the clock of the capture; a coordinate ``rotation`` is turned too. Beside
+        the ``attrs`` of the capture there are ``speed_mm_s`` (forward, NaN if unknown),
+        ``treadmill``, ``heading_deg`` (direction of walking in the capture, from +x towards +y),
+        ``feet_deg`` (direction of the standing feet beside it), ``steady_start_s``,
+        ``steady_end_s``, ``n_strides``, ``frequency_hz``, ``straight_passes`` (from which the
+        strides were chosen: 1 without turns, 0 if unwound), ``unwound_deg`` (range of the heading
+        that was taken out), ``climb_mm`` (rise of the body), ``wander_mm`` (root mean square
+        distance of its path from a straight line at constant speed), ``filled_samples``,
+        ``repairs``, ``still_points`` (of the room) and ``low_pass_hz``.
 
     Raises
     ------
@@ -108,7 +99,7 @@ def in_place(
 
     References
     ----------
-    Troje (2002), p. 373, on the walkers' position and the strides that were taken.
+    Troje (2002), methods: walkers on a treadmill, ten strides each.
 
     Examples
     --------
