@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,9 @@ import xarray as xr
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.errors import printable
 from eigenwalker.io.read import read_mocap
-from eigenwalker.population.population import Population
+from eigenwalker.population.population import Population, flags_of
 from eigenwalker.population.population_file import looks_like_population
-from eigenwalker.study.messages import reasons, swaps_in_words
+from eigenwalker.study.messages import reasons, repair_in_words
 from eigenwalker.study.process_capture import NoWalkError, process_capture, stated
 
 Fact = str | float | int | bool | None | list[str]
@@ -63,28 +64,22 @@ def inspect_file(
 
     """
     path = Path(path)
-    if _is_population(path):
-        return _plain(_of_population(Population.load(path)))
-    return _plain(_of_capture(path, unit, rate_hz))
-
-
-def _is_population(path: Path) -> bool:
-    try:
-        return path.is_file() and looks_like_population(path)
-    except OSError:
-        return False  # reading it gives the reason
+    facts = None
+    with suppress(OSError):  # reading it gives the reason
+        if path.is_file() and looks_like_population(path):
+            facts = _of_population(Population.load(path))
+    if facts is None:
+        facts = _of_capture(path, unit, rate_hz)
+    return {name: _plain(value) for name, value in facts.items()}
 
 
 def _of_population(population: Population) -> dict[str, object]:
-    traits = population.traits
-    flagged = population.flagged
-    names = traits.get("file", "walker " + traits.index.to_series().astype(str))[flagged]
-    flags = [f"{name}: {flag}" for name, flag in zip(names, traits["flag"][flagged], strict=True)]
-    first = population.walkers[0]
+    traits, first = population.traits, population.walkers[0]
+    flags = zip(population.names, flags_of(traits), strict=True)
     return {
         "kind": "population",
         "walkers": len(population),
-        "flagged": flags,
+        "flagged": [f"{name}: {flag}" for name, flag in flags if flag],
         "form": f"{first.form}, harmonics {', '.join(map(str, first.harmonics))}",
         "features": len(population.feature_names),
         "markers": list(first.markers),
@@ -129,53 +124,37 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
         "kind": "capture",
         "verdict": quality.verdict,
         "problems": [*problems, *reasons(quality)],
-        **{name: _listed(getattr(quality, name)) for name in _MEASURED},
-        "swaps": swaps_in_words(quality.repairs),
+        **{name: getattr(quality, name) for name in _MEASURED},
+        "swaps": [repair_in_words(each) for each in quality.repairs if each.kind == "swap"],
         **facts,
         **{name: joints.attrs.get(name) for name in _MARKER_SET},
     }
 
 
-def _listed(value: object) -> object:
-    """Return a value; of a mapping, its keys and numbers a phrase each."""
-    if not isinstance(value, Mapping):
-        return value
-    return [f"{_name(key)}: {number:.3g}" for key, number in value.items()]
-
-
 def _as_read(capture: xr.DataArray) -> dict[str, object]:
     """Return what is known of a capture with any markers."""
     missing = np.isnan(capture.values).any(axis=2)
-    share = missing.mean(axis=0)
-    names = capture.marker.values.tolist()
+    rate_hz = sampling_rate(capture) if len(capture) > 1 else None
     return {
         "format": capture.attrs["format"],
         "unit": capture.attrs.get("unit"),
-        "rate_hz": sampling_rate(capture) if len(capture) > 1 else None,
-        "duration_s": len(capture) / sampling_rate(capture) if len(capture) > 1 else None,
+        "rate_hz": rate_hz,
+        "duration_s": len(capture) / rate_hz if rate_hz else None,
         "n_frames": len(capture),
         "missing_samples": float(missing.mean()),
-        "missing_markers": [name for name, unseen in zip(names, share == 1, strict=True) if unseen],
-        "markers": names,
+        "missing_markers": capture.marker.values[missing.all(axis=0)].tolist(),
+        "markers": capture.marker.values.tolist(),
     }
 
 
-def _name(key: str | tuple[str, str]) -> str:
-    return key if isinstance(key, str) else " to ".join(key)
-
-
-def _plain(facts: dict[str, object]) -> dict[str, Fact]:
-    """Return the same facts in types of JSON, NaN as None."""
-    return {name: _plain_value(value) for name, value in facts.items()}
-
-
-def _plain_value(value: object) -> Fact:
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
+def _plain(value: object) -> Fact:
+    """Return a value in types of JSON: NaN as None, each number of a mapping as a phrase."""
+    if isinstance(value, Mapping):
+        names = [key if isinstance(key, str) else " to ".join(key) for key in value]
+        value = [f"{name}: {n:.3g}" for name, n in zip(names, value.values(), strict=True)]
     if isinstance(value, list | tuple):
         return [printable(str(each)) for each in value]
-    return None if value is None else printable(str(value))
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return value if value is None or isinstance(value, bool | int) else printable(str(value))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 
 import pandas as pd
 
@@ -42,7 +42,8 @@ def reasons(quality: Quality) -> list[str]:
     'The head is not above the feet: the wrong axis points up.'
 
     """
-    return [_SENTENCES[finding](quality) for finding in quality.findings]
+    values = _values(quality)
+    return [_SENTENCES[finding].format(**values) for finding in quality.findings]
 
 
 def flag_of(quality: Quality) -> str:
@@ -96,98 +97,66 @@ def repair_in_words(repair: Repair) -> str:
     return f"{markers}, frames {repair.first_frame} to {repair.last_frame}"
 
 
-def swaps_in_words(repairs: Sequence[Repair]) -> list[str]:
-    """Return where left and right labels had changed places, a phrase each."""
-    return [repair_in_words(repair) for repair in repairs if repair.kind == "swap"]
-
-
 def _length(millimetres: float) -> str:
     if millimetres >= 1e5:
         return f"{millimetres / 1e6:.3g} km"
     return f"{millimetres:.3g} mm" if millimetres < 1000 else f"{millimetres / 1000:.3g} m"
 
 
-def _wrong_unit(quality: Quality) -> str:
-    return f"the unit {quality.unit or 'of length'} is wrong"
-
-
-def _elastic_limbs(quality: Quality) -> str:
+def _values(quality: Quality) -> dict[str, object]:
+    """Return what `_SENTENCES` name."""
     variation = quality.bone_length_variation
-    n_elastic = sum(share > BONE_VARIATION for share in variation.values())
-    worst = max(variation, key=lambda limb: variation[limb])
-    return (
-        f"{n_elastic} of {len(variation)} limbs change length by more than "
-        f"{BONE_VARIATION:.0%}; worst from {worst[0]} to {worst[1]}, {variation[worst]:.1%}."
-    )
-
-
-def _swapped_labels(quality: Quality) -> str:
-    swaps = swaps_in_words(quality.repairs)
-    shown = "; ".join(swaps[:3]) + (f" and {len(swaps) - 3} more" if len(swaps) > 3 else "")
-    return f"Left and right changed places and were put right: {shown}."
-
-
-def _flicker(quality: Quality) -> str:
+    limb = max(variation, key=lambda limb: variation[limb], default=("", ""))
+    swaps = [repair_in_words(repair) for repair in quality.repairs if repair.kind == "swap"]
+    jumping = dict.fromkeys(repair.marker for repair in quality.repairs if repair.kind == "jump")
     often = [name for name, share in quality.removed_share.items() if share > FLICKER_SHARE]
-    return f"Markers flicker, and gaps were left: {', '.join(often)}."
+    return {
+        "q": quality,
+        "height": _length(quality.height_mm),
+        "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
+        "rises": "rises" if quality.climb > 0 else "falls",
+        "rise": abs(quality.climb_mm),
+        "n_elastic": sum(share > BONE_VARIATION for share in variation.values()),
+        "n_limbs": len(variation),
+        "worst": f"{limb[0]} to {limb[1]}, {variation.get(limb, 0):.1%}",
+        "repeated": ", ".join(quality.repeated),
+        "swaps": "; ".join(swaps[:3]) + (f" and {len(swaps) - 3} more" if len(swaps) > 3 else ""),
+        "often": ", ".join(often),
+        "jumping": ", ".join(jumping),
+    }
 
 
-def _jumps(quality: Quality) -> str:
-    jumping = (repair.marker for repair in quality.repairs if repair.kind == "jump")
-    return f"Markers jump: {', '.join(dict.fromkeys(jumping))}."
-
-
-def _not_periodic(quality: Quality) -> str:
-    return (
-        f"This is no steady walk: two harmonics explain {quality.r2:.2f} of the movement, where "
-        f"steady walks reach {STEADY_R2:.2f} or more."
-    )
-
-
-_SENTENCES: dict[str, Callable[[Quality], str]] = {
-    "head_below_feet": lambda q: "The head is not above the feet: the wrong axis points up.",
-    "leaning": lambda q: (
-        f"From feet to head the body leans by {q.lean_deg:.0f} degrees: the frame is tilted, or "
-        "head or feet are not where they are said to be."
-    ),
-    "impossible_height": lambda q: (
-        f"From feet to head the body measures {_length(q.height_mm)}, which no walking person "
-        f"does: {_wrong_unit(q)}. Read it with unit=..."
-    ),
-    "small_body": lambda q: (
-        f"From feet to head the body measures {_length(q.height_mm)}: if this is no small child, "
-        f"{_wrong_unit(q)}."
-    ),
-    "no_steady_walk": lambda q: f"No steady walk was found. {q.problem}",
-    "not_level": lambda q: (
-        f"This is no level walk: the body {'rises' if q.climb > 0 else 'falls'} by "
-        f"{abs(q.climb_mm):.0f} mm over {q.n_strides} strides."
-    ),
-    "hardly_periodic": _not_periodic,
-    "not_periodic": _not_periodic,
-    "cadence": lambda q: (
-        f"{q.frequency_hz:.2f} strides a second is not the pace of a walk, which is between "
-        f"{FREQUENCIES_HZ[0]} and {FREQUENCIES_HZ[1]}; the frame rate may be wrong."
-    ),
-    "one_stride": lambda q: "Only one stride is steady, so nothing tells how it varies.",
-    "unsteady": lambda q: (
-        f"This is no steady walk: {q.n_strides} strides hang together, {q.steady_share:.0%} of the "
-        "time spent walking."
-    ),
-    "filled_gaps": lambda q: (
-        f"Of the steady samples {q.filled_share:.0%} were missing and were filled."
-    ),
-    "elastic_limbs": _elastic_limbs,
-    "sides_swapped": lambda q: (
-        "Knees bend backwards: left is called right, or the capture is mirrored."
-    ),
-    "repeated_names": lambda q: (
-        "Several markers are called alike, and the first of them is taken: "
-        f"{', '.join(q.repeated)}."
-    ),
-    "swapped_labels": _swapped_labels,
-    "flicker": _flicker,
-    "jumps": _jumps,
+_NOT_PERIODIC = (
+    "This is no steady walk: two harmonics explain {q.r2:.2f} of the movement, where steady walks "
+    f"reach {STEADY_R2:.2f} or more."
+)
+_SENTENCES = {
+    "head_below_feet": "The head is not above the feet: the wrong axis points up.",
+    "leaning": "From feet to head the body leans by {q.lean_deg:.0f} degrees: the frame is tilted, "
+    "or head or feet are not where they are said to be.",
+    "impossible_height": "From feet to head the body measures {height}, which no walking person "
+    "does: {wrong_unit}. Read it with unit=...",
+    "small_body": "From feet to head the body measures {height}: if this is no small child, "
+    "{wrong_unit}.",
+    "no_steady_walk": "No steady walk was found. {q.problem}",
+    "not_level": "This is no level walk: the body {rises} by {rise:.0f} mm over {q.n_strides} "
+    "strides.",
+    "hardly_periodic": _NOT_PERIODIC,
+    "not_periodic": _NOT_PERIODIC,
+    "cadence": "{q.frequency_hz:.2f} strides a second is not the pace of a walk, which is between "
+    f"{FREQUENCIES_HZ[0]} and {FREQUENCIES_HZ[1]}; the frame rate may be wrong.",
+    "one_stride": "Only one stride is steady, so nothing tells how it varies.",
+    "unsteady": "This is no steady walk: {q.n_strides} strides hang together, {q.steady_share:.0%} "
+    "of the time spent walking.",
+    "filled_gaps": "Of the steady samples {q.filled_share:.0%} were missing and were filled.",
+    "elastic_limbs": "{n_elastic} of {n_limbs} limbs change length by more than "
+    f"{BONE_VARIATION:.0%}; worst from {{worst}}.",
+    "sides_swapped": "Knees bend backwards: left is called right, or the capture is mirrored.",
+    "repeated_names": "Several markers are called alike, and the first of them is taken: "
+    "{repeated}.",
+    "swapped_labels": "Left and right changed places and were put right: {swaps}.",
+    "flicker": "Markers flicker, and gaps were left: {often}.",
+    "jumps": "Markers jump: {jumping}.",
 }
 
 _SUMMARY = {
