@@ -66,6 +66,11 @@ class Skeleton:
         partner = dict(self.pairs) | {right: left for left, right in self.pairs}
         return tuple(self.index(partner.get(name, name)) for name in self.markers)
 
+    @property
+    def segment_ends(self) -> list[tuple[int, int]]:
+        """Numbers of the markers at both ends of each segment."""
+        return [(self.index(one), self.index(other)) for one, other in self.segments]
+
     def restricted_to(self, markers: Iterable[str]) -> Skeleton:
         """Return the part of the skeleton that these markers span, in their order.
 

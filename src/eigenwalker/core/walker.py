@@ -171,7 +171,7 @@ class Walker:
         return stride_svg(
             self.trajectories(time).values,
             period_s=self.period_s,
-            segments=[(body.index(one), body.index(other)) for one, other in body.segments],
+            segments=body.segment_ends,
             height_px=height_px,
             label=f"A walker of {len(self.markers)} points at {self.frequency_hz:.2f} Hz",
         )

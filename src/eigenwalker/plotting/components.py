@@ -19,6 +19,8 @@ from eigenwalker.plotting.style import (
     USUAL,
     head_line,
     new_figure,
+    note,
+    panel,
     panels,
 )
 
@@ -57,8 +59,7 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     percent = 100 * np.array([share[:n_components] for share in shares])
     mean = percent.mean(axis=0)
     spread = percent.std(axis=0, ddof=1) if len(percent) > 1 else None
-    figure = new_figure(3.3, 2.3)
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(3.3, 2.3)
     order = np.arange(1, n_components + 1)
     axes.bar(order, mean, width=0.62, color=BLUE)
     if spread is not None:
@@ -68,15 +69,7 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     for number, share, above in zip(
         order, mean, mean if spread is None else mean + spread, strict=True
     ):
-        axes.annotate(
-            f"{share:.1f}",
-            (number, above),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            fontsize=SMALL,
-            color=INK,
-        )
+        note(axes, f"{share:.1f}", (number, above), (0, 3), ha="center")
     axes.set(xlabel="Component", ylabel="Variance (%)", xticks=order, ylim=(0, 105))
     return figure
 

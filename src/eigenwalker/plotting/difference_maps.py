@@ -16,13 +16,15 @@ from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
     BLUE,
     GREY,
-    INK,
     RED,
     SMALL,
     USUAL,
     bare,
+    colour_scale,
     head_line,
     new_figure,
+    note,
+    panel,
     panels,
 )
 from eigenwalker.plotting.walkers import HEAD_MM, INCH_MM, draw_body
@@ -165,10 +167,7 @@ def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
         axes.set_ylim(a[0] - half_a, a[-1] + half_a)
     if picture.marks is not None:
         axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
-    scale = figure.colorbar(drawn, cax=axes.inset_axes((1.03, 0, 0.05, 1)))
-    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
-    scale.ax.set_title(picture.unit, fontsize=SMALL, color=INK, parse_math=False)
-    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
+    colour_scale(figure, drawn, picture.unit, cax=axes.inset_axes((1.03, 0, 0.05, 1)))
     ordinate, abscissa = short_names(picture.names)
     axes.set_ylabel(f"{ordinate} (s)", parse_math=False)
     axes.set_xlabel(f"{abscissa} (s)", parse_math=False)
@@ -218,8 +217,8 @@ def figure_two_walks(
     top = max(each[..., 1].max() for both in seen.values() for each in both) + 1.5 * HEAD_MM
     pitch, storey = 1.7 * reach, top - low + 150
     width = pitch * (n_moments - 1) + 2 * reach
-    figure = new_figure(width / INCH_MM, (2 * storey + 250) / INCH_MM)
-    axes = bare(panels(figure, 1, 1)[0][0])
+    figure, axes = panel(width / INCH_MM, (2 * storey + 250) / INCH_MM)
+    bare(axes)
     for row, view in enumerate(views):
         for column in range(n_moments):
             for walk, color in zip(seen[view], (BLUE, RED), strict=True):
@@ -229,16 +228,8 @@ def figure_two_walks(
         share = f"{100 * column / n_moments:.0f} %"
         axes.text(column * pitch, low - storey - 90, share, fontsize=SMALL, ha="center", color=GREY)
     for place, (name, color) in enumerate(zip(names, (BLUE, RED), strict=True)):
-        axes.annotate(
-            name,
-            (0, 1),
-            xycoords="axes fraction",
-            xytext=(0, 2 + 10 * (1 - place)),
-            textcoords="offset points",
-            fontsize=USUAL,
-            color=color,
-            parse_math=False,
-        )
+        offset = (0, 2 + 10 * (1 - place))
+        note(axes, name, (0, 1), offset, xycoords="axes fraction", fontsize=USUAL, color=color)
     axes.set_xlim(-reach, (n_moments - 1) * pitch + reach)
     axes.set_ylim(low - storey - 150, top)
     return figure

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.plotting.style import BLUE, GREY, INK, RED, SMALL, new_figure, panels
+from eigenwalker.plotting.style import BLUE, GREY, INK, RED, SMALL, colour_scale, note, panel
 
 MAX_NAMED = 45
 """Walks up to which each is named; more names would overlap."""
@@ -35,8 +35,7 @@ def figure_difference_table(
     """
     values, order = np.asarray(table, dtype=float), np.asarray(order, dtype=int)
     side = float(np.clip(0.13 * len(order), 2.4, 6.2))
-    figure = new_figure(side + 2.1, side + 1.1)
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(side + 2.1, side + 1.1)
     drawn = axes.imshow(values[np.ix_(order, order)], cmap="gray", interpolation="nearest")
     if clusters is not None:
         sorted_clusters = np.asarray(clusters)[order]
@@ -50,10 +49,7 @@ def figure_difference_table(
         axes.set_yticks(range(len(order)), labels, parse_math=False)
     else:
         axes.set_xlabel("Walk, in order")
-    scale = figure.colorbar(drawn, ax=axes, fraction=0.046, pad=0.03)
-    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
-    scale.ax.set_title(unit, fontsize=SMALL, color=INK, parse_math=False)
-    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist, whatever the stub says
+    colour_scale(figure, drawn, unit, ax=axes, fraction=0.046, pad=0.03)
     return figure
 
 
@@ -65,23 +61,14 @@ def figure_map_of_walks(
     Their classes, up to `MAX_CLASSES`, have colours and marks; names are written beside them.
     """
     places, of = np.asarray(places, dtype=float), np.asarray(classes)
-    figure = new_figure(4.8, 3.9)
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(4.8, 3.9)
     for number, name in enumerate(np.unique(of)):
         color, mark = _INKS[number % len(_INKS)], _MARKS[number % len(_MARKS)]
         chosen = places[of == name]
         label = f"{name} ({len(chosen)})".replace("$", r"\$")  # words, not mathematics
         axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)
     for place, name in zip(places, short_names(names or []), strict=False):
-        axes.annotate(
-            name,
-            tuple(place),
-            xytext=(3, 3),
-            textcoords="offset points",
-            fontsize=SMALL - 1.5,
-            color=GREY,
-            parse_math=False,
-        )
+        note(axes, name, place, (3, 3), fontsize=SMALL - 1.5, color=GREY)
     figure.legend(
         loc="outside upper left", ncols=4, fontsize=SMALL, frameon=False, handletextpad=0.1
     )

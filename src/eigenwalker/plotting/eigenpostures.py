@@ -22,8 +22,7 @@ from eigenwalker.plotting.style import (
     SMALL,
     USUAL,
     bare,
-    new_figure,
-    panels,
+    panel,
 )
 from eigenwalker.plotting.walkers import HEAD_MM, INCH_MM, draw_body
 
@@ -87,10 +86,10 @@ def figure_eigenpostures(
     pitch = 2 * np.abs(seen[:, 0]).max() + 220
     bottom, top = seen[:, 1].min() - 30, seen[:, 1].max() + HEAD_MM
     story = top - bottom + 130
-    figure = new_figure(
+    figure, axes = panel(
         (len(walker.p) * pitch + 100) / INCH_MM, (len(azimuths_deg) * story + 330) / INCH_MM
     )
-    axes = bare(panels(figure, 1, 1)[0][0])
+    bare(axes)
     for column, (plus, minus) in enumerate(extremes):
         for row, view in enumerate(azimuths_deg):
             shown = project([walker.p0, plus, minus], azimuth_deg=view)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, new_figure, panels
+from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, panel
 
 
 def figure_weights(
@@ -20,8 +20,7 @@ def figure_weights(
     as fig. 5 of Pražák et al. (2010) lists them.
     """
     several = len(fits) > 1
-    figure = new_figure(4.0, 0.6 + (0.3 if several else 0.22) * len(names) + 0.2 * several)
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(4.0, 0.6 + (0.3 if several else 0.22) * len(names) + 0.2 * several)
     places = np.arange(len(names))
     least = 0.0
     for count, ((name, (weights, low, high)), color) in enumerate(
@@ -45,8 +44,7 @@ def figure_weights(
 def figure_predictions(observed: ArrayLike, predicted: ArrayLike) -> Figure:
     """Return predicted over perceived differences, 0 to 1, a point a pair."""
     observed, predicted = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
-    figure = new_figure(3.2, 3.2)
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(3.2, 3.2)
     ends = [min(observed.min(), predicted.min()), max(observed.max(), predicted.max())]
     axes.plot(ends, ends, color=GREY, lw=0.8, ls="--", zorder=0)
     axes.plot(observed, predicted, "o", ms=3, mfc=BLUE, mec="none", alpha=0.6)
@@ -59,8 +57,7 @@ def figure_predictions(observed: ArrayLike, predicted: ArrayLike) -> Figure:
 def figure_shares(shares: Mapping[str, float]) -> Figure:
     """Return bars of the share of a difference that each part has, 0 to 1, the largest first."""
     ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
-    figure = new_figure(3.6, 0.6 + 0.2 * len(ordered))
-    axes = panels(figure, 1, 1)[0][0]
+    figure, axes = panel(3.6, 0.6 + 0.2 * len(ordered))
     places = np.arange(len(ordered))
     percent = [100 * share for share in ordered.values()]
     axes.barh(places, percent, height=0.65, color=BLUE)

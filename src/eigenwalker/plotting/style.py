@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -50,19 +51,30 @@ def bare(axes: Axes) -> Axes:
     return axes
 
 
+def panel(width_in: float, height_in: float) -> tuple[Figure, Axes]:
+    """Return a figure of one panel."""
+    figure = new_figure(width_in, height_in)
+    return figure, panels(figure, 1, 1)[0][0]
+
+
+def note(axes: Axes, words: str, place: Sequence[float], offset: Any, **how: Any) -> None:
+    """Write small words at an offset, in points, from a place."""
+    look = {"fontsize": SMALL, "color": INK, "textcoords": "offset points", "parse_math": False}
+    axes.annotate(words, tuple(place), xytext=tuple(offset), **look | how)  # pyright: ignore[reportArgumentType] - two numbers
+
+
+def colour_scale(figure: Figure, drawn: Any, unit: str, **where: Any) -> None:
+    """Add a small colour bar with its unit above."""
+    scale = figure.colorbar(drawn, **where)
+    scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
+    scale.ax.set_title(unit, fontsize=SMALL, color=INK, parse_math=False)
+    scale.outline.set_visible(False)  # pyright: ignore[reportCallIssue] - an artist
+
+
 def head_line(axes: Axes, words: str, *, letter: str = "") -> None:
     """Write a short title at the left over the axes, after a bold letter that names the panel."""
     words = textwrap.fill(words, LINE)
     axes.set_title(words, fontsize=USUAL, loc="left", color=INK, pad=5, parse_math=False)
     if letter:
-        axes.annotate(
-            letter,
-            (0, 1),
-            xycoords="axes fraction",
-            xytext=(-14, 5),
-            textcoords="offset points",
-            fontsize=USUAL + 1,
-            fontweight="bold",
-            color=INK,
-            va="bottom",
-        )
+        how = {"xycoords": "axes fraction", "fontweight": "bold", "va": "bottom"}
+        note(axes, letter, (0, 1), (-14, 5), fontsize=USUAL + 1, **how)

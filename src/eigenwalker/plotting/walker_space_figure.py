@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, calm, new_figure, panels
+from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, note, panel
 
 
 class Space(Protocol):
@@ -60,8 +60,7 @@ def figure_space(
     """
     X, across = np.asarray(X, dtype=float), [component - 1 for component in components]
     scores = space.transform(X)[:, across]
-    figure = new_figure(3.9, 3.2)
-    axes = calm(panels(figure, 1, 1)[0][0])
+    figure, axes = panel(3.9, 3.2)
     values = np.asarray(trait)
     if values.dtype.kind in "OUS":
         _draw_classes(axes, scores, values.astype(str))
@@ -111,13 +110,4 @@ def _draw_direction(axes: Axes, moved: np.ndarray, length: float, poles: tuple[s
     axes.annotate("", xy=tuple(ends[1]), xytext=tuple(ends[0]), arrowprops=arrow, zorder=1)
     axes.plot(*1.15 * ends.T, lw=0)  # room for the words
     for words, end, outwards in zip(poles, ends, (-way, way), strict=True):
-        axes.annotate(
-            words,
-            xy=tuple(end),
-            xytext=tuple(10 * outwards),
-            textcoords="offset points",
-            fontsize=SMALL,
-            color=INK,
-            ha="center",
-            va="center",
-        )
+        note(axes, words, end, 10 * outwards, ha="center", va="center")

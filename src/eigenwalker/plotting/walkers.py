@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.projection import project
-from eigenwalker.plotting.style import GREY, INK, PALE, SMALL, USUAL, bare, new_figure, panels
+from eigenwalker.plotting.style import GREY, INK, PALE, SMALL, USUAL, bare, panel
 
 HEAD_MM = 95.0
 """Radius of the head that is drawn about the marker of that name."""
@@ -104,8 +104,8 @@ def figure_joints(
     )
     right = middles[-1] + reach + (50 if len(middles) > 1 else names)
     top = max(picture[:, 1].max() for picture in pictures) + 1.5 * HEAD_MM
-    figure = new_figure((reach + names + right) / INCH_MM, (top + 230) / INCH_MM)
-    axes = bare(panels(figure, 1, 1)[0][0])
+    figure, axes = panel((reach + names + right) / INCH_MM, (top + 230) / INCH_MM)
+    bare(axes)
     _name_joints(axes, pictures[0], body, reach)
     for middle, view, picture in zip(middles, azimuths_deg, pictures, strict=True):
         draw_body(axes, picture, body, at=(middle, 0))
@@ -208,10 +208,10 @@ def figure_walkers(
     pitch = 2 * np.abs(seen[:, 0]).max() + 160
     bottom, top = seen[:, 1].min() - 40, seen[:, 1].max() + HEAD_MM
     story = top - bottom + 130
-    figure = new_figure(
+    figure, axes = panel(
         (len(walkers) * pitch + 100) / INCH_MM, (len(azimuths_deg) * story + 170) / INCH_MM
     )
-    axes = bare(panels(figure, 1, 1)[0][0])
+    bare(axes)
     bodies = [skeleton.restricted_to(walker.markers) for walker in walkers.values()]
     for row, shown in enumerate(pictures):
         for column, (picture, body) in enumerate(zip(shown, bodies, strict=True)):

@@ -100,8 +100,7 @@ class LimbDots(Transform):
 
 def _segments(moving: MovingDots) -> tuple[np.ndarray, np.ndarray]:
     """Ends of the segments, and the summed lengths up to the end of each in the mean posture."""
-    pairs = [(moving.dots.index(a), moving.dots.index(b)) for a, b in moving.skeleton.segments]
-    ends = np.array(pairs, dtype=int).reshape(-1, 2)
+    ends = np.array(moving.skeleton.segment_ends, dtype=int).reshape(-1, 2)
     ways = moving.mean[ends[:, 0]] - moving.mean[ends[:, 1]]
     return ends, np.cumsum(np.sqrt(np.sum(np.nan_to_num(ways) ** 2, axis=1)))
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from eigenwalker.core.skeleton import Skeleton
 from eigenwalker.plotting.raster import draw_blobs, draw_discs, draw_lines
 from eigenwalker.plotting.shades import composite_mannequin, mannequin_shades, shades_between
 from eigenwalker.stimulus.mannequin import Hulls, Mannequin, body_heights, hulls_at, mannequin_of
@@ -40,7 +39,6 @@ def drawn_frames(
     places[~played.visible] = np.nan
     bodies = mannequins(stimulus)
     look = look_of(stimulus, shape)
-    ends = [_ends(figure.skeleton) for figure in stimulus.scene]
     canvas = np.zeros(shape, np.uint8)
     for moment, places_now in enumerate(places):
         lit = draw_hulls(hulls_of(stimulus, bodies, played, moment), look) if bodies else None
@@ -53,7 +51,7 @@ def drawn_frames(
                 draw_blobs(canvas, dots, sd_px=figure.blur_mm * display.px_per_mm)
                 continue
             if display.style == "sticks" and figure.skeleton.segments:
-                start, end = ends[number]
+                start, end = np.transpose(figure.skeleton.segment_ends)
                 width = max(STICK_PER_DOT * display.dot_px, 1.0)
                 draw_lines(canvas, dots[start], dots[end], width=width)
             draw_discs(canvas, dots, radius=display.dot_px / 2)
@@ -97,12 +95,3 @@ def look_of(stimulus: Stimulus, shape: tuple[int, int]) -> Look:
     display = stimulus.display
     middle = ((display.width_px - 1) / 2, (display.height_px - 1) / 2)
     return Look(shape, display.px_per_mm, middle, stimulus.view.eye_distance_mm)
-
-
-def _ends(skeleton: Skeleton) -> np.ndarray:
-    """Numbers of the markers at both ends of each segment: array of shape (2, segment)."""
-    return (
-        np.array([[skeleton.index(marker) for marker in link] for link in skeleton.segments])
-        .reshape(-1, 2)
-        .T
-    )

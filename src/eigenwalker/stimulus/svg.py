@@ -72,13 +72,12 @@ def svg_drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
 def _svg_sticks(
     skeleton: Skeleton, places: np.ndarray, seen: np.ndarray, dot_px: float, colour: str
 ) -> list[str]:
-    ends = [(skeleton.index(one), skeleton.index(other)) for one, other in skeleton.segments]
     width = max(STICK_PER_DOT * dot_px, 1)
     return [
         f'<line x1="{places[a, 0]:.4f}" y1="{places[a, 1]:.4f}" x2="{places[b, 0]:.4f}" '
         f'y2="{places[b, 1]:.4f}" stroke="{colour}" stroke-width="{width:.4f}" '
         'stroke-linecap="round"/>'
-        for a, b in ends
+        for a, b in skeleton.segment_ends
         if seen[a] and seen[b]
     ]
 
