@@ -1,7 +1,7 @@
 """Builds the pages and their modules when a wheel or an editable install is made.
 
-Where no Node is installed, one comes as a wheel for the time of the build. Where they cannot be
-built, as without a network, the package is installed without them, and says so when one is needed.
+If no Node is installed, the build takes one from a wheel. If the pages cannot be built, for example
+without a network, the package is installed without them, and reports that when one is needed.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class PageHook(BuildHookInterface):
             _build()
         except (OSError, ImportError, subprocess.SubprocessError) as error:
             for built in BUILT:
-                built.unlink(missing_ok=True)  # an old page would play new stimuli wrongly
+                built.unlink(missing_ok=True)  # an old page would misread new stimuli
             self.app.display_warning(f"The pages were not built: {error}")
 
 
@@ -75,8 +75,8 @@ def _npm_here() -> str | None:
     if node is None or npm is None:
         return None
     try:
-        said = subprocess.run([node, "--version"], capture_output=True, text=True, check=True)
-        version = tuple(int(part) for part in said.stdout.strip().lstrip("v").split(".")[:2])
+        answer = subprocess.run([node, "--version"], capture_output=True, text=True, check=True)
+        version = tuple(int(part) for part in answer.stdout.strip().lstrip("v").split(".")[:2])
     except (OSError, ValueError, subprocess.SubprocessError):
         return None
     return npm if version >= OLDEST_NODE else None

@@ -26,9 +26,11 @@ def installed() -> None:
     """The packages of the lock file, or a skip where they cannot be had."""
     if not FRONTEND.exists() or NPM is None:
         pytest.skip("Node is not installed, so the browser's side is not tested")
-    said = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout
-    if tuple(map(int, said.strip().lstrip("v").split(".")[:2])) < OLDEST_NODE:
-        pytest.skip(f"Node {said.strip()} is too old to test the browser's side")
+    version = subprocess.run(
+        ["node", "--version"], capture_output=True, text=True, check=True
+    ).stdout
+    if tuple(map(int, version.strip().lstrip("v").split(".")[:2])) < OLDEST_NODE:
+        pytest.skip(f"Node {version.strip()} is too old to test the browser's side")
     if not (FRONTEND / "node_modules" / "vitest").exists():
         answer = npm("ci")
         if answer.returncode:
