@@ -1,8 +1,11 @@
 """All that is wrong with a capture is found, and nothing that is not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import eigenwalker as ew
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.io.read import read_mocap
@@ -208,3 +211,15 @@ def test_the_stumble_among_acted_styles_is_flagged(captures):
     steady = read_mocap(folder / "dataset-2_walk_normal_001.bvh")
     assert {"unsteady", "hardly_periodic"} & set(assess(virtual_markers(stumble)).findings)
     assert assess(virtual_markers(steady)).verdict == "use"
+
+
+def test_a_partial_file_that_is_kept_is_flagged(tmp_path: Path) -> None:
+    walk = ew.simulate_walk(seed=1, duration_s=8, noise_mm=1)
+    path = ew.write_mocap(walk, tmp_path / "walk.trc")
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(lines[:-20]))
+    capture = ew.read_mocap(path, partial="keep")
+    quality = ew.assess(capture)
+    assert quality.n_frames_cut == 20
+    assert "cut_short" in quality.findings
+    assert quality.verdict == "use with care"

@@ -117,6 +117,7 @@ def judge(
         lean_deg=lean_deg,
         unit=str(capture.attrs.get("unit", "")),
         unit_guessed=bool(capture.attrs.get("unit_guessed", False)),
+        n_frames_cut=int(capture.attrs.get("n_frames_cut", 0)),
         problem=problem,
         **({} if walk is None else _steadiness(walk, strides, repaired.values, rate_hz)),
     )

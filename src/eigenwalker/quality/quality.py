@@ -107,6 +107,8 @@ class Quality:
         Correlation of the movement with itself a stride later.
     treadmill : bool
         Whether the body stays where it is.
+    n_frames_cut : int
+        Frames that the file declares and lacks (``read_mocap(..., partial="keep")``).
     problem : str
         Why there are no steady strides; else empty.
 
@@ -138,6 +140,7 @@ class Quality:
     r2: float = np.nan
     periodicity: float = np.nan
     treadmill: bool = False
+    n_frames_cut: int = 0
     problem: str = ""
 
     @property
@@ -218,4 +221,5 @@ def _of_labels(quality: Quality) -> dict[str, bool]:
         "swapped_labels": quality.left_right_swaps > 0,
         "flicker": max(quality.removed_share.values(), default=0) > FLICKER_SHARE,
         "jumps": any(repair.kind == "jump" for repair in quality.repairs),
+        "cut_short": quality.n_frames_cut > 0,
     }
