@@ -157,7 +157,7 @@ _SENTENCES = {
     "swapped_labels": "Left and right changed places and were put right: {swaps}.",
     "flicker": "Markers flicker, and gaps were left: {often}.",
     "jumps": "Markers jump: {jumping}.",
-    "cut_short": lambda q: f"The file lacks {q.n_frames_cut} of the frames that it declares.",
+    "cut_short": "The file lacks {q.n_frames_cut} of the frames that it declares.",
 }
 
 _SUMMARY = {
