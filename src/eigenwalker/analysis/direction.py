@@ -87,19 +87,14 @@ def direction(
         )
     scores = c if kind == "discriminant" else discriminant.pattern_
     if units != "raw":
-        scores = scores * _length(discriminant, units) / _advance(c, scores)
+        advance = float(c @ scores)  # how much c k changes along the step
+        if not advance > 0:
+            raise ValueError(
+                "The discriminant is the same for all walkers it was fitted on, so there is no "
+                "direction to exaggerate; the trait may not vary with any component that was used."
+            )
+        scores = scores * _length(discriminant, units) / advance
     return scores @ space.eigenwalkers_
-
-
-def _advance(c: np.ndarray, scores: np.ndarray) -> float:
-    """How much c k changes along a step in the scores."""
-    advance = float(c @ scores)
-    if not advance > 0:
-        raise ValueError(
-            "The discriminant is the same for all walkers it was fitted on, so there is no "
-            "direction to exaggerate; the trait may not vary with any component that was used."
-        )
-    return advance
 
 
 def _length(discriminant: Discriminant, units: Units) -> float:

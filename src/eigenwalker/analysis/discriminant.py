@@ -34,7 +34,10 @@ class _Discriminant(BaseEstimator):
         self.coef_ = np.zeros_like(c)
         self.coef_[used] = c[used]
         self.intercept_ = float(level - middle @ self.coef_)
-        self._describe_walkers(K, used)
+        projections = K @ self.coef_
+        self.spread_ = float(projections.std(ddof=1))
+        self.pattern_ = np.zeros_like(c)
+        self.pattern_[used] = K[:, used].T @ (projections - projections.mean()) / (len(K) - 1)
 
     def _n_used(self, n_columns: int) -> int:
         if self.n_components is None:
@@ -45,13 +48,6 @@ class _Discriminant(BaseEstimator):
                 f"with {n_columns} columns offer."
             )
         return self.n_components
-
-    def _describe_walkers(self, K: np.ndarray, used: np.ndarray) -> None:
-        projections = K @ self.coef_
-        self.spread_ = float(projections.std(ddof=1))
-        deviations = projections - projections.mean()
-        self.pattern_ = np.zeros_like(self.coef_)
-        self.pattern_[used] = K[:, used].T @ deviations / (len(K) - 1)
 
     def _projections(self, X: ArrayLike) -> np.ndarray:
         check_is_fitted(self)

@@ -97,6 +97,10 @@ def _both_sides(*parts: str) -> tuple[str, ...]:
     return tuple(f"{side}_{part}" for side in ("left", "right") for part in parts)
 
 
+def _links_of_sides(*links: Segment) -> tuple[Segment, ...]:
+    return tuple((f"{side}_{a}", f"{side}_{b}") for a, b in links for side in ("left", "right"))
+
+
 JOINTS = Skeleton(
     markers=(
         "head",
@@ -108,14 +112,11 @@ JOINTS = Skeleton(
         *("right_hip", "right_knee", "right_ankle"),
     ),
     segments=(
-        ("head", "sternum"),
-        ("sternum", "pelvis"),
+        *(("head", "sternum"), ("sternum", "pelvis")),
         *(("sternum", shoulder) for shoulder in _both_sides("shoulder")),
-        *((f"{side}_shoulder", f"{side}_elbow") for side in ("left", "right")),
-        *((f"{side}_elbow", f"{side}_wrist") for side in ("left", "right")),
+        *_links_of_sides(("shoulder", "elbow"), ("elbow", "wrist")),
         *(("pelvis", hip) for hip in _both_sides("hip")),
-        *((f"{side}_hip", f"{side}_knee") for side in ("left", "right")),
-        *((f"{side}_knee", f"{side}_ankle") for side in ("left", "right")),
+        *_links_of_sides(("hip", "knee"), ("knee", "ankle")),
     ),
     pairs=tuple(
         (f"left_{part}", f"right_{part}")
