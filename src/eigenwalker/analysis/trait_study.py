@@ -119,7 +119,7 @@ def study_trait(population: Population, result: Classification | Regression) -> 
         plausible = {title: plausibility(shown, vector) for title, vector in vectors.items()}
         walkers = {title: shown.walker(vector) for title, vector in vectors.items()}
         views[kind] = TraitView(walkers, plausible, step)
-    used = population.unflagged() if not population.flagged.all() else population
+    used = population.select(population.in_average)
     X = population.X[contrast.rows]
     return TraitStudy(
         result=result,

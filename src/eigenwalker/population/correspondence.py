@@ -339,7 +339,7 @@ def _flags(aligned: _Aligned, reference: ReferenceWalker) -> tuple[str, ...]:
 
 def _with_postures(walker: Walker, aligned: _Aligned, number: int, clock: float) -> Walker:
     """Return the walker with its postures in correspondence, its clock shifted by an angle."""
-    n_components = aligned.postures.shape[1]
+    n_components: int = aligned.postures.shape[1]
     later_s = wrap_phase(np.array(clock)).item() / (2 * np.pi * walker.frequency_hz)
     fit = walker.fit
     if fit is not None:
