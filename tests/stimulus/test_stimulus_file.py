@@ -105,6 +105,46 @@ def test_what_is_wrong_is_refused_in_words(plain, change, tmp_path):
         Stimulus.load(path)
 
 
+@pytest.mark.parametrize(("change", "named"), [
+    ({"view": {"centre_mm": [0, 0, 0], "view_deg": True}}, ["view.view_deg", "a number", "True"]),
+    ({"timing": {"duration_s": 1e9}}, ["timing.duration_s", "3600", "1000000000"]),
+    ({"version": 2}, ["version", "1", "2"]),
+    ({"view": {}}, ["view.centre_mm", "none"]),
+    ({"surprise": 1}, ["'figures'", "surprise"]),
+    ({"figures": []}, ["figures", "1 to 64", "0"]),
+    ({"transforms": [{"name": "fold"}]}, ["transforms[0]", "invert", "fold"]),
+    ({"transforms": [{"name": "invert", "twice": 1}]}, ["transforms[0] (invert)", "twice"]),
+    ({"transforms": [{"name": "rotate", "axis": "q"}]}, ["(rotate).axis", "sight", "'q'"]),
+    ({"transforms": [{"name": "occlude", "markers": ["tail"]}]}, ["(occlude)", "tail", "pelvis"]),
+    ({"transforms": [{"name": "invert", "figures": [0, 0]}]}, ["(invert).figures", "twice"]),
+])  # fmt: skip
+def test_a_problem_names_its_place_what_was_expected_and_what_is_there(plain, change, named):
+    with pytest.raises(ValueError, match="This is no stimulus: ") as refused:
+        Stimulus.from_dict(plain.to_dict() | change)
+    assert [part for part in named if part not in str(refused.value)] == []
+
+
+def test_all_problems_are_named_at_once_and_no_more_than_twenty(plain):
+    content = plain.to_dict()
+    with pytest.raises(ValueError, match=r"view_deg.*duration_s"):
+        Stimulus.from_dict(content | {"view": {"view_deg": "1"}, "timing": {"duration_s": 0}})
+    with pytest.raises(ValueError, match=r"transforms\[19\].*and more") as refused:
+        Stimulus.from_dict(content | {"transforms": [{"name": "fold"}] * 64})
+    assert "transforms[20]" not in str(refused.value)
+
+
+@pytest.mark.parametrize("change", [
+    {f"name {number}": 1 for number in range(200_000)},
+    {"transforms": [{}] * 200_000}, {"transforms": [{"name": "occlude", "markers": [1] * 200_000}]},
+    {"provenance": {str(number): 1 for number in range(200_000)}},
+    {"transforms": [{"name": "freeze", **{str(number): 1 for number in range(200_000)}}]},
+], ids=["names", "transforms", "markers", "texts", "parameters"])  # fmt: skip
+def test_a_huge_file_is_refused_with_a_short_message(plain, change):
+    with pytest.raises(ValueError, match="This is no stimulus: ") as refused:
+        Stimulus.from_dict(plain.to_dict() | change)
+    assert len(str(refused.value)) < 5000
+
+
 @pytest.mark.parametrize("figure", [
     {"walker": None}, {"trajectories": {}}, {"segments": [["head", "tail"]]},
     {"pairs": [["head", "pelvis"], ["pelvis", "sternum"]]}, {"segments": [["head", "head"]]},
