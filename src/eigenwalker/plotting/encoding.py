@@ -16,7 +16,7 @@ from av.video.plane import VideoPlane
 from av.video.stream import VideoStream
 
 from eigenwalker.core.atomic_write import atomic_write
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 
 CENTISECONDS = {50: 2, 25: 4, 20: 5}
 """Frame rates of a GIF, whose delays are whole hundredths of a second, and those delays."""
@@ -117,14 +117,13 @@ def encode_film(
         stream.pix_fmt = form.pixels
         stream.codec_context.time_base = tick
         start = Fraction(0)
-        for done, (cover, delay) in enumerate(zip(frames, delays, strict=True), start=1):
+        timed = zip(frames, delays, strict=True)
+        for cover, delay in ticked(timed, len(delays), progress):
             frame = painted.frame(cover)
             frame.time_base, frame.pts = tick, round(start / tick)
             frame.duration = round(delay / tick)
             film.mux(stream.encode(frame))
             start += delay
-            if progress is not None:
-                progress(done, len(delays))
         film.mux(stream.encode())
 
 

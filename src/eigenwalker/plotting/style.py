@@ -27,21 +27,17 @@ def new_figure(width_in: float, height_in: float) -> Figure:
 
 
 def panels(figure: Figure, n_rows: int, n_columns: int, **how: Any) -> list[list[Axes]]:
-    """Return calm axes, row by row."""
+    """Return axes row by row, with thin spines below and at the left, and small letters."""
     axes = figure.subplots(n_rows, n_columns, squeeze=False, **how)
-    return [[calm(panel) for panel in row] for row in axes]
-
-
-def calm(axes: Axes) -> Axes:
-    """Return the axes with thin spines below and at the left, and small letters."""
-    for name, spine in axes.spines.items():
-        spine.set_visible(name in ("left", "bottom"))
-        spine.set_linewidth(0.6)
-        spine.set_color(INK)
-    axes.tick_params(labelsize=SMALL, width=0.6, length=2.5, color=INK, labelcolor=INK)
-    axes.xaxis.label.set_fontsize(USUAL)
-    axes.yaxis.label.set_fontsize(USUAL)
-    return axes
+    for each in axes.flat:
+        for name, spine in each.spines.items():
+            spine.set_visible(name in ("left", "bottom"))
+            spine.set_linewidth(0.6)
+            spine.set_color(INK)
+        each.tick_params(labelsize=SMALL, width=0.6, length=2.5, color=INK, labelcolor=INK)
+        each.xaxis.label.set_fontsize(USUAL)
+        each.yaxis.label.set_fontsize(USUAL)
+    return axes.tolist()
 
 
 def bare(axes: Axes) -> Axes:

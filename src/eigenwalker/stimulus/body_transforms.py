@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from eigenwalker.stimulus.moving_dots import Moments, MovingDots, outward
+from eigenwalker.stimulus.moving_dots import Moments, MovingDots, parents_of
 from eigenwalker.stimulus.transform_types import (
     Context,
     Degrees,
@@ -67,15 +67,14 @@ class Gain(Transform):
     axes: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] = Field("xyz", description="of it")
 
     def apply(self, moving: MovingDots, context: Context) -> MovingDots:
-        parents, order = moving.parents, outward(moving.parents)
+        parents = parents_of(moving.skeleton)
         factors = np.array([self.factor if axis in self.axes else 1.0 for axis in "xyz"])
         named = [dot in self.markers for dot in moving.dots]
         mean = moving.mean
 
         def changed(positions: np.ndarray, time: np.ndarray) -> np.ndarray:
             new = np.array(positions)
-            for dot in order:
-                parent = parents[dot]
+            for dot, parent in parents.items():
                 carried = positions[:, parent] if parent >= 0 else 0.0
                 new_carried = new[:, parent] if parent >= 0 else 0.0
                 way = positions[:, dot] - carried

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -91,40 +91,25 @@ class MovingDots:
         seen = self.mean[~np.isnan(self.mean).any(axis=1)]
         return (seen.min(axis=0) + seen.max(axis=0)) / 2 if len(seen) else np.zeros(3)
 
-    @cached_property
-    def parents(self) -> tuple[int, ...]:
-        """For each dot the dot that carries it, -1 where nothing does (`parents_of`)."""
-        return parents_of(self.skeleton)
 
+def parents_of(skeleton: Skeleton) -> dict[int, int]:
+    """Return for each marker the one that carries it, from the root outwards, by their numbers.
 
-def parents_of(skeleton: Skeleton) -> tuple[int, ...]:
-    """Return for each marker the one that carries it, along the segments from the root outwards.
-
-    The root is ``pelvis``, or the first marker where there is none. Markers are reached level by
-    level, segments being tried in their order; those that nothing joins to the root have no parent.
+    The root is ``pelvis``, or the first marker where there is none; its parent is -1, as that of
+    markers that nothing joins to it. Markers are reached level by level, segments in their order.
     """
     markers = skeleton.markers
-    root = "pelvis" if "pelvis" in markers else markers[0]
-    parent = {root: -1}
+    links = [link for a, b in skeleton.segment_ends for link in ((a, b), (b, a))]
+    root = markers.index("pelvis") if "pelvis" in markers else 0
+    parents = {root: -1}
     waiting = deque([root])
     while waiting:
         carrier = waiting.popleft()
-        for ends in skeleton.segments:
-            if carrier in ends:
-                other = ends[1] if ends[0] == carrier else ends[0]
-                if other not in parent:
-                    parent[other] = markers.index(carrier)
-                    waiting.append(other)
-    return tuple(parent.get(marker, -1) for marker in markers)
-
-
-def outward(parents: Sequence[int]) -> list[int]:
-    """Return the dots in such an order that each comes after the one that carries it."""
-
-    def depth(dot: int) -> int:
-        return 0 if parents[dot] < 0 else 1 + depth(parents[dot])
-
-    return sorted(range(len(parents)), key=depth)
+        for one, other in links:
+            if one == carrier and other not in parents:
+                parents[other] = carrier
+                waiting.append(other)
+    return parents | {marker: -1 for marker in range(len(markers)) if marker not in parents}
 
 
 def walking(walker: Walker, skeleton: Skeleton) -> MovingDots:

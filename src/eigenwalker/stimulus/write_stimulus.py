@@ -6,11 +6,16 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+from matplotlib.image import imsave
+
 from eigenwalker.core.atomic_write import atomic_write
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.io.write import write_mocap
-from eigenwalker.stimulus import films, position_tables
+from eigenwalker.plotting.encoding import encode_film, film_format, frame_delays
+from eigenwalker.stimulus import position_tables
 from eigenwalker.stimulus.animation import animated
+from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades
 from eigenwalker.stimulus.gltf import write_glb
 from eigenwalker.stimulus.html_page import stand_alone_page
 from eigenwalker.stimulus.stimulus import Stimulus
@@ -71,11 +76,11 @@ def write_stimulus(
     if not path.parent.is_dir():
         raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
     if not suffix:
-        films.write_frames(stimulus, path, progress)
+        _write_frames(stimulus, path, progress)
         return path
     with atomic_write(path) as unfinished:
         if suffix in FILMS:
-            films.write_stimulus_film(stimulus, unfinished, progress)
+            _write_film(stimulus, unfinished, progress)
         elif suffix == ".py":
             table = path.with_suffix(".npz")
             write_stimulus(stimulus, table)
@@ -83,6 +88,49 @@ def write_stimulus(
         else:
             WRITERS[suffix](stimulus, unfinished)
     return path
+
+
+def _write_film(stimulus: Stimulus, path: Path, progress: Progress | None) -> None:
+    """Write a film; the suffix decides: ``.mp4``, ``.webm`` or ``.gif``.
+
+    Its frames are those of the stimulus' rate. A GIF, whose delays are whole hundredths of a
+    second, has 50 a second where the stimulus has another rate than 50, 25 or 20, and lasts as
+    long. A picture of an odd size gets one more row or column of ground.
+    """
+    rate_hz = stimulus.timing.rate_hz
+    gif = path.suffix.lower() == ".gif"
+    form = film_format(path, None if gif and rate_hz not in (50, 25, 20) else rate_hz)
+    if gif and rate_hz not in (50, 25, 20):
+        rate_hz = form.rate_hz
+    delays = frame_delays(stimulus.timing.duration_s, rate_hz, form, whole=False)
+    starts = np.cumsum([0.0, *map(float, delays[:-1])])
+    display = stimulus.display
+    shape = (display.height_px + display.height_px % 2, display.width_px + display.width_px % 2)
+    encode_film(
+        drawn_frames(stimulus, starts, shape=shape),
+        path,
+        shape=shape,
+        form=form,
+        delays=delays,
+        shades=drawn_shades(stimulus),
+        progress=progress,
+    )
+
+
+def _write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None) -> None:
+    """Write every frame as a PNG into a folder: ``frame_0000.png``, ``frame_0001.png``, ..."""
+    folder.mkdir(parents=True, exist_ok=True)
+    times = stimulus.frame_times
+    colours = np.rint(drawn_shades(stimulus)).astype(np.uint8)
+    frames = ticked(drawn_frames(stimulus, times), len(times), progress)
+    for number, shades in enumerate(frames):
+        imsave(folder / f"frame_{number:04d}.png", colours[shades])
+
+
+def _write_png(stimulus: Stimulus, path: Path) -> None:
+    """Write the first moment as a PNG."""
+    (shades,) = drawn_frames(stimulus, np.zeros(1))
+    imsave(path, np.rint(drawn_shades(stimulus)).astype(np.uint8)[shades], format="png")
 
 
 def _write_text(text: str, path: Path) -> None:
@@ -97,7 +145,7 @@ def _write_glb(stimulus: Stimulus, path: Path) -> None:
 FILMS = (".mp4", ".webm", ".gif")
 WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
     ".json": lambda stimulus, path: _write_text(stimulus.to_json(), path),
-    ".png": films.write_png,
+    ".png": _write_png,
     ".svg": lambda stimulus, path: _write_text(svg_drawing(stimulus), path),
     ".csv": position_tables.write_csv,
     ".npz": position_tables.write_npz,
