@@ -64,11 +64,14 @@ def check_ranges(state: Mapping[str, Any]) -> None:
     """Refuse a state, as `mixed_vector` takes it, beyond the page's sliders."""
     bias = state.get("bias")
     values = {
-        "traits": dict(state.get("traits", {})),
+        "traits": state.get("traits", {}),
         "bias": {f"The bias towards {bias['trait']}": bias["steps"]} if bias else {},
-        "eigenwalkers": _numbered("Eigenwalker", state.get("eigenwalkers", ())),
-        "strengths": _numbered("The strength of component", state.get("strengths", ())),
     }
+    for kind, name in (
+        ("eigenwalkers", "Eigenwalker"),
+        ("strengths", "The strength of component"),
+    ):
+        values[kind] = {f"{name} {n}": each for n, each in enumerate(state.get(kind, ()), start=1)}
     for kind, most in RANGES.items():
         for name, value in values[kind].items():
             if abs(value) > most:
@@ -76,10 +79,6 @@ def check_ranges(state: Mapping[str, Any]) -> None:
                     f"{name} is {value:g}; give a number from {-most:g} to {most:g}, as far as "
                     "the sliders go."
                 )
-
-
-def _numbered(name: str, values: Any) -> dict[str, float]:
-    return {f"{name} {number}": value for number, value in enumerate(values, start=1)}
 
 
 def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:

@@ -109,18 +109,11 @@ def study(folder: Path, settings: Answer) -> Answer:
         f"eigenwalker fit FOLDER -o {PEOPLE}"
     )
     used = [str(name) for name in fitted.population.traits["file"]]
-    return {"model": _model(fitted.population, folder, _named(used)), "messages": messages}
+    return {"model": _model(fitted.population, folder, _title(used)), "messages": messages}
 
 
-def _named(files: list[str]) -> str:
-    """Return a title for a population made of captures.
-
-    Examples
-    --------
-    >>> _named(["ada.c3d", "ben.c3d"]), _named([f"{number}.c3d" for number in range(9)])
-    ('Captures ada.c3d and ben.c3d', 'Captures 0.c3d, 1.c3d and 7 more')
-
-    """
+def _title(files: list[str]) -> str:
+    """Return a title for a population made of captures."""
     first, rest = files[:2], len(files) - 2
     if rest > 0:
         return f"Captures {', '.join(first)} and {rest} more"

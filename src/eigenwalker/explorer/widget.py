@@ -25,6 +25,9 @@ except ImportError as error:
 
 _SCRIPT = "widget.js"
 _STYLES = ("dots", "sticks", "mannequin")
+_STATE = {name: name for name in ("kind", "part", "bias", "strengths", "eigenwalkers")}
+_STATE |= {"alpha": "traits", "start": "from"}
+"""Attributes that make the walker, and what `mixed_vector` calls them."""
 _LIGHT, _DARK = "#ffffff", "#000000"
 
 
@@ -158,29 +161,21 @@ class WalkerWidget(anywidget.AnyWidget):
         super().__init__(**attributes)
         self.on_msg(_send_mannequin)
 
-    @traitlets.validate("alpha", "bias", "strengths", "eigenwalkers", "part", "kind", "start")
+    @traitlets.validate(*_STATE)
     def _check_walker(self, proposal: Any) -> Any:
         """Refuse what the model does not have, before it reaches the page."""
-        name = proposal["trait"].name
         if self._model is not None:
             try:
-                state = self._state() | self._named(name, proposal["value"])
+                state = self._state(**{proposal["trait"].name: proposal["value"]})
                 check_ranges(state)
                 mixed_vector(self._model, state)
             except (ValueError, TypeError, KeyError) as error:
                 raise traitlets.TraitError(str(error)) from None
         return proposal["value"]
 
-    @staticmethod
-    def _named(name: str, value: Any) -> dict[str, Any]:
-        return {{"alpha": "traits", "start": "from"}.get(name, name): value}
-
-    def _state(self) -> dict[str, Any]:
-        names = ("alpha", "kind", "part", "start", "bias", "strengths", "eigenwalkers")
-        state = {"own": self._own}
-        for name in names:
-            state |= self._named(name, getattr(self, name))
-        return state
+    def _state(self, **changes: Any) -> dict[str, Any]:
+        values = {name: getattr(self, name) for name in _STATE if name not in changes} | changes
+        return {"own": self._own} | {_STATE[name]: value for name, value in values.items()}
 
     @property
     def vector(self) -> np.ndarray:

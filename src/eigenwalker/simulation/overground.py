@@ -68,32 +68,29 @@ class Route:
 def blend_with_standing(
     angles: Angles, pelvis: np.ndarray, body: Body, gait: GaitParameters, ramp: np.ndarray
 ) -> tuple[Angles, np.ndarray]:
-    """Return angles and pelvis path of someone who stands first, and walks where `ramp` is 1."""
-    standing = _standing(body, gait)
-    knee, thigh, splay = (standing[name] for name in ("knee_flexion", "thigh", "splay"))
-    down = body.thigh * np.cos(thigh) + body.shank * np.cos(thigh - knee)
-    ahead = body.thigh * np.sin(thigh) + body.shank * np.sin(thigh - knee)
-    height = down * np.cos(splay) + body.foot.height - body.hip[2]
-    still = np.array([-body.hip[0] - ahead, 0.0, height])
-    blended = {}
-    for name, curve in angles.items():
-        part = name.removeprefix("left_").removeprefix("right_")
-        side = -1 if name.startswith("right") else 1
-        rest = standing.get(part, 0.0) * (side if part == "splay" else 1)
-        blended[name] = rest + ramp * (curve - rest)
-    return blended, still + ramp[:, None] * (pelvis - still)
+    """Return angles and pelvis path of someone who stands first, and walks where `ramp` is 1.
 
-
-def _standing(body: Body, gait: GaitParameters) -> dict[str, float]:
-    """Angles of quiet standing, in radians: knees all but straight, arms hanging."""
+    In quiet standing knees are all but straight, and arms hang.
+    """
     thigh, knee = np.radians(3.0), np.radians(6.0)
     down = body.thigh * np.cos(thigh) + body.shank * np.cos(thigh - knee)
-    return {
+    ahead = body.thigh * np.sin(thigh) + body.shank * np.sin(thigh - knee)
+    splay = float(np.arcsin((gait.step_width / 2 - body.hip[1]) / down))
+    height = down * np.cos(splay) + body.foot.height - body.hip[2]
+    standing = {
         "thigh": thigh,
         "knee_flexion": knee,
-        "splay": float(np.arcsin((gait.step_width / 2 - body.hip[1]) / down)),
+        "splay": splay,
         "elbow_flexion": np.radians(18.0),
         "shoulder_abduction": np.radians(8.0),
         "shoulder_rotation": np.radians(15.0),
         "foot_yaw": np.radians(-7.3),
     }
+    blended = {}
+    for name, curve in angles.items():
+        part = name.removeprefix("left_").removeprefix("right_")
+        side = -1 if name == "right_splay" else 1
+        rest = standing.get(part, 0.0) * side
+        blended[name] = rest + ramp * (curve - rest)
+    still = np.array([-body.hip[0] - ahead, 0.0, height])
+    return blended, still + ramp[:, None] * (pelvis - still)
