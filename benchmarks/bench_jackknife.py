@@ -11,8 +11,8 @@ from collections.abc import Iterable
 import numpy as np
 from side_by_side import machine, print_table, seconds
 
-from eigenwalker.analysis._leave_out import LeaveOut, discriminant_sums
-from eigenwalker.analysis.jackknife import jackknife_curves
+from eigenwalker.analysis import jackknife_curves
+from eigenwalker.analysis._leave_out import LeaveOutSVD
 
 N_FEATURES = 229
 
@@ -38,17 +38,14 @@ def naive_fold(X: np.ndarray, r: np.ndarray, walker: int) -> np.ndarray:
     return np.cumsum((c * k)[ranked])
 
 
-def our_folds(table: LeaveOut, walkers: Iterable[int]) -> list[np.ndarray]:
+def our_folds(table: LeaveOutSVD, walkers: Iterable[int]) -> list[np.ndarray]:
     folds = table.leaving_out([np.array([walker]) for walker in walkers])
-    return [
-        discriminant_sums(fold.lengths[:, None], fold.c, fold.scores, "standardised")[:, 0]
-        for _, fold in folds
-    ]
+    return [fold.sums("standardised")[:, 0] for _, fold in folds]
 
 
-def ready(n_walkers: int) -> tuple[np.ndarray, np.ndarray, LeaveOut]:
+def ready(n_walkers: int) -> tuple[np.ndarray, np.ndarray, LeaveOutSVD]:
     X, r = population(n_walkers)
-    return X, r, LeaveOut.of(X, r[:, None], scale="sd", scale_in_fold=True)
+    return X, r, LeaveOutSVD.of(X, r[:, None], scale="sd", scale_in_fold=True)
 
 
 def compare_whole_curves(n_walkers: int, aim: float) -> None:
