@@ -21,8 +21,8 @@ from eigenwalker.psychophysics.trials import Trials, count_pairs
 def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     """Return the expected difference of each pair, predicted without its two walkers.
 
-    For each pair, weights are fitted to the trials that showed neither walker of it, and predict
-    the choices in the trials that showed both.
+    Weights are fitted to the trials that showed neither walker of the pair, and predict the choices
+    in those that showed both.
 
     Parameters
     ----------
@@ -34,10 +34,6 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     array of shape (pair,)
         Expected share of times that the pair is not chosen; NaN where no trial showed it, or all
         other trials showed one of the two, as they do where there are five walkers or fewer.
-
-    See Also
-    --------
-    leave_walkers_out : The same for weights fitted to shares of choices.
 
     """
     table = np.asarray(X, dtype=float)

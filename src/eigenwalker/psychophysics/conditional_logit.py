@@ -155,10 +155,6 @@ def bootstrap_choices(
     Bootstrap
         Its constants are 0: a model of choices has none.
 
-    See Also
-    --------
-    bootstrap_weights : The same for weights fitted to shares of choices.
-
     """
     if len(trials.observers) < 2:
         raise ValueError(
@@ -194,10 +190,6 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     -------
     array of shape (pair,)
         Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
-
-    See Also
-    --------
-    count_pairs : The differences as observed.
 
     """
     probability = choice_probabilities(distances, trials.shown)

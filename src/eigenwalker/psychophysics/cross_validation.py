@@ -29,8 +29,7 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
 
     References
     ----------
-    Pražák et al. (2010), figure 5: its "difference" is called a norm, but can only be a sum of
-    squares over the whole table, of which ``rss`` is half.
+    Pražák et al. (2010), figure 5, whose "difference" can only be twice this ``rss``.
 
     Examples
     --------
@@ -97,9 +96,8 @@ def compare_metrics(
 ) -> pd.DataFrame:
     """Return how well several metrics predict the same differences.
 
-    Each table gets the constant and the weights, none below 0, that fit best. A table of one
-    column, such as a published metric's distances or those of walkers in a `WalkerSpace`, gets a
-    constant and a factor.
+    Each table gets the constant and the weights, none below 0, that fit best; a published metric,
+    of one column, gets a constant and a factor.
 
     Parameters
     ----------

@@ -12,8 +12,7 @@ from sklearn.decomposition import PCA
 def order_of_walks(table: ArrayLike) -> np.ndarray:
     """Return walks in the order of the first principal component of the table's rows.
 
-    Each row is a point in a space of as many dimensions as there are walks; in the paper this order
-    tells women from men.
+    In the paper this order tells women from men.
 
     Parameters
     ----------
@@ -84,8 +83,8 @@ def clusters_of_walks(
 def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     """Return how much each walk belongs to each cluster, as the curves of the paper's figure 3.
 
-    K-means knows whole members only, the figure shows graded ones. As in fuzzy c-means with
-    exponent 2, a share is proportional to 1 over the squared distance from the cluster's centre.
+    As in fuzzy c-means with exponent 2, a share is proportional to 1 over the squared distance from
+    the cluster's centre.
 
     Parameters
     ----------
@@ -101,8 +100,7 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
 
     References
     ----------
-    Pražák et al. (2010), figure 3. Bezdek (1981), Pattern recognition with fuzzy objective
-    function algorithms.
+    Pražák et al. (2010), figure 3.
 
     Examples
     --------
@@ -122,9 +120,8 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
 def map_of_walks(table: ArrayLike, n_dimensions: int = 2) -> np.ndarray:
     r"""Return positions of walks whose distances are as near as possible to their differences.
 
-    Classical scaling: exact where the differences are distances in a plane. The positions are the
-    leading eigenvectors of the doubly centred squares of the table D, times the roots of their
-    eigenvalues:
+    Classical scaling: the leading eigenvectors of the doubly centred squares of the table D, times
+    the roots of their eigenvalues:
 
     .. math:: B = -\tfrac{1}{2} J D^{(2)} J, \qquad J = I - \tfrac{1}{n} 1 1^T
 

@@ -86,9 +86,9 @@ def fit_to_answers(
 ) -> MetricFit:
     """Return the metric that best predicts observers' answers, and how well it does.
 
-    Weights are fitted both to the choices (`fit_choices`) and, as in the paper, to the differences
-    of pairs (`PerceptualMetric`), with intervals, and are compared with the published metrics on
-    pairs of walkers that were left out of the fit.
+    Weights are fitted to the choices (`fit_choices`) and, as in the paper, to the differences of
+    pairs (`PerceptualMetric`), with intervals, and compared with the published metrics on pairs of
+    walkers that were left out of the fit.
 
     Parameters
     ----------
@@ -107,12 +107,7 @@ def fit_to_answers(
     Returns
     -------
     MetricFit
-
-    Raises
-    ------
-    ValueError
-        If answers name walks that are not there, or no pair was shown. Pairs that were never shown
-        together are left out, with a warning.
+        Pairs that were never shown together are left out, with a warning.
 
     See Also
     --------

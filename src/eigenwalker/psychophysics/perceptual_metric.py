@@ -44,8 +44,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
     See Also
     --------
     fit_choices : Weights fitted to the choices themselves; better where shares level off.
-    group_table : Makes X of walks.
-    count_pairs : Makes y of observers' answers.
+    group_table, count_pairs : Make X of walks, and y of observers' answers.
 
     References
     ----------

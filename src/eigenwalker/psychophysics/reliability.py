@@ -157,9 +157,8 @@ def split_half(
 
     .. math:: r_{whole} = \frac{2 r}{1 + r}
 
-    Half of that unreliability is not the metric's to explain, so even the true differences
-    correlate with the table only by the square root of it: the ceiling. Choices predicted knowing
-    what else each trial showed (`expected_differences`) can come nearer.
+    Even the true differences correlate with the table only by the square root of it: the ceiling.
+    Choices predicted knowing what else each trial showed (`expected_differences`) can come nearer.
 
     Parameters
     ----------

@@ -14,7 +14,10 @@ from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fi
 
 
 class ShapeFit(NamedTuple):
-    """The best parameter of a shape, the weights there, and the errors of all values tried."""
+    """The best parameter of a shape, the weights there, and the errors of all values tried.
+
+    A parameter at a bound is not determined by the data.
+    """
 
     parameter: float
     weights: np.ndarray
@@ -33,9 +36,8 @@ def search_shape(
 ) -> ShapeFit:
     """Return the power of F, or the scale of its sigmoid, with which the metric fits best.
 
-    Weights are exact for each value tried (`non_negative_fit`), so that one number alone is
-    searched for: on a grid of equal ratios, which finds every minimum wider than its steps, then
-    by Brent's method around the best of them.
+    Weights are exact for each value tried, so that one number is searched for: on a grid of equal
+    ratios, then by Brent's method around the best value of the grid.
 
     Parameters
     ----------
@@ -51,8 +53,6 @@ def search_shape(
     Returns
     -------
     ShapeFit
-        ``rss`` is the sum of squared errors. A parameter at a bound is not determined by the data:
-        ever smaller powers are a logarithm, ever larger scales of a sigmoid F(d) = d.
 
     References
     ----------
@@ -112,10 +112,8 @@ def fit_from_random_starts(
 
     Parameters
     ----------
-    X : array of shape (pair, group)
-        Mean F(d_k).
-    y : array of shape (pair,)
-        Perceived differences.
+    X, y
+        As `PerceptualMetric` takes them.
     n_starts : int
         Number of starts.
     random_state : int

@@ -62,10 +62,6 @@ def load_metric(name_or_path: str | Path) -> GroupMetric:
     ValueError
         If there is no such metric, or the file holds none.
 
-    References
-    ----------
-    Pražák et al. (2010), figure 5: the published weights.
-
     Examples
     --------
     >>> load_metric("positions-sigmoid").by

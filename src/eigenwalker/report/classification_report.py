@@ -9,18 +9,10 @@ import xarray as xr
 
 from eigenwalker._version import __version__
 from eigenwalker.analysis.classification import Classification, Regression
+from eigenwalker.analysis.direction import Kind
 from eigenwalker.analysis.trait_study import TraitStudy
-from eigenwalker.report.blocks import Block, Code, Items, Link, Report, Section, Text
-from eigenwalker.report.classification_figures import (
-    average_walker_figures,
-    class_averages_figure,
-    curves_figure,
-    poles_figure,
-    scores_figure,
-    space_figure,
-    variance_figure,
-    write_films,
-)
+from eigenwalker.report.blocks import Block, Code, Figure, Film, Items, Link, Report, Section, Text
+from eigenwalker.report.classification_figures import draw_figures, write_films
 from eigenwalker.report.classification_tables import (
     chance_sentence,
     correlations_table,
@@ -78,14 +70,20 @@ def write_classification_report(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     trait = study.result.contrast.trait
+    stem = folder / "".join(letter if letter.isalnum() else "-" for letter in trait)
+    films = {
+        kind: write_films(view.walkers, stem.with_name(f"{stem.name}-{kind.replace('_', '-')}"))
+        for kind, view in study.views.items()
+    }
+    figures = draw_figures(study, example)
     report = Report(
         title=f"{_capital(trait)} from gait",
         lead=_lead(study.result),
         sections=[
             Section("Who walked", _who(study)),
-            Section("How well the model holds", _model(study, example)),
-            Section("What tells them apart", _results(study)),
-            Section("What it looks like", _appearance(study, folder)),
+            Section("How well the model holds", _model(study, figures)),
+            Section("What tells them apart", _results(study, figures)),
+            Section("What it looks like", _appearance(study, figures, films)),
             Section("Mind", [Items(_cautions(study))]),
             Section("Made with", [Code(f"eigenwalker {__version__}\n{_CITE}")]),
         ],
@@ -135,53 +133,46 @@ def _who(study: TraitStudy) -> list[Block]:
     return blocks + [table for table in tables if table]
 
 
-def _model(study: TraitStudy, example: xr.DataArray | None) -> list[Block]:
+def _model(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
     blocks: list[Block] = []
-    fits = [walker.fit for walker in study.walkers if walker.fit is not None]
-    if fits:
-        shares = np.array([fit.variance_share[:4].sum() for fit in fits])
-        blocks += [
-            Text(
-                f"Four principal components hold {100 * shares.mean():.1f} % of the variance of "
-                f"a walk (mean over walkers); as sines they explain "
-                f"{100 * np.mean([fit.r2 for fit in fits]):.1f} %, two Fourier harmonics "
-                f"{100 * np.mean([fit.fourier_r2 for fit in fits]):.1f} %."
-            ),
-            variance_figure(study.walkers),
-        ]
-    if example is not None:
-        blocks.append(scores_figure(example))
+    if "variance" in figures:
+        fits = [walker.fit for walker in study.walkers if walker.fit is not None]
+        share = np.mean([fit.variance_share[:4].sum() for fit in fits])
+        r2, fourier_r2 = np.mean([(fit.r2, fit.fourier_r2) for fit in fits], axis=0)
+        sentence = (
+            f"Four principal components hold {100 * share:.1f} % of the variance of a walk (mean "
+            f"over walkers); as sines they explain {100 * r2:.1f} %, two Fourier harmonics "
+            f"{100 * fourier_r2:.1f} %."
+        )
+        blocks += [Text(sentence), figures["variance"]]
+    if "scores" in figures:
+        blocks.append(figures["scores"])
     if study.correlations is not None:
         blocks.append(correlations_table(study.correlations))
-    return blocks + average_walker_figures(study.average)
+    return [*blocks, figures["joints"], figures["eigenpostures"]]
 
 
-def _results(study: TraitStudy) -> list[Block]:
+def _results(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
     result = study.result
     blocks: list[Block] = [results_table(result)]
     if sentence := multiple_inputs_sentence(result):
         blocks.append(Text(sentence))
-    blocks.append(curves_figure(result))
-    if isinstance(result, Classification) and (missed := missed_table(study.names, result)):
-        blocks.append(missed)
-    return blocks
+    if not isinstance(result, Classification):
+        return [*blocks, figures["regression curves"]]
+    missed = missed_table(study.names, result)
+    return [*blocks, figures["class curves"], *([missed] if missed else [])]
 
 
-def _appearance(study: TraitStudy, folder: Path) -> list[Block]:
-    contrast = study.result.contrast
-    stem = "".join(letter if letter.isalnum() else "-" for letter in contrast.trait)
+def _appearance(
+    study: TraitStudy, figures: dict[str, Figure], films: dict[Kind, list[Film]]
+) -> list[Block]:
     blocks: list[Block] = []
     for kind, view in study.views.items():
-        blocks += [
-            Text(_VIEWS[kind]),
-            *write_films(view.walkers, folder / f"{stem}-{kind.replace('_', '-')}"),
-            poles_figure(view.walkers, contrast),
-            gait_table(view.walkers),
-            plausibility_table(view.plausibility),
-        ]
-    if study.class_averages:
-        blocks.append(class_averages_figure(study.class_averages))
-    return [*blocks, space_figure(study)]
+        tables = [gait_table(view.walkers), plausibility_table(view.plausibility)]
+        blocks += [Text(_VIEWS[kind]), *films[kind], figures[kind], *tables]
+    if "classes" in figures:
+        blocks.append(figures["classes"])
+    return [*blocks, figures["space"]]
 
 
 def _cautions(study: TraitStudy) -> list[str]:
