@@ -13,7 +13,7 @@ from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, Metri
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_sentences import CITE, plain_name
+from eigenwalker.report.metric_messages import CITE, plain_name
 
 FEW_OBSERVERS = 10
 """Below so many, intervals from drawing observers hold planted weights much too seldom."""

@@ -14,7 +14,7 @@ from eigenwalker.plotting.difference_maps import figure_two_walks
 from eigenwalker.plotting.fitted_weights import figure_shares
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_sentences import (
+from eigenwalker.report.metric_messages import (
     CITE,
     SCALE_IS_UNKNOWN,
     WHERE_POINTS_SIT,
@@ -23,7 +23,7 @@ from eigenwalker.report.metric_sentences import (
     plain_name,
 )
 from eigenwalker.report.pair_figures import component_maps, loop_and_pair_maps, transitions
-from eigenwalker.study.reference_pairs import ReferencedComparison
+from eigenwalker.study.reference_pairs import ReferenceComparison
 
 NO_PERCENTAGE_OF_ANGLES = (
     "Joint angles get no percentage: they depend on where the points of a capture sit, in the "
@@ -32,7 +32,7 @@ NO_PERCENTAGE_OF_ANGLES = (
 
 
 def write_pair_report(
-    result: ReferencedComparison,
+    result: ReferenceComparison,
     folder: str | Path,
     *,
     names: tuple[str, str],
@@ -42,7 +42,7 @@ def write_pair_report(
 
     Parameters
     ----------
-    result : ReferencedComparison
+    result : ReferenceComparison
         Of walks that repeat, as `compare_with_references` gives it.
     folder : path
         Made where it does not exist; holds ``report.html``.
@@ -69,7 +69,7 @@ def write_pair_report(
     return write_report(Report(f"{names[0]} and {names[1]}", lead, sections), folder)
 
 
-def pair_sentences(result: ReferencedComparison, names: tuple[str, str]) -> list[str]:
+def pair_sentences(result: ReferenceComparison, names: tuple[str, str]) -> list[str]:
     """Return the main results of a comparison in sentences."""
     comparison = result.comparison
     mean = comparison.groups.mean()
@@ -101,7 +101,7 @@ def _differ_by_joints(by_joints: float, distance: float) -> bool:
     return abs(by_joints - distance) > 0.005 * distance
 
 
-def _difference(result: ReferencedComparison) -> str:
+def _difference(result: ReferenceComparison) -> str:
     comparison, metric = result.comparison, result.comparison.metric
     name = metric.name if isinstance(metric, GroupMetric) else "distance"
     sentence = f"Difference ({name}): {comparison.distance:.4g}"
@@ -116,7 +116,7 @@ def _difference(result: ReferencedComparison) -> str:
     )
 
 
-def _self_differences(result: ReferencedComparison, names: tuple[str, str]) -> list[str]:
+def _self_differences(result: ReferenceComparison, names: tuple[str, str]) -> list[str]:
     """Return how different each walk is from itself, in a sentence."""
     comparison = result.comparison
     if not isinstance(comparison.metric, GroupMetric) or not comparison.distance > 0:
@@ -134,7 +134,7 @@ def _self_differences(result: ReferencedComparison, names: tuple[str, str]) -> l
     return [f"{sentence}."]
 
 
-def _how_different(result: ReferencedComparison, names: tuple[str, str]) -> list[Block]:
+def _how_different(result: ReferenceComparison, names: tuple[str, str]) -> list[Block]:
     table = result.by_metric
     differ = any(map(_differ_by_joints, table.by_joints, table.distance))
     columns = ["metric", "distance", "by joints alone", "pairs that differ less"]

@@ -22,7 +22,7 @@ from eigenwalker.psychophysics.dissimilarity_structure import (
 )
 from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_sentences import (
+from eigenwalker.report.metric_messages import (
     CITE,
     SCALE_IS_UNKNOWN,
     WHERE_POINTS_SIT,

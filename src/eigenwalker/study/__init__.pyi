@@ -8,7 +8,7 @@ from .process_capture import (
     process_capture as process_capture,
 )
 from .reference_pairs import (
-    ReferencedComparison as ReferencedComparison,
+    ReferenceComparison as ReferenceComparison,
     compare_with_references as compare_with_references,
     self_distance as self_distance,
     simulated_distances as simulated_distances,

@@ -24,7 +24,7 @@ from eigenwalker.study.walks import walks_of_population, without_rotations
 
 
 @dataclass(frozen=True, eq=False)
-class ReferencedComparison:
+class ReferenceComparison:
     """A comparison of two walks beside distances to hold it against.
 
     Parameters
@@ -54,7 +54,7 @@ def compare_with_references(
     *,
     mannequin: bool = True,
     progress: Progress | None = None,
-) -> ReferencedComparison:
+) -> ReferenceComparison:
     """Return a comparison beside distances of simulated people, and of each walk from itself.
 
     Hands, feet and clavicles, which simulated people do not have, are left out of the comparison
@@ -74,7 +74,7 @@ def compare_with_references(
 
     Returns
     -------
-    ReferencedComparison
+    ReferenceComparison
 
     Examples
     --------
@@ -107,7 +107,7 @@ def compare_with_references(
     if isinstance(metric, GroupMetric) and comparison.distance > 0:
         own = (self_distance(a, metric=metric), self_distance(b, metric=metric))
     table = pd.DataFrame.from_dict(rows, orient="index")
-    return ReferencedComparison(comparison, own, table, len(_simulated_people(mannequin)))
+    return ReferenceComparison(comparison, own, table, len(_simulated_people(mannequin)))
 
 
 def simulated_distances(
