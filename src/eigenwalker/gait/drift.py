@@ -21,15 +21,7 @@ N_HARMONICS = 4
 def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     """Return the constant velocity of a movement that otherwise repeats with every stride.
 
-    Shapes: path (time, axis); cycles (time,); returns (axis,).
-
-    Examples
-    --------
-    >>> cycles = np.linspace(0, 2.3, 100)
-    >>> bobbing = np.sin(4 * np.pi * cycles) + 1400 * cycles
-    >>> mean_velocity(bobbing[:, None], cycles).round(6).tolist()
-    [1400.0]
-
+    In mm a stride, of shape (axis,), from a path (time, axis) and its times in strides.
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         return _velocity_of_one_stride(path, cycles)
@@ -43,7 +35,7 @@ def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
     A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
     four harmonics of the stride, to which the drift therefore does not add.
 
-    Shapes: path (time, axis); cycles (time,); returns (time, axis).
+    Of shape (time, axis), like the path; its times are in strides, evenly spaced.
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         line = np.multiply.outer(cycles - cycles.mean(), _velocity_of_one_stride(path, cycles))

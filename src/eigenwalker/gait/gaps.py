@@ -42,16 +42,7 @@ def fill_short_gaps(
 
     Gaps at the ends of the capture are never filled.
 
-    Shapes: positions (time, marker, axis); filled (time, marker, axis).
-
-    Examples
-    --------
-    >>> path = np.linspace(0, 30, 31)[:, None, None] * [[1, 0, 0]]
-    >>> path[10:12] = np.nan
-    >>> filled, left = fill_short_gaps(path, 100)
-    >>> filled[10:12, 0, 0].round(9).tolist(), left
-    ([10.0, 11.0], [])
-
+    Positions have the shape (time, marker, axis), and are NaN where a marker was not seen.
     """
     n_frames = len(positions)
     longest = round(max_gap_s * rate_hz)

@@ -59,7 +59,8 @@ def find_heading(
     on the belt; where feet are not known, hips and shoulders show the direction. Someone who walks
     backwards or sideways still faces +x: the speed along it is then negative, or small.
 
-    Shapes: positions (time, marker, axis); progress (2,).
+    Positions (time, marker, axis) are whole strides without progress; `progress` is the horizontal
+    velocity that was taken out, in mm/s.
     """
     facing = _facing(positions, markers)
     ground = ground_velocity(positions, markers, rate_hz)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
@@ -129,13 +127,13 @@ def in_place(
         strides = _whole_strides(straight.positions, straight.strides, rate_hz)
         frames = slice(strides.start, strides.stop)
         moving, frequency_hz = straight.positions[frames], strides.frequency_hz
-        placed = _placed(moving, names, frequency_hz, rate_hz, speed_mm_s, heading_deg)
-    result = walk.isel(time=frames).copy(data=placed.positions)
+        placed, facts = _placed(moving, names, frequency_hz, rate_hz, speed_mm_s, heading_deg)
+    result = walk.isel(time=frames).copy(data=placed)
     heading = straight.heading[frames]
     if "rotation" in result.coords:
-        turns = straight.heading[0] - heading - np.deg2rad(placed.facts["heading_deg"])
+        turns = straight.heading[0] - heading - np.deg2rad(facts["heading_deg"])
         result = result.assign_coords(rotation=_turned(result.rotation, turns))
-    facts = placed.facts | {
+    facts |= {
         "steady_start_s": float(result.time[0]),
         "steady_end_s": float(result.time[-1]),
         "n_strides": round(strides.count(rate_hz)),
@@ -199,11 +197,6 @@ def _whole_strides(positions: np.ndarray, strides: SteadyStrides, rate_hz: float
     return strides
 
 
-class _InPlace(NamedTuple):
-    positions: np.ndarray
-    facts: dict[str, float | bool | int]
-
-
 def _placed(
     positions: np.ndarray,
     markers: list[str],
@@ -211,8 +204,8 @@ def _placed(
     rate_hz: float,
     speed_mm_s: float | None,
     heading_deg: float | None,
-) -> _InPlace:
-    """Return whole strides without progress and drift, turned to +x, about the origin."""
+) -> tuple[np.ndarray, dict[str, float | bool]]:
+    """Return whole strides without progress and drift, facing +x, about the origin, and facts."""
     cycles = np.arange(len(positions)) * frequency_hz / rate_hz
     path = positions.mean(axis=1)
     drift = slow_drift(path, cycles)
@@ -233,7 +226,7 @@ def _placed(
         "climb_mm": float(per_stride[2] * cycles[-1]),
         "wander_mm": _wander(drift[:, :2], cycles),
     }
-    return _InPlace(still, facts)
+    return still, facts
 
 
 def _wander(drift: np.ndarray, cycles: np.ndarray) -> float:

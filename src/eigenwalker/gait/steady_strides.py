@@ -81,7 +81,8 @@ def find_steady_strides(movement: np.ndarray, rate_hz: float) -> SteadyStrides:
     every half-stride that its own cycle predicts and drops those that it does not predict, until
     nothing changes. A capture that is steady throughout is taken whole.
 
-    Shapes: movement (time, feature).
+    The movement (time, feature) is that of `body_relative`. Raises `NoStrideError` if nothing
+    moves, or for less than a stride.
     """
     block = max(1, int(rate_hz / SEARCH_RATE_HZ))
     n_blocks = len(movement) // block

@@ -42,7 +42,8 @@ def find_straight_pass(
     Where the heading changes, the straight pass with most strides is taken if it has two or
     more, or half as many as the whole walk with its curves; otherwise the heading is unwound.
 
-    Shapes: walk (time, marker, axis); positions (time, marker, axis).
+    `walk` gives names and times; its positions have short gaps filled, and `gaps` are left. Raises
+    ValueError if there is less than about a stride, or a gap between the strides.
     """
     complete = np.isfinite(positions).all(axis=(1, 2))
     heading = slow_heading(positions, walk.marker.values.tolist(), rate_hz)

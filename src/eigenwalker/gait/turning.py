@@ -35,19 +35,8 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
     It is square to the lines through both hips and both shoulders; without these names, it is the
     turn that brings the markers nearest to their mean posture.
 
-    Shapes: positions (time, marker, axis); returns (time,).
-
-    Examples
-    --------
-    Someone who walks one circle counter-clockwise in 8 s:
-
-    >>> walk = ew.simulate_walk(seed=1, duration_s=8, rate_hz=60)
-    >>> around = np.linspace(0, 2 * np.pi, len(walk))
-    >>> turned = rotate_z(walk.values, around)
-    >>> heading = slow_heading(turned, ew.JOINTS.markers, 60)
-    >>> bool(np.abs(np.ptp(heading) - 2 * np.pi) < 0.1)
-    True
-
+    In radians, of shape (time,), without jumps of a full turn; all 0 where it is unknown or hardly
+    changes.
     """
     straight = np.zeros(len(positions))
     facing = _facing(positions, list(markers))
@@ -77,7 +66,7 @@ def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
     The body is turned back by its slow heading, and so is each step of its path: progress along a
     curve becomes progress along a line.
 
-    Shapes: positions (time, marker, axis); heading (time,); returns (time, marker, axis).
+    Where a marker is missing in a frame, all are missing in the result.
     """
     turn = heading[0] - heading
     centre = positions.mean(axis=1, keepdims=True)

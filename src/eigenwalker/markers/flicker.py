@@ -41,15 +41,6 @@ def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
         Millimetres; NaN where a marker was not seen.
     rate_hz : float
         Frames a second.
-
-    Examples
-    --------
-    >>> path = np.linspace(0, 300, 31)[:, None, None] * [[1.0, 0, 0]]
-    >>> path[10:12] += 400
-    >>> flicker = find_flicker(path, 100)
-    >>> np.flatnonzero(flicker.off_path[:, 0]).tolist(), flicker.jumps
-    ([10, 11], [[]])
-
     """
     longest = max(1, round(LONGEST_S * rate_hz))
     off_path = np.zeros(positions.shape[:2], dtype=bool)

@@ -42,14 +42,6 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
     Returns
     -------
     array of bool of shape (time, pair)
-
-    Examples
-    --------
-    >>> positions = np.zeros((6, 2, 3)) + [[0, 100, 0], [0, -100, 0]]
-    >>> positions[4:] = positions[4:, ::-1]
-    >>> exchanged_sides(positions, [(0, 1)])[:, 0].tolist()
-    [False, False, False, False, True, True]
-
     """
     exchanged = np.zeros((len(positions), len(pairs)), dtype=bool)
     for number in np.flatnonzero(_within_reach(positions, np.array(pairs))).tolist():

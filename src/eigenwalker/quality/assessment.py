@@ -89,7 +89,7 @@ def judge(
 ) -> Quality:
     """Return what is known of a capture and of the walk that was made of it.
 
-    Shapes: capture, repaired (time, marker, axis); walk (time, marker, axis).
+    The walk holds steady strides in place, or is None, and `problem` says why there are none.
     """
     names = capture.marker.values.tolist()
     missing = np.isnan(capture.values).any(axis=2).mean(axis=0)
@@ -132,7 +132,7 @@ def names_in(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
 def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, float]:
     """Return the height in mm and the lean in degrees of the line from feet to head, or NaN."""
     head, feet = head_and_feet(positions, names)
-    seen = np.isfinite(head).all(axis=2).any(axis=1) & np.isfinite(feet).all(axis=2).any(axis=1)
+    seen = ~np.isnan(head).any(axis=2).all(axis=1) & ~np.isnan(feet).any(axis=2).all(axis=1)
     if not seen.any():
         return float("nan"), float("nan")
     rises = np.nanmean(head[seen], axis=1) - np.nanmean(feet[seen], axis=1)
@@ -141,15 +141,7 @@ def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, fl
 
 
 def bone_length_variation(capture: xr.DataArray) -> dict[tuple[str, str], float]:
-    """Return the coefficient of variation of each limb's length.
-
-    Examples
-    --------
-    >>> walk = ew.simulate_walk(seed=1, duration_s=2)
-    >>> max(bone_length_variation(walk).values()) < 1e-9
-    True
-
-    """
+    """Return the coefficient of variation of each limb's length."""
     place = {name: index for index, name in enumerate(capture.marker.values.tolist())}
     variation = {}
     for upper, lower in LIMBS:

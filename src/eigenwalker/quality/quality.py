@@ -72,39 +72,29 @@ class Quality:
         Share of frames without the marker, for markers that miss any.
     repairs : tuple of Repair
         Labels that were repaired, and jumps.
-    rebuilt : tuple of str
-        Markers that were never seen, and what replaces them.
-    repeated : tuple of str
-        Names of several markers, of which the first is taken.
+    rebuilt, repeated : tuple of str
+        Markers that were never seen, and what replaces them; names of several markers, of which the
+        first is taken.
     sides_swapped : bool
         Whether knees bend backwards throughout: left is called right, or the capture is mirrored.
     bone_length_variation : mapping of (str, str) to float
         Coefficient of variation of the length of each limb, in the steady strides.
     height_mm, lean_deg : float
-        From the feet (or ankles) to the head: the length upwards, NaN where they are not known or
-        not upright; and the angle from upright, NaN where they are not known.
-    unit : str
-        Unit of length of the file, empty if unknown; ``unit_guessed``: from the size of the body.
-    n_strides : int
-        Whole strides that are steady; 0 if there are none.
-    steady_share : float
-        Share of the time spent moving that they cover.
-    straight_passes : int
-        Straight passes from which they were chosen; 0 for a walk that was unwound.
-    unwound_deg : float
-        Range of the heading that was taken out.
-    frequency_hz, speed_mm_s : float
-        Of the steady strides.
-    climb, climb_mm : float
-        Rise over run, and rise, of the steady strides; negative downwards.
-    wander_mm : float
-        Drift: root mean square distance from a straight line walked at constant speed.
-    filled_share : float
-        Share of the samples of the steady strides that were filled.
-    r2 : float
-        Share of variance that two harmonics explain in the steady strides in place.
-    periodicity : float
-        Correlation of the movement with itself a stride later.
+        Height of the head above the feet (or ankles), NaN where it is not; and angle of the line
+        between them from upright, NaN where they are not known.
+    unit, unit_guessed
+        Unit of length of the file, and whether it was guessed from the size of the body.
+    n_strides, steady_share
+        Steady strides, 0 if there are none, and the share of the time spent moving in them.
+    straight_passes, unwound_deg
+        Straight passes from which they were chosen, 0 for a walk that was unwound; and the range of
+        the heading that was taken out.
+    frequency_hz, speed_mm_s, climb, climb_mm, wander_mm : float
+        Of the steady strides: climb is rise over run, negative downwards, climb_mm the rise;
+        wander_mm the root mean square distance from a straight line walked at constant speed.
+    filled_share, r2, periodicity : float
+        Of the steady strides: share of samples that were filled; share of variance that two
+        harmonics explain; correlation of the movement with itself a stride later.
     treadmill : bool
         Whether the body stays where it is.
     n_frames_cut : int

@@ -19,23 +19,7 @@ from eigenwalker.core.walker import CaptureFit, Walker
 
 
 class Checkpoint:
-    """The walkers that were made so far, by the names of their captures.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> foot = ew.Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
-    >>> with TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "people.nc.part"
-    ...     Checkpoint(path, {"form": "fourier"}).append("a.c3d", [512, 7], foot, {"r2": 0.9})
-    ...     again = Checkpoint(path, {"form": "fourier"})
-    ...     walker, row = again.get("a.c3d", [512, 7])
-    >>> walker.p0.tolist(), row
-    ([[0.0, 0.0, 50.0]], {'r2': 0.9})
-    >>> again.get("a.c3d", [513, 8]) is None  # the file has changed since
-    True
-
-    """
+    """The walkers that were made so far, by the names of their captures."""
 
     def __init__(self, path: Path, settings: Mapping[str, Any]) -> None:
         self.path = path

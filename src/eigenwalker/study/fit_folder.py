@@ -160,9 +160,7 @@ def _study(
     population = Population(
         tuple(walker for walker, _ in outcomes if walker is not None),
         traits.assign(**{FLAG: flags}),
-        provenance={"source": f"{len(read)} captures", "form": form}
-        | _filter(rows.iloc[read])
-        | _guesses(rows.iloc[read]),
+        provenance=_provenance(rows.iloc[read], form),
     )
     reasons = population.traits[FLAG].to_numpy()
     files.loc[read, "reason"] = reasons
@@ -170,24 +168,20 @@ def _study(
     return Study(population, files, unlisted)
 
 
-def _filter(rows: pd.DataFrame) -> dict[str, str]:
-    """Return the low-pass filter of all captures in words; empty without one."""
+def _provenance(rows: pd.DataFrame, form: Form) -> dict[str, str]:
+    """Return in words where a population comes from: filter, and guessed units, if any."""
+    provenance = {"source": f"{len(rows)} captures", "form": form}
     cut_offs = rows["low_pass_hz"].dropna()
-    return (
-        {} if cut_offs.empty else {"low_pass": f"{cut_offs.iloc[0]:g} Hz, zero-phase Butterworth"}
-    )
-
-
-def _guesses(rows: pd.DataFrame) -> dict[str, str]:
-    """Return in words for how many captures the unit was guessed; empty if for none."""
+    if len(cut_offs):
+        provenance["low_pass"] = f"{cut_offs.iloc[0]:g} Hz, zero-phase Butterworth"
     guessed = rows["unit"][rows["unit_guessed"].astype(bool)]
-    if guessed.empty:
-        return {}
-    units = ", ".join(f"{unit} {count}" for unit, count in guessed.value_counts().items())
-    return {
-        "units": f"guessed from the height of the body for {len(guessed)} of {len(rows)} "
-        f"captures, whose files name none ({units})"
-    }
+    if len(guessed):
+        units = ", ".join(f"{unit} {count}" for unit, count in guessed.value_counts().items())
+        provenance["units"] = (
+            f"guessed from the height of the body for {len(guessed)} of {len(rows)} captures, "
+            f"whose files name none ({units})"
+        )
+    return provenance
 
 
 def _outcomes(

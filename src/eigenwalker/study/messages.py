@@ -83,14 +83,7 @@ def capture_lines(result: CaptureResult) -> list[str]:
 
 
 def repair_in_words(repair: Repair) -> str:
-    """Return the markers and the frames of a repair.
-
-    Examples
-    --------
-    >>> repair_in_words(Repair("LKNE", "swap", 20, 29, "RKNE"))
-    'LKNE and RKNE, frames 20 to 29'
-
-    """
+    """Return the markers and the frames of a repair."""
     markers = f"{repair.marker} and {repair.partner}" if repair.partner else repair.marker
     if repair.first_frame == repair.last_frame:
         return f"{markers}, frame {repair.first_frame}"
@@ -175,20 +168,12 @@ _SUMMARY = {
 
 
 def summary_in_words(files: pd.DataFrame) -> dict[str, str]:
-    """Return medians, ranges and counts of the captures of a study.
-
-    Examples
-    --------
-    >>> files = pd.DataFrame({"rate_hz": [100, 100, 120], "jumps": [0, 2, 1]})
-    >>> summary_in_words(files.assign(status="used"))
-    {'rate': '100 Hz (100 to 120)', 'jumps': '3 in 2 captures'}
-
-    """
+    """Return medians, ranges and counts of the captures of a study."""
     read = files[files["status"] != "refused"]
-    lines = {
-        _SUMMARY[str(row.Index)][0]: _range(row.median, row.least, row.most, _SUMMARY[row.Index][1])
-        for row in summarise(files).itertuples()
-    }
+    lines = {}
+    for column, values in summarise(files).iterrows():
+        name, form = _SUMMARY[str(column)]
+        lines[name] = _range(*map(float, values), form)
     for column, name in (("jumps", "jumps"), ("left_right_swaps", "left-right swaps")):
         if column in read:
             n_captures = (read[column] > 0).sum()
@@ -271,15 +256,7 @@ _INSPECTION = {
 
 
 def inspection_in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
-    """Return what `inspect_file` finds, in words and with units.
-
-    Examples
-    --------
-    >>> lines = inspection_in_words({"kind": "capture", "rate_hz": 120.0, "jumps": []})
-    >>> lines["rate"], lines["jumps"]
-    ('120 Hz', 'none')
-
-    """
+    """Return what `inspect_file` finds, in words and with units."""
     if facts.get("kind") != "capture":
         return {
             name: _written(value, "{:.4g}" if isinstance(value, float) else "{}")

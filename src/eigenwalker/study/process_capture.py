@@ -139,14 +139,15 @@ def process_capture(
     ('use', 10, 0)
 
     """
-    known = {"speed_mm_s": speed_mm_s, "heading_deg": heading_deg}
     if isinstance(path_or_capture, xr.DataArray):
         if reading:
             raise TypeError(f"{list(reading)} are for files; this capture is read already.")
         capture = check_trajectories(path_or_capture)
     else:
         capture = read_mocap(path_or_capture, **reading)
-        known |= {name: value for name, value in stated(capture).items() if known[name] is None}
+        known = stated(capture)
+        speed_mm_s = known.get("speed_mm_s") if speed_mm_s is None else speed_mm_s
+        heading_deg = known.get("heading_deg") if heading_deg is None else heading_deg
     if joints == "full":
         from eigenwalker.metric.comparison_pipeline import full_joints
 
@@ -154,20 +155,24 @@ def process_capture(
         main = points.sel(marker=list(JOINTS.markers))
     else:
         points = main = virtual_markers(capture)
+    main_walk = None
     try:
-        walk = in_place(points, low_pass_hz=low_pass_hz, repair=False, **known)
-    except ValueError as error:
-        raise NoWalkError(str(error), main, judge(main, main, None, str(error))) from error
-    main_walk = walk.sel(marker=list(JOINTS.markers)) if joints == "full" else walk
-    quality = judge(main, main, main_walk)
-    try:
+        walk = in_place(
+            points,
+            low_pass_hz=low_pass_hz,
+            speed_mm_s=speed_mm_s,
+            heading_deg=heading_deg,
+            repair=False,
+        )
+        main_walk = walk.sel(marker=list(JOINTS.markers)) if joints == "full" else walk
         walker = DECOMPOSE[form](main_walk, n_harmonics=n_harmonics)
     except ValueError as error:
+        quality = judge(main, main, main_walk, str(error))
         raise NoWalkError(str(error), main, quality) from error
     return CaptureResult(
         walk=walk,
         walker=walker,
-        quality=quality,
+        quality=judge(main, main, main_walk),
         repairs=pd.DataFrame(points.attrs.get("repairs", ()), columns=Repair._fields),
         gaps=pd.DataFrame(_gaps(points, walk), columns=_WHERE),
         left_out=pd.DataFrame(_left_out(points, walk), columns=_WHERE),
