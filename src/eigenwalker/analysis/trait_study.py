@@ -34,33 +34,13 @@ class TraitView:
 
 @dataclass(frozen=True, eq=False)
 class TraitStudy:
-    """Everything about a trait of a population.
+    """Everything about a trait of a population that its report shows.
 
-    Parameters
-    ----------
-    result : Classification or Regression
-        How well the trait is predicted.
-    names : list of str
-        Names of all walkers.
-    traits : DataFrame of walkers
-        Their traits and flags.
-    provenance : mapping
-        Where the population is from.
-    walkers : tuple of Walker
-        Those that are not flagged.
-    average : Walker
-        The average walker.
-    correlations : DataFrame or None
-        How alike their postures are (`Population.posture_correlations`), of two walkers or more.
-    views : mapping of str to TraitView
-        Walkers along the ``discriminant``, and along the ``mean_difference`` with size divided out.
-    class_averages : mapping of str to Walker
-        The average of either class and both with their difference tripled; empty for a number.
-    X : array of shape (walker, feature)
-        The walkers that have the trait.
-    space : WalkerSpace
-        Fitted to them.
-
+    ``names`` and ``traits`` are of all walkers, ``walkers`` those without a flag, ``correlations``
+    how alike their postures are (None of one). ``views`` holds walkers along the ``discriminant``,
+    and along the ``mean_difference`` with size divided out; ``class_averages`` that of either
+    class, and both with their difference tripled (none of a number). ``X`` of shape
+    (walker, feature) holds the walkers that have the trait, and ``space`` is fitted to them.
     """
 
     result: Classification | Regression

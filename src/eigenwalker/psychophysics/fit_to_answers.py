@@ -38,28 +38,13 @@ FITTED, AS_PUBLISHED = "fitted to these answers", ", as published"
 class MetricFit:
     """A metric fitted to answers, and how well it predicts them.
 
-    Parameters
-    ----------
-    name : str
-        The published metric whose component and function F were taken.
-    model : PerceptualMetric
-        Fitted to shares of choices.
-    counts : PairCounts
-        The answers.
-    weights, by_choices : DataFrame of groups
-        Weights fitted to shares and to choices: ``weight``, ``relative`` and the columns of
-        `Bootstrap.intervals`.
-    pairs : DataFrame of pairs
-        ``shown``, ``difference``, ``predicted``, and ``unseen``: predicted by weights fitted
-        without both walkers of the pair; ``expected`` and ``expected_unseen``, the same by weights
-        fitted to choices.
-    compared : DataFrame of metrics
-        As `compare_metrics` gives it, and ``choices_`` before the columns of `compare_by_choices`.
-    reliability : Reliability
-        Of the answers.
-    n_unanswered : int
-        Trials without an answer.
-
+    ``name`` is the published metric whose component and function F were taken, ``model`` the
+    `PerceptualMetric` fitted to shares of choices. ``weights`` and ``by_choices`` are of joint
+    groups, fitted to shares and to choices: ``weight``, ``relative`` and `Bootstrap.intervals`.
+    ``pairs`` has ``shown``, ``difference``, ``predicted``, and ``unseen``, predicted without both
+    walkers of the pair; ``expected`` and ``expected_unseen`` are those of a fit to choices.
+    ``compared`` has for each metric what `compare_metrics` gives, and after ``choices_`` what
+    `compare_by_choices` does. ``n_unanswered`` trials had no answer.
     """
 
     name: str

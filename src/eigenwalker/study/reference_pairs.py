@@ -27,19 +27,10 @@ from eigenwalker.study.walks import walks_of_population, without_rotations
 class ReferenceComparison:
     """A comparison of two walks beside distances to hold it against.
 
-    Parameters
-    ----------
-    comparison : Comparison
-        Of the two walks.
-    self_distances : tuple of float
-        How far each walk is from itself (`self_distance`).
-    by_metric : DataFrame of metrics
-        ``distance`` of the two walks; ``by_joints``, the same by the 15 joints alone, and
-        ``share_nearer``, the share of pairs of simulated people that differ less: both NaN by
-        angles, and for walks that do not differ.
-    n_people : int
-        Simulated people.
-
+    ``self_distances`` tell how far each walk is from itself (`self_distance`). The rows of
+    ``by_metric`` are metrics; its columns are the ``distance`` of the two walks; ``by_joints``, the
+    same by the 15 joints alone, and ``share_nearer``, the share of pairs of ``n_people`` simulated
+    people that differ less: both NaN by angles, and for walks that do not differ.
     """
 
     comparison: Comparison

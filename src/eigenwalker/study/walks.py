@@ -29,21 +29,10 @@ MAX_CLASSES = 10
 class Walks:
     """Walks by name, ready to be compared, and what could not be used.
 
-    Parameters
-    ----------
-    clips : dict of str to PreparedClip
-        The walks: what `pair_table`, `group_table` and `fit_to_answers` take.
-    labels : dict of str to str
-        A class of each walk, such as its style, where one is known.
-    refused : dict of str to str
-        Why captures could not be used, by name.
-    flagged : dict of str to str
-        What is wrong with walks that are left out for it, by name.
-    remarks : dict of str to str
-        Warnings about walks that count, by name.
-    vectors : dict of str to array of shape (feature,)
-        Walkers of a population as points of its feature space; empty for captures.
-
+    ``clips`` are the walks: what `pair_table`, `group_table` and `fit_to_answers` take. Some have
+    ``labels``, such as their style, and ``remarks`` to be minded. ``refused`` tells why captures
+    could not be used, ``flagged`` what is wrong with walks that are left out for it. ``vectors``
+    are walkers of a population in its feature space, of shape (feature,) each; none of captures.
     """
 
     clips: dict[str, PreparedClip]
