@@ -110,9 +110,9 @@ def as_trajectories(clip: Clip) -> xr.DataArray:
     """Return the trajectories of any clip; of a walker `N_STRIDES` strides, of a loop one cycle."""
     if isinstance(clip, Walker):
         return clip.trajectories(np.arange(0, N_STRIDES * clip.period_s, 1 / RATE_HZ))
-    if isinstance(clip, Loop):
-        return clip.cycle
-    return check_trajectories(clip.clip if isinstance(clip, PreparedClip) else clip)
+    if isinstance(clip, Loop | PreparedClip):
+        return clip.cycle if isinstance(clip, Loop) else clip.clip
+    return check_trajectories(clip)
 
 
 def duration_s(clip: xr.DataArray) -> float:

@@ -135,22 +135,16 @@ def _register(positions, spectra, limit, band, pairs, angles, steps, lengths):
 
 
 @compiled
-def _rotated(positions, angle, result):
-    """Fill in positions of shape (frame, point, axis), rotated about the vertical."""
-    cos, sin = positions.dtype.type(np.cos(angle)), positions.dtype.type(np.sin(angle))
-    for i in range(positions.shape[0]):
-        for k in range(positions.shape[1]):
-            x, y = positions[i, k, 0], positions[i, k, 1]
-            result[i, k, 0] = cos * x - sin * y
-            result[i, k, 1] = sin * x + cos * y
-            result[i, k, 2] = positions[i, k, 2]
-
-
-@compiled
 def _lay_out(positions, angle, columns):
     """Fill in rotated positions of a cycle as (point, axis, frame), repeated beyond its end."""
     n_frames = positions.shape[0]
-    _rotated(positions, angle, columns.transpose(2, 0, 1))
+    cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
+    for k in range(positions.shape[1]):
+        for i in range(n_frames):
+            x, y = positions[i, k, 0], positions[i, k, 1]
+            columns[k, 0, i] = cos * x - sin * y
+            columns[k, 1, i] = sin * x + cos * y
+            columns[k, 2, i] = positions[i, k, 2]
     columns[:, :, n_frames:] = columns[:, :, : columns.shape[2] - n_frames]
 
 
@@ -205,6 +199,11 @@ def _fill_means(points, rotate, code, parameter, result, pairs, angles, steps, l
     for p in range(len(pairs)):
         other = points[pairs[p, 1]].copy()
         if rotate:
-            _rotated(points[pairs[p, 1]], angles[p], other)
+            cos, sin = np.cos(angles[p]), np.sin(angles[p])
+            for i in range(points.shape[1]):
+                for k in range(points.shape[2]):
+                    x, y = other[i, k, 0], other[i, k, 1]
+                    other[i, k, 0] = cos * x - sin * y
+                    other[i, k, 1] = sin * x + cos * y
         path = steps[p, : lengths[p]]
         mean_along_path(path, points[pairs[p, 0]], other, code, parameter, result[p])

@@ -53,7 +53,6 @@ _RECOGNISED_BY = {
 _TOLERANCE = 0.01
 """Relative difference of lengths: no person has all of them so near to the mannequin's."""
 
-
 LENGTHS_MM = {part: HEIGHT_MM * share for part, share in SHARES.items()}
 
 SHORTEST_MM = 1.0
@@ -153,14 +152,17 @@ def retarget(walk: Clip) -> xr.DataArray:
 def is_mannequin(clip: xr.DataArray) -> bool:
     """Return whether a clip is of the mannequin: trunk and legs have its lengths."""
     index = {str(name): i for i, name in enumerate(clip.marker.values)}
-    ratios = []
+    n_links = 0
     for (start, end), part in _RECOGNISED_BY.items():
         if start in index and end in index:
             link = clip.values[:, index[start]] - clip.values[:, index[end]]
-            link = link[np.isfinite(link).all(axis=1)]
-            length = np.linalg.norm(link, axis=1).sum() / max(len(link), 1)
-            ratios.append(length / LENGTHS_MM[part])
-    return len(ratios) >= 3 and float(np.abs(np.subtract(ratios, 1)).max()) <= _TOLERANCE
+            lengths = np.sqrt(np.einsum("ta,ta->t", link, link))
+            lengths = lengths[np.isfinite(lengths)]
+            mean = lengths.sum() / max(len(lengths), 1)
+            if abs(mean / LENGTHS_MM[part] - 1) > _TOLERANCE:
+                return False
+            n_links += 1
+    return n_links >= 3
 
 
 def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> np.ndarray:
