@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -53,10 +52,10 @@ def panel(width_in: float, height_in: float) -> tuple[Figure, Axes]:
     return figure, panels(figure, 1, 1)[0][0]
 
 
-def note(axes: Axes, words: str, place: Sequence[float], offset: Any, **how: Any) -> None:
+def note(axes: Axes, words: str, place: Any, offset: Any, **how: Any) -> None:
     """Write small words at an offset, in points, from a place."""
     look = {"fontsize": SMALL, "color": INK, "textcoords": "offset points", "parse_math": False}
-    axes.annotate(words, tuple(place), xytext=tuple(offset), **look | how)  # pyright: ignore[reportArgumentType] - two numbers
+    axes.annotate(words, tuple(place), xytext=tuple(offset), **look | how)
 
 
 def colour_scale(figure: Figure, drawn: Any, unit: str, **where: Any) -> None:

@@ -102,6 +102,12 @@ def _checked_samples(value: Any) -> np.ndarray:
     return samples
 
 
+def _with_null(samples: np.ndarray) -> list[Any]:
+    values = samples.astype(object)
+    values[np.isnan(samples)] = None
+    return values.tolist()
+
+
 def _as_array(value: Any) -> np.ndarray | None:
     if not isinstance(value, list | tuple) or len(value) > MAX_SAMPLES:
         return None
@@ -121,7 +127,7 @@ _FRAME = {"type": "array", "items": _DOT, "minItems": 1, "maxItems": MAX_MARKERS
 Samples = Annotated[
     np.ndarray,
     PlainValidator(_checked_samples),
-    PlainSerializer(lambda samples: np.where(np.isnan(samples), None, samples).tolist()),
+    PlainSerializer(_with_null),
     WithJsonSchema({"type": "array", "items": _FRAME, "minItems": 2}),
 ]
 """Numbers of shape (time, dot, 3), null where missing; an array, NaN where missing."""

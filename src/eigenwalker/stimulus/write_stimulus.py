@@ -122,8 +122,8 @@ def _write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None) -
     folder.mkdir(parents=True, exist_ok=True)
     times = stimulus.frame_times
     colours = np.rint(drawn_shades(stimulus)).astype(np.uint8)
-    frames = ticked(drawn_frames(stimulus, times), len(times), progress)
-    for number, shades in enumerate(frames):
+    frames = drawn_frames(stimulus, times)
+    for number, shades in enumerate(ticked(frames, len(times), progress)):
         imsave(folder / f"frame_{number:04d}.png", colours[shades])
 
 
