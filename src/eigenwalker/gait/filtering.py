@@ -37,7 +37,7 @@ def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.n
     settling = int(2 * rate_hz / cut_off_hz)
     smooth = positions.copy()
     for marker in range(positions.shape[1]):
-        seen = np.isfinite(positions[:, marker]).all(axis=1)
+        seen = np.atleast_1d(np.isfinite(positions[:, marker]).all(axis=1))
         for start, stop in runs_of_true(seen):
             if stop - start > 2:
                 path = positions[start:stop, marker]

@@ -27,7 +27,7 @@ class Gap(NamedTuple):
 
 def find_gaps(positions: np.ndarray) -> list[Gap]:
     """Return all gaps in positions of shape (time, marker, axis), in the order of markers."""
-    missing = np.isnan(positions).any(axis=2)
+    missing = np.atleast_2d(np.isnan(positions).any(axis=2))
     return [
         Gap(marker, start, stop)
         for marker in np.flatnonzero(missing.any(axis=0)).tolist()

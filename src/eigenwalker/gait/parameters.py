@@ -132,8 +132,8 @@ def _steps(walk: xr.DataArray, strikes: pd.DataFrame, speed: float) -> tuple[flo
     )
     forward, to_left = np.diff(x + speed * moments), np.diff(y)
     left, is_step = side[1:] == "left", side[1:] != side[:-1]
-    lengths = (_mean(forward[is_step & (left == is_left)]) for is_left in (True, False))
-    return *lengths, _mean(np.where(left, to_left, -to_left)[is_step])
+    width_mm = _mean(np.where(left, to_left, -to_left)[is_step])
+    return _mean(forward[is_step & left]), _mean(forward[is_step & ~left]), width_mm
 
 
 def _stance(strikes: np.ndarray, offs: np.ndarray, frequency_hz: float) -> float:

@@ -45,7 +45,7 @@ def find_straight_pass(
     `walk` gives names and times; its positions have short gaps filled, and `gaps` are left. Raises
     ValueError if there is less than about a stride, or a gap between the strides.
     """
-    complete = np.isfinite(positions).all(axis=(1, 2))
+    complete = np.atleast_1d(np.isfinite(positions).all(axis=(1, 2)))
     heading = slow_heading(positions, walk.marker.values.tolist(), rate_hz)
     ahead = np.zeros(len(positions))
     if not heading.any():
@@ -88,7 +88,7 @@ def _most_strides(
     if not runs:
         raise NoStrideError(_no_stride(walk, gaps, problems))
     best = max(runs, key=lambda run: run.count(rate_hz))
-    seen = np.isfinite(positions).any(axis=(1, 2))
+    seen = np.atleast_1d(np.isfinite(positions).any(axis=(1, 2)))
     if within := _gaps_within(best, runs, gaps, rate_hz, seen):
         raise ValueError(
             f"Gaps in the midst of the walk are too long to be filled: {_listed(walk, within)}. "

@@ -132,7 +132,8 @@ def names_in(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
 def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, float]:
     """Return the height in mm and the lean in degrees of the line from feet to head, or NaN."""
     head, feet = head_and_feet(positions, names)
-    seen = ~np.isnan(head).any(axis=2).all(axis=1) & ~np.isnan(feet).any(axis=2).all(axis=1)
+    head_seen, feet_seen = (np.isfinite(points).all(axis=2) for points in (head, feet))
+    seen = np.any(head_seen, axis=1) & np.any(feet_seen, axis=1)
     if not seen.any():
         return float("nan"), float("nan")
     rises = np.nanmean(head[seen], axis=1) - np.nanmean(feet[seen], axis=1)

@@ -69,9 +69,9 @@ def _plain(value: object) -> object:
     raise TypeError(f"{type(value).__name__} cannot be written into a checkpoint.")
 
 
-def _walker(entry: Mapping[str, Any]) -> Walker:
+def _walker(entry: dict) -> Walker:
     fit = entry["fit"]
     if fit is not None:
         arrays = {name: np.array(value) for name, value in fit.items() if isinstance(value, list)}
         fit = CaptureFit(**(fit | arrays))
-    return Walker(**(dict(entry) | {"fit": fit}))
+    return Walker(**{**entry, "fit": fit})

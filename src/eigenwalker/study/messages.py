@@ -173,7 +173,8 @@ def summary_in_words(files: pd.DataFrame) -> dict[str, str]:
     lines = {}
     for column, values in summarise(files).iterrows():
         name, form = _SUMMARY[str(column)]
-        lines[name] = _range(*map(float, values), form)
+        median, least, most = map(float, values)
+        lines[name] = _range(median, least, most, form)
     for column, name in (("jumps", "jumps"), ("left_right_swaps", "left-right swaps")):
         if column in read:
             n_captures = (read[column] > 0).sum()

@@ -180,9 +180,9 @@ def process_capture(
     )
 
 
-def stated(capture: xr.DataArray) -> dict[str, float]:
+def stated(capture: xr.DataArray) -> dict[str, Any]:
     """Return the speed that a file states of its walk, and the heading of a walk in place."""
-    known = {}
+    known: dict[str, Any] = {}
     speed = capture.attrs.get("speed_mm_s")
     if isinstance(speed, int | float | np.number) and np.isfinite(speed):
         known["speed_mm_s"] = float(speed)
