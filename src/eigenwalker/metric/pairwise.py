@@ -210,7 +210,7 @@ def _components_of_strides(
     if not known.size:
         raise ValueError(f"Of the {metric.by} of {names} none is known throughout all clips.")
     compared = np.ascontiguousarray(compared[:, :, known])
-    ordered = _ordered_pairs(positions, pairs)
+    ordered = _ordered_pairs(list(positions), pairs)
     means = []
     for start in range(0, len(pairs), _BATCH):
         registered = register_pairs(positions, ordered[start : start + _BATCH])

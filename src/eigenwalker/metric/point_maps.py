@@ -37,9 +37,9 @@ def point_map(
     a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
     weighed = weights > 0
     weights = np.asarray(weights, dtype=float)[weighed]
-    b = None if b is a else b[:, weighed]
+    same = a is b
     a = a[:, weighed]
-    b = a if b is None else b
+    b = a if same else b[:, weighed]
     large = len(a) * len(b) * len(weights) > EXACT
     if np.isnan(a).any() or np.isnan(b).any():
         return _map_with_gaps(a, b, weights, shape, parameter, large)
