@@ -223,8 +223,8 @@ def _blended(walk: xr.DataArray, period: float, rate_hz: float) -> Loop:
     gaps = np.linalg.norm(path(first) - path(second), axis=2).mean(axis=1)
     rotation = None
     if "rotation" in walk.coords:
-        ends = (quaternions_at(walk.rotation.values, frames) for frames in (second, first))
-        rotation = vectors_of(between(*ends, weight[..., 0]))
+        start_q, stop_q = (quaternions_at(walk.rotation.values, at) for at in (second, first))
+        rotation = vectors_of(between(start_q, stop_q, weight[..., 0]))
     return Loop(
         _as_cycle(walk, values, rotation, period / rate_hz),
         period_s=period / rate_hz,
