@@ -74,7 +74,6 @@ class InputResult(Generic[_Curves]):
         When the number of components is chosen without the walker predicted.
     p : float
         Share of permuted traits that reach as small an error on the curve.
-
     """
 
     input: Input
@@ -95,7 +94,6 @@ class Classification:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
-
     """
 
     contrast: Contrast
@@ -111,7 +109,6 @@ class Classification:
             ``input``, ``separated at n`` (fewest components that separate all walkers), ``best n``,
             ``errors`` and ``error %`` (left out, at the best n of the curve, as the paper reports),
             ``nested errors`` and ``nested %`` (n chosen without the walker), ``p``.
-
         """
         n_walkers = len(self.contrast.rows)
         rows = [
@@ -141,7 +138,6 @@ class Classification:
         -------
         Series
             Number of inputs, by the walker's row in the population, the most first.
-
         """
         n_inputs = sum(
             result.curves.misclassified[:, result.curves.best_n - 1].astype(int)
@@ -163,7 +159,6 @@ class Regression:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
-
     """
 
     contrast: Contrast
@@ -179,7 +174,6 @@ class Regression:
             ``input``, ``best n``, and there, over walkers left out, ``correlation`` of trait and
             prediction, ``R2`` and ``RMSE`` in units of the trait; the same ``nested`` (n chosen
             without the walker), ``p``.
-
         """
         rows: list[dict[str, object]] = []
         for result in self.results:
@@ -252,7 +246,6 @@ def classify(
     >>> found = classify(people, "sex", inputs=[Input("size alone", "size", False)])
     >>> int(found.table()["errors"].item()) < 20
     True
-
     """
     contrast = trait_contrast(population, trait)
     if not contrast.two_classes:
@@ -306,7 +299,6 @@ def regress(
     >>> found.table()[["input", "best n", "correlation"]].round(2)
             input  best n  correlation
     0  size alone       1         0.96
-
     """
     contrast = trait_contrast(population, trait)
     if contrast.two_classes:

@@ -38,7 +38,6 @@ class Contrast:
     two_classes : bool
     persons : array of shape (walker,), or None
         The person of each walk, where some person has several.
-
     """
 
     trait: str
@@ -84,7 +83,6 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     ('male', 40)
     >>> trait_contrast(ew.load_population(), "weight").positive
     'heavy'
-
     """
     name, _, pair = trait.partition("=")
     column = trait_column(population.traits, name)

@@ -72,7 +72,6 @@ def direction(
     >>> step = direction(space, classifier, units="classmean")
     >>> (space.average_walker_ + step).round(6).tolist()
     [6.5, 4.5]
-
     """
     for name, choice, choices in (("kind", kind, Kind), ("units", units, Units)):
         if choice not in get_args(choices):

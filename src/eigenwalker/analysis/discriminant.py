@@ -116,7 +116,6 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
     'male'
     >>> classifier.coef_.round(2).tolist(), classifier.predict([[3, 0]]).tolist()
     ([0.6, 0.0], ['male'])
-
     """
 
     def __init__(
@@ -144,7 +143,6 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
         ValueError
             If y has missing values or does not hold two classes, or if there are fewer columns
             than `n_components`.
-
         """
         refuse_missing(y)
         K, traits = validate_data(self, X, y, dtype=np.float64, ensure_min_samples=2)
@@ -199,7 +197,6 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
     >>> regressor = DiscriminantRegressor(n_components=1)
     >>> regressor.fit([[-3, 1], [-1, -1], [1, -1], [3, 1]], weight_kg).predict([[5, 0]]).round(6)
     array([90.])
-
     """
 
     def __init__(self, n_components: int | None = None, order: Order = "standardised") -> None:
@@ -220,7 +217,6 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
         ------
         ValueError
             If y has missing values, or if there are fewer columns than `n_components`.
-
         """
         refuse_missing(y)
         trait = getattr(y, "name", None)

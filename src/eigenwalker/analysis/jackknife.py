@@ -51,7 +51,6 @@ class JackknifeCurves(_Curves):
     References
     ----------
     Troje (2002), fig. 4.
-
     """
 
     @property
@@ -107,7 +106,6 @@ class RegressionCurves(_Curves):
         Prediction by 1, 2, ... components, for the walkers trained on.
     held_out : array of shape (walker, component)
         The same for each walker left out, by a discriminant trained on the others.
-
     """
 
     @property
@@ -229,7 +227,6 @@ def jackknife_curves(
     ([1, 2, 3], 0)
     >>> curves.fewest_errors < 10
     True
-
     """
     task = class_task(X, y, groups)
     return JackknifeCurves(
@@ -279,7 +276,6 @@ def regression_curves(
     >>> curves = regression_curves(walkers, weight_kg)
     >>> curves.best_n, curves.r2[2].round(6)
     (3, np.float64(1.0))
-
     """
     task = number_task(X, y, groups)
     return RegressionCurves(

@@ -33,7 +33,6 @@ class Plausibility:
     limb_stretch : Series
         Standard deviation of each limb's length over the stride as a share of its mean: bones are
         rigid, sums of walkers not quite.
-
     """
 
     position: SpacePosition
@@ -64,7 +63,6 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     >>> people = ew.load_population()
     >>> bool(plausibility(people, people.average).limb_change.abs().max() < 1e-9)
     True
-
     """
     walkers = population.X[population.in_average]
     space = WalkerSpace().fit(walkers)
@@ -112,7 +110,6 @@ class SpacePosition:
         space, 1 for a difference that no walker of the space has.
     percentile : float
         Percentage of the given walkers that are closer to the average; NaN if none is given.
-
     """
 
     distance: float
@@ -147,7 +144,6 @@ def position_in_space(
     >>> report = position_in_space(space, [14, 4.5], walkers=walkers)
     >>> report.z_scores.round(2).tolist(), report.percentile
     ([3.4], 100.0)
-
     """
     vector = np.asarray(vector, dtype=float)
     if vector.shape != space.average_walker_.shape:

@@ -33,7 +33,6 @@ class TraitAxis:
         Fitted on their scores.
     columns : array of int
         Features that the discriminant uses.
-
     """
 
     contrast: Contrast
@@ -106,7 +105,6 @@ def trait_axis(
     >>> people = ew.load_population()
     >>> sex = trait_axis(people, "sex")
     >>> caricature = people.walker(people.average + 6 * sex.step)  # very much a man
-
     """
     contrast = trait_contrast(population, trait)
     columns = population.layout.columns(part)

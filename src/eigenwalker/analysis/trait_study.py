@@ -84,7 +84,6 @@ def study_trait(population: Population, result: Classification | Regression) -> 
     >>> result = ew.classify(people, "sex", n_permutations=0)
     >>> list(study_trait(people, result).views["discriminant"].walkers)
     ['female 6 SD', 'female 3 SD', 'average', 'male 3 SD', 'male 6 SD']
-
     """
     contrast = result.contrast
     trait = contrast.trait

@@ -34,7 +34,6 @@ class NestedPredictions:
         Prediction for each walker left out: the sum of eq. 11 for two classes, else the trait.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
-
     """
 
     y: np.ndarray
@@ -112,7 +111,6 @@ def nested_leave_one_out(
     >>> walkers = rng.normal(size=(20, 3)) + 5 * sex[:, None]
     >>> nested_leave_one_out(walkers, sex).errors
     0
-
     """
     task = task_of(X, y, groups, least_folds=4)
     folds = task.folds
@@ -154,7 +152,6 @@ class PermutationTest:
         square error in standard deviations of the trait.
     null : array of shape (permutation,)
         The same of each permuted trait.
-
     """
 
     least_error: float
@@ -205,7 +202,6 @@ def permutation_test(
     >>> walkers = np.random.default_rng(0).normal(size=(20, 3)) + 5 * sex[:, None]
     >>> permutation_test(walkers, sex, n_permutations=199).p < 0.05
     True
-
     """
     task = task_of(X, y, groups)
     R = _permuted_labels(task.r, groups, n_permutations, random_state)

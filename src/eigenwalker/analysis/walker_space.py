@@ -69,7 +69,6 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
     [[2.828]]
     >>> space.inverse_transform([[2 * 2**0.5]]).round(6).tolist()
     [[12.0, 120.0]]
-
     """
 
     def __init__(self, n_components: int | None = None, scale: Scale = "sd") -> None:
@@ -91,7 +90,6 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         ValueError
             If the walkers are all the same, if they do not span `n_components` dimensions, or if
             `scale` is none of the above.
-
         """
         W: np.ndarray = validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
         self.average_walker_ = W.mean(axis=0)

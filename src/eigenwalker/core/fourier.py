@@ -35,7 +35,6 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     --------
     >>> harmonic_basis(np.array([0, 0.25]), 1).round(9).tolist()
     [[1.0, 0.0, 1.0], [1.0, 1.0, 0.0]]
-
     """
     angles = 2 * np.pi * np.multiply.outer(cycles, np.arange(1, n_harmonics + 1))
     basis = np.ones((len(cycles), 1 + 2 * n_harmonics))
@@ -116,7 +115,6 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     >>> movement = np.sin(2 * np.pi * cycles) + np.sin(6 * np.pi * cycles)
     >>> round(share_explained(movement[:, None], cycles, 2), 9)
     0.5
-
     """
     centred = movement - movement.mean(axis=0)
     basis = harmonic_basis(cycles, n_harmonics)
@@ -149,7 +147,6 @@ def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
 
     >>> shift_origin(np.array([1.0, 0.0]), np.pi / 2).round(9).tolist()
     [0.0, 1.0]
-
     """
     harmonics = np.arange(1, len(coefficients) // 2 + 1)
     turn = (harmonics * angle).reshape(-1, *[1] * (coefficients.ndim - 1))

@@ -73,7 +73,6 @@ def from_euler(order: str, degrees: np.ndarray) -> np.ndarray:
     --------
     >>> from_euler("ZX", np.array([90.0, 0.0])).round(3).tolist()
     [0.0, 0.0, 0.707, 0.707]
-
     """
     half = np.deg2rad(degrees) / 2
     turns = np.zeros((*half.shape, 4))

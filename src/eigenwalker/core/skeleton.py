@@ -33,7 +33,6 @@ class Skeleton:
     >>> leg = Skeleton(("hip", "knee", "ankle"), (("hip", "knee"), ("knee", "ankle")))
     >>> leg.index("ankle")
     2
-
     """
 
     markers: tuple[str, ...]
@@ -61,7 +60,6 @@ class Skeleton:
         --------
         >>> Skeleton(("nose", "left_eye", "right_eye"), pairs=(("left_eye", "right_eye"),)).mirror()
         (0, 2, 1)
-
         """
         partner = dict(self.pairs) | {right: left for left, right in self.pairs}
         return tuple(self.index(partner.get(name, name)) for name in self.markers)
@@ -80,7 +78,6 @@ class Skeleton:
         --------
         >>> JOINTS.restricted_to(["left_knee", "left_ankle", "toe"]).segments
         (('left_knee', 'left_ankle'),)
-
         """
         names = tuple(markers)
 

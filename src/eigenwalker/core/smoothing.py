@@ -26,7 +26,6 @@ def running_mean(values: np.ndarray, width: int) -> np.ndarray:
     --------
     >>> running_mean(np.array([0.0, 3.0, 6.0, 9.0]), 3).tolist()
     [1.5, 3.0, 6.0, 7.5]
-
     """
     width = min(width, len(values))
     counts = uniform_filter1d(np.ones(len(values)), width, mode="constant")

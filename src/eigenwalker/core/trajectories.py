@@ -66,7 +66,6 @@ def label_trajectories(
     [0.0, 0.01, 0.02]
     >>> walk.attrs["units"]
     'mm'
-
     """
     if not np.isfinite(rate_hz) or rate_hz <= 0:
         raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")

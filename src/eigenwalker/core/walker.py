@@ -48,7 +48,6 @@ class CaptureFit:
     References
     ----------
     Troje (2002), figs. 2 and 3. Troje (2002), The little difference.
-
     """
 
     r2: float
@@ -116,7 +115,6 @@ class Walker:
     >>> walker = Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
     >>> walker.trajectories([0, 0.25]).sel(marker="foot", axis="x").values.tolist()
     [0.0, 200.0]
-
     """
 
     markers: tuple[str, ...]
@@ -250,7 +248,6 @@ class Walker:
         -------
         DataArray of shape (time, marker, axis)
             Positions in millimetres, walking in place.
-
         """
         time = np.atleast_1d(np.asarray(time, dtype=float))
         cycle = 2 * np.pi * self.frequency_hz * (time - self.time_origin_s)
@@ -285,7 +282,6 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
     >>> walker = Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [np.pi / 2], 1.0)
     >>> fourier_coefficients(walker, 1)[:, 0, 0].round(9).tolist()
     [0.0, 200.0]
-
     """
     coefficients = np.zeros((2 * n_harmonics, *walker.p0.shape))
     for posture, harmonic, phase in zip(walker.p, walker.harmonics, walker.phases, strict=True):

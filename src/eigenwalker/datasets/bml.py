@@ -59,7 +59,6 @@ class BmlModel:
     >>> model = ew.datasets.BmlModel(np.ones((46, 5)), {"sex": np.full((46, 5), 0.5)})
     >>> model.table(sex=2)[0, 0].item()
     2.0
-
     """
 
     mean: np.ndarray
@@ -120,7 +119,6 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     ...
     eigenwalker.io.errors.UnreadableFile: nowhere.json: expected a file, but got nothing of
     that name in '.'; check the path.
-
     """
     path = Path(path)
     try:

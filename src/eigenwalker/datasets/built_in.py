@@ -44,7 +44,6 @@ def load_population(path: str | Path | None = None) -> Population:
     >>> people = ew.load_population()
     >>> len(people), people.X.shape
     (40, (40, 229))
-
     """
     return _built_in() if path is None else Population.load(path)
 

@@ -140,7 +140,6 @@ def fetch_captures(
     ...
     ValueError: cmu is not fetched before its licence is accepted, with accept_licence=True:
     cmu: one walk each of four people...
-
     """
     collection = collection_named(name)
     folder = folder_of(name) if folder is None else Path(folder)

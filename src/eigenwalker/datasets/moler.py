@@ -76,7 +76,6 @@ def read_walkers_mat(path: str | os.PathLike[str]) -> Population:
     ...
     eigenwalker.io.errors.UnreadableFile: nowhere.mat: expected a file, but got nothing of
     that name in '.'; check the path.
-
     """
     path = Path(path)
     arrays = read_mat_arrays(path)
@@ -149,7 +148,6 @@ def read_mm(
     References
     ----------
     Troje (2002), The little difference: Fourier based gender classification, eq. 1.
-
     """
     path = Path(path)
     arrays = read_mat_arrays(path)

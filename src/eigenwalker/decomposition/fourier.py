@@ -61,7 +61,6 @@ def decompose_fourier(
     [200.0]
     >>> round(walker.time_origin_s, 6)
     0.75
-
     """
     components = WalkComponents.of(walk, n_harmonics)
     postures = components.fourier_postures

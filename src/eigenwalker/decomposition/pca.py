@@ -65,7 +65,6 @@ def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
     (1.0, [1, 2])
     >>> walker.eigenpostures.sel(component=1, axis="x").values.round(6).tolist()
     [200.0, -200.0]
-
     """
     components = WalkComponents.of(walk, n_harmonics)
     found = components.eigenpostures

@@ -51,7 +51,6 @@ class Eigenpostures:
         Coefficient of determination of each sine.
     rate_hz : float
         Frames a second.
-
     """
 
     mean: np.ndarray
@@ -86,7 +85,6 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     References
     ----------
     Troje (2002), eq. 1 and 2, figs. 2 and 3.
-
     """
     mean, scatter = _mean_and_scatter(postures)
     power, axes = _largest_eigenpairs(scatter, min(2 * n_harmonics, postures.shape[1]))

@@ -49,7 +49,6 @@ def interactive_page(model: Mapping[str, Any], *, report: str = "", server: bool
     >>> page = interactive_page(ew.explorer.page_model(ew.load_population(), traits=["sex"]))
     >>> page[:15].lower(), '"positive":"male"' in page
     ('<!doctype html>', True)
-
     """
     page = _fill(built(PAGE), "model", _as_json(model))
     page = _fill(page, "player", _as_json(built(PLAYER)))

@@ -62,7 +62,6 @@ def page_model(
     >>> model = page_model(ew.load_population(), traits=["sex"])
     >>> len(model["average"]), len(model["walkers"]), model["traits"][0]["positive"]
     (229, 40, 'male')
-
     """
     rows = np.flatnonzero(~population.flagged)
     if not len(rows):

@@ -70,7 +70,6 @@ def show(
     >>> widget.alpha = {"sex": 2}  # the walker in the notebook moves too
     >>> ew.load_population().vector(widget.walker).shape
     (229,)
-
     """
     if shown is None and population is None:
         from eigenwalker.datasets.built_in import load_population
@@ -124,7 +123,6 @@ class WalkerWidget(anywidget.AnyWidget):
         Phase of the stride while it does not play, from 0 to 1.
     height_px : int
         Height of the picture.
-
     """
 
     _model = traitlets.Dict(default_value=None, allow_none=True).tag(sync=True)

@@ -48,7 +48,6 @@ def walker_measures(walker: Walker) -> pd.Series:
     >>> he, she = (walker_measures(people.walkers[row]) for row in (30, 10))
     >>> bool(he["shoulder_width_mm"] > she["shoulder_width_mm"])
     True
-
     """
     stride = walker.trajectories(np.arange(N_MOMENTS) * walker.period_s / N_MOMENTS)
     trunk = ["pelvis"] if "pelvis" in walker.markers else ["left_hip", "right_hip"]

@@ -69,7 +69,6 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
     1    0.25  right      toe_off
     2    0.75   left      toe_off
     3    0.75  right  heel_strike
-
     """
     walk = check_trajectories(trajectories, complete=True)
     place = {name: index for index, name in enumerate(walk.marker.values.tolist())}

@@ -78,7 +78,6 @@ def fundamental_frequency(trajectories: xr.DataArray, *, n_harmonics: int = 2) -
     >>> walk = ew.label_trajectories(foot, markers=["left_ankle"], rate_hz=120)
     >>> round(fundamental_frequency(walk), 9)
     0.85
-
     """
     walk = check_trajectories(trajectories, complete=True)
     movement = walk.values.reshape(walk.sizes["time"], -1)
@@ -125,7 +124,6 @@ def frequency_of_scores(
     >>> scores = np.stack([np.sin(5 * time), np.cos(10 * time)], axis=1)
     >>> round(2 * np.pi * frequency_of_scores(scores, 50), 9)
     5.0
-
     """
     n_frames = len(scores)
     if n_harmonics < 1:

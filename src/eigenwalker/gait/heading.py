@@ -143,7 +143,6 @@ def stance_speed(walk: xr.DataArray) -> float:
     >>> walk = ew.simulate_walk(seed=1)
     >>> 0.95 < stance_speed(walk) / walk.attrs["speed_mm_s"] < 0.98
     np.True_
-
     """
     walk = check_trajectories(walk, complete=True)
     ground = ground_velocity(walk.values, walk.marker.values.tolist(), sampling_rate(walk))
@@ -174,7 +173,6 @@ def ground_speed(walker: Walker) -> float:
     >>> walker = ew.load_population().walkers[0]
     >>> ground_speed(walker) == walker.speed_mm_s
     True
-
     """
     if np.isfinite(walker.speed_mm_s):
         return walker.speed_mm_s

@@ -111,7 +111,6 @@ def in_place(
     >>> walk = in_place(capture)
     >>> round(walk.attrs["speed_mm_s"]), round(walk.attrs["heading_deg"]), walk.attrs["n_strides"]
     (1200, 90, 3)
-
     """
     walk = _without_still_points(check_trajectories(trajectories))
     rate_hz = sampling_rate(walk)

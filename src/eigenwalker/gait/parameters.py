@@ -75,7 +75,6 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     step_length_left_mm    600.0
     step_width_mm          120.0
     dtype: float64
-
     """
     if isinstance(walk, Walker):
         frequency_hz, speed = walk.frequency_hz, walk.speed_mm_s

@@ -31,7 +31,6 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
     >>> error = UnreadableFile("a.bvh", "207 frames", "120", "export the file again")
     >>> print(error)
     a.bvh: expected 207 frames, but got 120; export the file again.
-
     """
 
     def __init__(self, source: str, expected: str, got: str, advice: str = EXPORT_AGAIN) -> None:

@@ -53,7 +53,6 @@ def to_movement(trajectories: xr.DataArray, *, individual: str = "walker") -> xr
     >>> poses = to_movement(walk)
     >>> dict(poses.position.sizes), poses.attrs["fps"]
     ({'time': 3, 'space': 3, 'keypoints': 2, 'individuals': 1}, 50.0)
-
     """
     walk = check_trajectories(trajectories)
     confidence = np.full(walk.shape[:2], np.nan)
@@ -124,7 +123,6 @@ def from_movement(
     >>> walk = ew.label_trajectories(np.ones((3, 1, 3)), markers=["head"], rate_hz=50)
     >>> from_movement(to_movement(walk)).equals(walk)
     True
-
     """
     if not isinstance(poses, xr.Dataset) or "position" not in poses:
         raise TypeError(
@@ -176,7 +174,6 @@ def to_pyomeca(trajectories: xr.DataArray) -> xr.DataArray:
     >>> markers = to_pyomeca(walk)
     >>> markers.dims, markers.shape, markers.attrs["rate"]
     (('axis', 'channel', 'time'), (4, 2, 3), 50.0)
-
     """
     walk = check_trajectories(trajectories)
     rate_hz = round(sampling_rate(walk), 9)
@@ -239,7 +236,6 @@ def from_pyomeca(
     >>> walk = ew.label_trajectories(np.ones((3, 1, 3)), markers=["head"], rate_hz=50)
     >>> from_pyomeca(to_pyomeca(walk)).equals(walk)
     True
-
     """
     if not isinstance(markers, xr.DataArray) or set(markers.dims) != set(_MARKERS):
         raise TypeError(

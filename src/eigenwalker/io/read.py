@@ -151,7 +151,6 @@ def read_mocap(
     ...
     eigenwalker.io.errors.UnreadableFile: nowhere.c3d: expected a file, but got nothing of
     that name in '.'; check the path.
-
     """
     path = Path(path)
     content = read_bytes(path)
@@ -236,7 +235,6 @@ def is_capture(path: Path) -> bool:
     Returns
     -------
     bool
-
     """
     readers = [reader for reader in READERS if path.suffix.lower() in reader.suffixes]
     if not readers or not path.is_file():

@@ -87,7 +87,6 @@ def walker_from_table(
     ... )
     >>> walker.trajectories([0.25]).values.tolist()
     [[[200.0, 0.0, 50.0]]]
-
     """
     values = np.asarray(table, dtype=float)
     places = _column_places(columns)
@@ -148,7 +147,6 @@ def walker_to_table(
     >>> walker = Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [0], 1.0)
     >>> walker_to_table(walker, columns=["mean", "cos1", "sin1"]).tolist()
     [[0.0, 0.0, 200.0], [0.0, 0.0, 0.0], [50.0, 0.0, 0.0]]
-
     """
     places, turn = _column_places(columns), axes_matrix(axes)
     n_harmonics = len(columns) // 2
@@ -201,7 +199,6 @@ def walker_from_mm(
     >>> foot = walker_from_mm(swing, markers=["foot"])
     >>> foot.frequency_hz, foot.speed_mm_s
     (1.0, 1200.0)
-
     """
     values = np.asarray(matrix, dtype=float)
     if values.ndim != 2 or values.shape[1] < 3 or not values.shape[1] % 2 or not len(values):
@@ -240,7 +237,6 @@ def walker_to_mm(
     See Also
     --------
     walker_from_mm, walker_to_table
-
     """
     if markers is None and set(walker.markers) == set(JOINTS.markers):
         markers = JOINTS.markers

@@ -124,7 +124,6 @@ def write_mocap(
     0.5,0,0,50
     0.75,0,0,10
     <BLANKLINE>
-
     """
     path = Path(path)
     form = _format_of(path)

@@ -29,7 +29,6 @@ class Repair(NamedTuple):
         Both belong to the stretch. Of a jump: the first and the last frame that begins elsewhere.
     partner : str
         The right marker of a swap, else empty.
-
     """
 
     marker: str
@@ -64,7 +63,6 @@ def repair_labels(trajectories: xr.DataArray) -> xr.DataArray:
     >>> walk.loc[{"marker": "left_knee", "time": walk.time[100:102]}] += 500
     >>> repair_labels(walk).attrs["repairs"]
     (Repair(marker='left_knee', kind='flicker', first_frame=100, last_frame=101, partner=''),)
-
     """
     walk = check_trajectories(trajectories)
     rate_hz = sampling_rate(walk)

@@ -118,7 +118,6 @@ def virtual_markers(
     >>> joints = virtual_markers(capture, mapping=mapping)
     >>> joints.attrs["marker_set"], joints.marker.values[8].item()
     ('own mapping', 'pelvis')
-
     """
     walk = check_trajectories(trajectories)
     with suppress(ValueError):  # where frames are not evenly spaced

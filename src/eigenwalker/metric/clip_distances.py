@@ -60,7 +60,6 @@ def clip_distance(a: Clip, b: Clip, *, metric: str | Metric = POSITIONS) -> floa
     >>> walk, other = (ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2))
     >>> clip_distance(walk, other) == clip_distance(other, walk) > 20
     True
-
     """
     return float(pair_distances({"a": a, "b": b}, metric=metric).iloc[0])
 
@@ -85,7 +84,6 @@ def clip_components(a: Clip, b: Clip, *, metric: str | Metric = POSITIONS) -> pd
     >>> held_out.loc[{"marker": "left_wrist", "axis": "y"}] += 150
     >>> clip_components(walk, held_out).idxmax()
     'left_wrist'
-
     """
     return pair_components({"a": a, "b": b}, metric=metric).iloc[0]
 
@@ -109,7 +107,6 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
     >>> walk, other = (ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2))
     >>> float(step_distances(walk, other)["left_ankle"].max().round()) > 50
     True
-
     """
     return register_prepared(*prepare_together([a, b]).values()).distances(by)
 
@@ -140,7 +137,6 @@ class Comparison:
         is unknown. The mannequin has no clavicles (`group_points`).
     missing_groups : tuple of str
         Groups with a weight in the metric and no points in the walks.
-
     """
 
     a: PreparedClip
@@ -189,7 +185,6 @@ def compare_walks(a: Clip, b: Clip, *, metric: str | Metric = "positions-sigmoid
     >>> comparison = compare_walks(walk, held_out, metric="kovar")
     >>> comparison.shares.idxmax(), comparison.groups.positions_mm.idxmax()
     ('hand', 'hand')
-
     """
     a, b = prepare_together([a, b]).values()
     metric = metric_named(metric)

@@ -44,7 +44,6 @@ class Loop:
     n_periods : int
         2 if two periods were blended; 1 if the clip holds a single period, whose seam was
         distributed over it.
-
     """
 
     cycle: xr.DataArray
@@ -72,7 +71,6 @@ class Loop:
         -------
         DataArray of shape (time, marker, axis)
             Positions in mm, interpolated by periodic cubic splines.
-
         """
         time = np.atleast_1d(np.asarray(time, dtype=float))
         values = positions_at(self.cycle, time, periodic=True)
@@ -91,7 +89,6 @@ class PreparedClip:
         One stride on the common clock (`common_clock`); None if the clip does not repeat.
     not_periodic_reason : str
         Why there is no stride; empty if there is one.
-
     """
 
     clip: xr.DataArray

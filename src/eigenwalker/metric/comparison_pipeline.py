@@ -47,7 +47,6 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
     --------
     >>> "left_toe" in prepare_walk(ew.simulate_walk(seed=1, markers="skin")).marker
     True
-
     """
     walk = in_place(full_joints(capture))
     return retarget(walk) if mannequin else walk

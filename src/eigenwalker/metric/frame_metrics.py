@@ -60,7 +60,6 @@ class FrameMetric:
     [0.5, 0.5, 0.0]
     >>> shaped(metric, np.array([0.0, 100, 300])).tolist()
     [0.0, 0.5, 0.75]
-
     """
 
     by: By = "positions"
@@ -125,7 +124,6 @@ class GroupMetric:
     >>> legs = GroupMetric("legs", "positions", "absolute", {"calf": 3, "toe": 1})
     >>> legs.weights_for(["left_knee", "right_knee", "left_ankle"]).tolist()
     [0.375, 0.375, 0.25]
-
     """
 
     name: str

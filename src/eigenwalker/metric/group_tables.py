@@ -49,7 +49,6 @@ def group_table(
     >>> X = group_table(walks, "positions-sigmoid", "velocities-absolute")
     >>> X.shape, X.columns[3], X.columns[-1]
     ((3, 16), 'positions forearm', 'velocities toe')
-
     """
     if not metrics:
         raise ValueError("Name what to compare by: group_table(clips, 'positions-sigmoid').")
@@ -79,7 +78,6 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
     --------
     >>> missing_groups(pd.DataFrame(columns=[group for group in GROUPS if group != "toe"]))
     ['toe']
-
     """
     prefixes = dict.fromkeys(str(name).rpartition(" ")[0] for name in table.columns)
     names = [f"{prefix} {group}".strip() for prefix in prefixes for group in GROUPS]
@@ -104,7 +102,6 @@ def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
     >>> table = pd.DataFrame({"thigh": [1.0, 2, 3], "calf": [2.0, 4, 6], "toe": [5.0, 1, 2]})
     >>> collinear_groups(table).round(6).values.tolist()
     [['thigh', 'calf', 1.0]]
-
     """
     varied = table.loc[:, np.ptp(table.to_numpy(), axis=0) > 0]
     rows: list[tuple[str, str, float]] = []

@@ -108,7 +108,6 @@ def joint_quaternions(
     >>> bend = 2 * np.arccos(np.abs(knee.sel(quaternion="w")))
     >>> round(float(np.rad2deg(bend.max())), -1)
     60.0
-
     """
     clip = as_trajectories(clip)
     place = {str(name): clip.values[:, i] for i, name in enumerate(clip.marker.values)}
@@ -242,7 +241,6 @@ def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") 
     >>> quarter = Rotation.from_rotvec([0, 0, np.pi / 2]).as_quat()
     >>> float(angle_between([0, 0, 0, 1], -quarter).round(4))
     1.5708
-
     """
     if kind not in get_args(AngleDistance):
         raise ValueError(f"kind={kind!r} is not known; give one of {get_args(AngleDistance)}.")

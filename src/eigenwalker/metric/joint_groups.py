@@ -63,7 +63,6 @@ def group_points(
     >>> points = group_points(ew.JOINTS.markers)
     >>> points["forearm"], points["clavicle"]
     (('left_elbow', 'right_elbow'), ('sternum',))
-
     """
     present = set(map(str, names))
     groups = {group: _members(group, present, by) for group in GROUPS}

@@ -98,7 +98,6 @@ def loop(clip: Clip, *, already_in_place: bool = False) -> Loop:
     >>> stride = loop(walk)
     >>> round(stride.period_s, 3), stride.cycle.sizes["time"]
     (1.25, 150)
-
     """
     if isinstance(clip, Loop):
         return clip

@@ -88,7 +88,6 @@ def motion_map(
     >>> a = ew.label_trajectories(foot, markers=["foot"], rate_hz=100)
     >>> motion_map(a, a + np.array([500, 0, 0])).values.tolist()
     [[500.0, 510.0, 520.0], [490.0, 500.0, 510.0], [480.0, 490.0, 500.0]]
-
     """
     metric = metric_named(metric)
     clips = _clip_pair(a, b, metric, align, periodic)
@@ -131,7 +130,6 @@ def motion_maps(
     >>> maps = motion_maps(walk, groups=groups)
     >>> maps.group.values.tolist(), maps.shape
     (['head', 'wrists'], (2, 30, 30))
-
     """
     metric = metric_named(metric)
     clips = _clip_pair(a, b, metric, align)

@@ -44,7 +44,6 @@ def nearest_walks(
     >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
     >>> nearest_walks(walks["walk 2"], walks).index[0]
     'walk 2'
-
     """
     if not walks:
         raise ValueError("There is no walk to compare with.")
@@ -81,7 +80,6 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     >>> labels = label_table(table, {"a": "slow", "b": "slow", "c": "fast", "d": "fast"})
     >>> labels.loc["slow"].tolist()
     [2.0, 1.0, 9.0, 1.0, 0.3333333333333333]
-
     """
     names = [name for name in table.index if name in labels]
     values = table.loc[names, names].to_numpy()

@@ -67,7 +67,6 @@ def pair_table(
     >>> table = pair_table(walks)
     >>> table.shape, bool((table == table.T).all(axis=None))
     ((3, 3), True)
-
     """
     distances = pair_distances(clips, metric=metric, progress=progress)
     names = list(dict.fromkeys(name for pair in distances.index for name in pair))
@@ -97,7 +96,6 @@ def pair_distances(
     >>> walks = {name: ew.simulate_walk(seed=len(name), rate_hz=60) for name in ("a", "bb", "ccc")}
     >>> pair_distances(walks).index.to_list()
     [('a', 'bb'), ('a', 'ccc'), ('bb', 'ccc')]
-
     """
     metric = metric_named(metric)
     components = pair_components(clips, metric=metric, progress=progress)
@@ -132,7 +130,6 @@ def distances_by_metric(
     >>> walks = [ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2)]
     >>> distances_by_metric(walks, ["kovar", "lee"]).columns.to_list()
     ['kovar', 'lee']
-
     """
     prepared = prepare_together(clips)
     names = ticked(metrics, len(metrics), progress)
@@ -166,7 +163,6 @@ def pair_components(
     >>> walks = {f"walk {seed}": ew.simulate_walk(seed=seed, rate_hz=60) for seed in (1, 2, 3)}
     >>> pair_components(walks).shape
     (3, 15)
-
     """
     if len(clips) < 2:
         raise ValueError(f"Pairs need two clips or more; got {len(clips)}.")

@@ -42,7 +42,6 @@ def prepare(clip: Clip) -> PreparedClip:
     --------
     >>> prepare(ew.simulate_walk(seed=1)).cycle.sizes["time"]
     120
-
     """
     if isinstance(clip, PreparedClip):
         return clip

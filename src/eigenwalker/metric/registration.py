@@ -58,7 +58,6 @@ class Registration:
         For each step, how the second clip is rotated and translated to lie over the first.
     periodic : bool
         Whether they are strides, which repeat.
-
     """
 
     first: xr.DataArray
@@ -210,7 +209,6 @@ def register(
     >>> first, second = register(walk, slower).on_common_clock()
     >>> bool(np.abs(first - second).max() < 20)
     True
-
     """
     a, b = at_one_rate(as_trajectories(a), as_trajectories(b))
     cells = motion_map(a, b, metric=metric, window_s=window_s, align=align)
@@ -280,7 +278,6 @@ def register_walks(a: Clip, b: Clip) -> Registration:
     >>> later = walk.isel(time=slice(45, None))
     >>> register_walks(walk, later).cost < 0.01 * register_walks(walk, other).cost
     True
-
     """
     return register_strides(_stride(a), _stride(b))
 

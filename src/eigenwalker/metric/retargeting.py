@@ -126,7 +126,6 @@ def retarget(walk: Clip) -> xr.DataArray:
     >>> walk = ew.simulate_walk(seed=1, height_mm=1500)
     >>> bool(np.allclose(retarget(walk * 1.2), retarget(walk)))
     True
-
     """
     walk = as_trajectories(walk)
     if missing := missing_markers(walk, JOINTS.markers):

@@ -67,7 +67,6 @@ def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = Tru
     >>> times = register_by_spline(a, b, align=False).times
     >>> bool(np.abs(times[:, 0] - times[:, 1] ** 1.5).max() < 0.01)
     True
-
     """
     if n_pieces < 1:
         raise ValueError(f"n_pieces={n_pieces}; a warp needs 1 or more.")

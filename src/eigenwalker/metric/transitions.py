@@ -68,7 +68,6 @@ def find_transitions(
     >>> best = find_transitions(walk).iloc[0]
     >>> round(abs(best.time_a - best.time_b), 2) % 1
     np.float64(0.0)
-
     """
     a = as_trajectories(a)
     other = a if b is None else as_trajectories(b)

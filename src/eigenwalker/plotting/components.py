@@ -50,7 +50,6 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     References
     ----------
     Troje (2002), fig. 2.
-
     """
     shares = [walker.fit.variance_share for walker in walkers if walker.fit is not None]
     if not shares:
@@ -96,7 +95,6 @@ def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) ->
     References
     ----------
     Troje (2002), fig. 3 and eq. 8.
-
     """
     walk = check_trajectories(walk, complete=True).sel(marker=list(walker.markers))
     scores, sines = scores_of(walk, walker)

@@ -79,7 +79,6 @@ def figure_curves(
     >>> curve = SimpleNamespace(n_components=[1, 2], separation=[9, 4], generalisation=[9, 7])
     >>> figure_curves({"structure": curve}, n_walkers=40).axes[0].get_title(loc="left")
     'structure'
-
     """
     figure, axes, n_columns = _grid(curves, n_columns)
     for index, (axis, curve) in enumerate(zip(axes, curves.values(), strict=True), start=1):
@@ -127,7 +126,6 @@ def figure_regression_curves(
     >>> curve = SimpleNamespace(n_components=[1, 2], trained_r2=[0.3, 0.6], r2=[0.2, 0.1])
     >>> figure_regression_curves({"structure": curve}).axes[0].get_title(loc="left")
     'structure'
-
     """
     figure, axes, _ = _grid(curves, n_columns)
     for axis, curve in zip(axes, curves.values(), strict=True):

@@ -53,7 +53,6 @@ class MapPicture:
         Moments of a and b to mark by a ring.
     names : tuple of str
         What a and b are called.
-
     """
 
     values: np.ndarray
@@ -122,7 +121,6 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
     >>> figure = figure_maps([MapPicture(apart, t, t, "a sine and itself")])
     >>> figure.axes[0].get_title(loc="left")
     'a sine and itself'
-
     """
     n_columns = min(n_columns, len(pictures))
     n_rows = -(-len(pictures) // n_columns)
@@ -203,7 +201,6 @@ def figure_two_walks(
     Figure
         Seen from the side above, from the front below; the first walk blue, the second red, their
         left limbs paler.
-
     """
     body = skeleton.restricted_to(markers)
     frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)

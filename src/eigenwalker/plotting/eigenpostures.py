@@ -72,7 +72,6 @@ def figure_eigenpostures(
     >>> hop = ew.Walker(["head"], [[0, 0, 1600]], [[[0, 0, 12]]], [2], [0], 1.0)
     >>> figure_eigenpostures(hop).axes[0].texts[1].get_text()
     'harmonic 2, 20-fold'
-
     """
     body = skeleton.restricted_to(walker.markers)
     gains = [_gain(posture) for posture in walker.p]

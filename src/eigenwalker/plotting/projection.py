@@ -55,7 +55,6 @@ def project(
     [300.0, 1000.0]
     >>> project([0, 300, 1000], azimuth_deg=90).round(9).tolist()
     [0.0, 1000.0]
-
     """
     positions = np.asarray(positions, dtype=float)
     if positions.ndim == 0 or positions.shape[-1] != 3:

@@ -108,7 +108,6 @@ def write_film(
     ...     film = write_film(hop, Path(folder) / "hop.gif", n_strides=2, size_px=64)
     ...     film.stat().st_size > 0
     True
-
     """
     path = Path(path)
     shown = [walks] if isinstance(walks, Walker | xr.DataArray) else list(walks)

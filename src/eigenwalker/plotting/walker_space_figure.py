@@ -56,7 +56,6 @@ def figure_space(
     Returns
     -------
     Figure
-
     """
     X, across = np.asarray(X, dtype=float), [component - 1 for component in components]
     scores = space.transform(X)[:, across]

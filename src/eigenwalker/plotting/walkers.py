@@ -93,7 +93,6 @@ def figure_joints(
     >>> still = ew.Walker(["head"], [[0, 0, 1600]], [[[0, 0, 0]]], [1], [0], 1.0)
     >>> [text.get_text() for text in figure_joints(still, azimuths_deg=[0]).axes[0].texts]
     ['head', 'front']
-
     """
     body = skeleton.restricted_to(walker.markers)
     pictures = [project(walker.p0, azimuth_deg=view) for view in azimuths_deg]
@@ -198,7 +197,6 @@ def figure_walkers(
     >>> figure = figure_walkers({name: people.walker(each) for name, each in poles.items()})
     >>> [text.get_text() for text in figure.axes[0].texts]
     ['woman', 'man']
-
     """
     if not walkers:
         raise ValueError("There is no walker to draw; give one or more, by title.")

@@ -58,7 +58,6 @@ class Correspondence:
         Cosine between each eigenposture and the average walker's.
     flags : tuple of str
         For each walker, why correspondence does not hold; empty where it does.
-
     """
 
     reference: ReferenceWalker
@@ -99,7 +98,6 @@ def correspond(
     See Also
     --------
     correspond_to : One walker in correspondence with others.
-
     """
     _check_comparable(walkers)
     trusted = np.ones(len(walkers), dtype=bool)
@@ -136,7 +134,6 @@ def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, n
         Cosine between its eigenpostures and the average walker's.
     flag : str
         Why correspondence does not hold; empty where it does.
-
     """
     if walker.markers != reference.markers or walker.form != reference.form:
         raise ValueError(
@@ -173,7 +170,6 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     >>> same = rng.normal(size=(1, 1, 15, 3)) * [[[[1.0]]], [[[2.0]]]]
     >>> posture_correlations(same).round(6).tolist()
     [1.0]
-
     """
     n_walkers, n_components = postures.shape[:2]
     flat = postures.reshape(n_walkers, n_components, -1)
@@ -198,7 +194,6 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     Returns
     -------
     array of shape (walker, component, marker, axis)
-
     """
     postures: list[np.ndarray] = []
     for walker in walkers:

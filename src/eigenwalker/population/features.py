@@ -47,7 +47,6 @@ class FeatureLayout:
     (229, 'p0.head.x', 'phase4')
     >>> len(layout.columns("structure")), len(layout.columns("p1+p2+p3"))
     (45, 135)
-
     """
 
     markers: tuple[str, ...]
@@ -100,7 +99,6 @@ class FeatureLayout:
         Returns
         -------
         array of int, in increasing order
-
         """
         gathered = {
             "all": list(self.blocks),

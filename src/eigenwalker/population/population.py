@@ -61,7 +61,6 @@ class Population:
     (40, 229)
     >>> tall = people.select(people.traits["height_mm"] > 1700)
     >>> extrapolated = people.walker(3 * people.X[0] - 2 * people.X[1])
-
     """
 
     walkers: Sequence[Walker]
@@ -183,7 +182,6 @@ class Population:
         >>> people = ew.load_population()
         >>> people.part("structure").shape, people.part("p1+p2").shape, people.part("size").shape
         ((40, 45), (40, 90), (40, 1))
-
         """
         if name == "size":
             return self.sizes[:, None]
@@ -214,7 +212,6 @@ class Population:
         >>> slower, faster = sorted(walker.frequency_hz for walker in people.walkers[:2])
         >>> slower < between.frequency_hz < faster
         True
-
         """
         walker = self.layout.walker(vector)
         return replace(walker, speed_mm_s=ground_speed(walker))
@@ -247,7 +244,6 @@ class Population:
         >>> mixed = people.walker(people.hybrid(structure=people.X[0], dynamics=people.average))
         >>> bool((mixed.p0 == people.walkers[0].p0).all())
         True
-
         """
         columns = self.layout.columns("structure")
         mixed = np.array(dynamics, dtype=float)
@@ -330,7 +326,6 @@ class Population:
         DataFrame of shape (posture, 2)
             Of eigenpostures with only sign and order made to agree, as in Troje (2002), and in
             correspondence.
-
         """
         walkers = [self.walkers[number] for number in np.flatnonzero(self.in_average).tolist()]
         mean = posture_correlations(np.stack([walker.p0[None] for walker in walkers]))
@@ -359,7 +354,6 @@ class Population:
         ------
         UnreadableFile
             If the file holds no population or is damaged.
-
         """
         return cls(*read_population(Path(path)))
 

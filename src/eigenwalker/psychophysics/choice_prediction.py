@@ -34,7 +34,6 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     array of shape (pair,)
         Expected share of times that the pair is not chosen; NaN where no trial showed it, or all
         other trials showed one of the two, as they do where there are five walkers or fewer.
-
     """
     table = np.asarray(X, dtype=float)
     problem = ChoiceProblem.from_trials(table, trials)
@@ -86,7 +85,6 @@ def compare_by_choices(
     See Also
     --------
     compare_metrics : The same by differences of pairs.
-
     """
     observed = count_pairs(trials).differences.to_numpy()
     seen = np.isfinite(observed)

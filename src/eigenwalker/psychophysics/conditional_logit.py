@@ -43,7 +43,6 @@ class ChoiceFit:
         Of all choices, in nats; guessing has ``-n_trials * log(6)``.
     n_trials : float
         Trials that count.
-
     """
 
     weights: np.ndarray
@@ -104,7 +103,6 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     >>> trials = ew.psychophysics.Trials(pairs, ("Eva",), np.zeros(4, dtype=int), shown, chosen)
     >>> fit_choices([[1.0], [2.0]], trials).weights.round(4), np.log(3).round(4)
     (array([1.0986]), np.float64(1.0986))
-
     """
     times = np.ones(len(trials.chosen)) if counts is None else np.asarray(counts, dtype=float)
     plain = times.shape == trials.chosen.shape and np.isfinite(times).all()
@@ -154,7 +152,6 @@ def bootstrap_choices(
     -------
     Bootstrap
         Its constants are 0: a model of choices has none.
-
     """
     if len(trials.observers) < 2:
         raise ValueError(
@@ -190,7 +187,6 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     -------
     array of shape (pair,)
         Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
-
     """
     probability = choice_probabilities(distances, trials.shown)
     n_pairs = len(trials.pairs)

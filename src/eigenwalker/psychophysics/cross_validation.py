@@ -35,7 +35,6 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
     --------
     >>> round(goodness([0.2, 0.4, 0.9], [0.3, 0.4, 0.8])["rss"], 6)
     0.02
-
     """
     observed, predicted = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
     error = observed - predicted
@@ -75,7 +74,6 @@ def leave_walkers_out(
     >>> train, test = leave_walkers_out(pairs)[0]
     >>> [pairs[row] for row in train], [pairs[row] for row in test]
     ([('c', 'd')], [('a', 'b')])
-
     """
     names = np.array([[str(walker) for walker in pair] for pair in pairs])
     splits = []
@@ -121,7 +119,6 @@ def compare_metrics(
     References
     ----------
     Pražák et al. (2010), figure 5.
-
     """
     y = np.asarray(y, dtype=float)
     splits = leave_walkers_out(pairs)

@@ -34,7 +34,6 @@ def order_of_walks(table: ArrayLike) -> np.ndarray:
     >>> place = np.array([0.0, 2.0, 0.5, 1.5])
     >>> order_of_walks(np.abs(place[:, None] - place)).tolist()
     [0, 2, 3, 1]
-
     """
     rows = _check_table(table)
     scores = PCA(n_components=1, svd_solver="full").fit_transform(rows)[:, 0]
@@ -70,7 +69,6 @@ def clusters_of_walks(
     >>> place = np.array([0.0, 2.0, 0.5, 1.5])
     >>> clusters_of_walks(np.abs(place[:, None] - place)).tolist()
     [0, 1, 0, 1]
-
     """
     rows = _check_table(table)
     if not 1 <= n_clusters <= len(rows):
@@ -108,7 +106,6 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     >>> table = np.abs(place[:, None] - place)
     >>> cluster_memberships(table, clusters_of_walks(table))[0].round(3).tolist()
     [0.971, 0.029]
-
     """
     rows, clusters = _check_table(table), np.asarray(clusters)
     centres = np.stack([rows[clusters == each].mean(axis=0) for each in range(clusters.max() + 1)])
@@ -148,7 +145,6 @@ def map_of_walks(table: ArrayLike, n_dimensions: int = 2) -> np.ndarray:
     >>> points = map_of_walks(table)
     >>> np.allclose(np.linalg.norm(points[:, None] - points, axis=2), table)
     True
-
     """
     squared = _check_table(table) ** 2
     mean = squared.mean(axis=0)

@@ -116,7 +116,6 @@ def fit_to_answers(
     MetricFit(positions-sigmoid of PairCounts(3 observers, 10 pairs, 30 choices))
     >>> fit.by_choices.index.tolist()
     ['head', 'clavicle', 'upper_arm', 'forearm', 'hand', 'thigh', 'calf', 'toe']
-
     """
     names = list(walks)
     trials = read_trials(answers, walkers=names)

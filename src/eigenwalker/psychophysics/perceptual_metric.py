@@ -59,7 +59,6 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
     >>> metric = PerceptualMetric().fit(X, y)
     >>> metric.weights_.round(6).tolist(), round(metric.constant_, 6)
     ([0.0, 0.1, 0.0], 0.2)
-
     """
 
     def __init__(self, fit_constant: bool = True) -> None:
@@ -80,7 +79,6 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         Returns
         -------
         self
-
         """
         plain = _is_plain(X, 2) and _is_plain(y, 1) and np.shape(X)[0] == np.shape(y)[0]
         checks = {"skip_check_array": True} if plain else {"dtype": np.float64, "y_numeric": True}
@@ -168,7 +166,6 @@ def non_negative_fit(
     >>> fit = non_negative_fit(np.array([[0.0], [1.0], [2.0]]), np.array([1.0, 3.0, 5.0]))
     >>> fit.weights.round(6).tolist(), round(fit.constant, 6)
     ([2.0], 1.0)
-
     """
     x_mean, y_mean = np.zeros(X.shape[1]), 0.0
     if sample_weight is None:

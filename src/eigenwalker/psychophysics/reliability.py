@@ -93,7 +93,6 @@ def bootstrap_weights(
     >>> samples = bootstrap_weights(X, [[6, 4, 2]] * 5, shown, n_samples=10)
     >>> samples.intervals(["calf"])[["low", "high"]].round(6).values.tolist()
     [[0.2, 0.2]]
-
     """
     X, chosen, shown = (np.asarray(each, dtype=float) for each in (X, chosen, shown))
     _check_counts(chosen, shown, n_pairs=len(X))
@@ -182,7 +181,6 @@ def split_half(
     >>> shown = np.full((4, 3), 10)
     >>> round(split_half([[6, 4, 2]] * 4, shown, n_splits=5).ceiling, 6)
     1.0
-
     """
     chosen, shown = np.asarray(chosen, dtype=float), np.asarray(shown, dtype=float)
     _check_counts(chosen, shown)

@@ -66,7 +66,6 @@ def search_shape(
     >>> shape = search_shape(lambda n: d**n, y, bounds=(0.05, 3))
     >>> round(shape.parameter, 4), shape.weights.round(4).tolist()
     (0.4, [0.05, 0.0])
-
     """
     if not 0 < bounds[0] < bounds[1] < np.inf or n_grid < 3:
         raise ValueError(
@@ -134,7 +133,6 @@ def fit_from_random_starts(
     >>> descent = fit_from_random_starts(X, y, n_starts=5)
     >>> descent.weights.round(3).tolist(), round(descent.constant, 3)
     ([0.5, 0.0, 0.1], 0.2)
-
     """
     X, y = np.asarray(X, dtype=float), np.asarray(y, dtype=float)
     rng = np.random.default_rng(random_state)

@@ -32,7 +32,6 @@ class PairCounts:
     observers : tuple of str
     chosen, shown : array of shape (observer, pair)
         Counts.
-
     """
 
     pairs: pd.MultiIndex
@@ -69,7 +68,6 @@ class Trials:
         pairs or fewer.
     chosen : array of int of shape (trial,)
         Which of the pairs shown was chosen, counted from 0.
-
     """
 
     pairs: pd.MultiIndex
@@ -137,7 +135,6 @@ def read_answers(path: str | Path) -> pd.DataFrame:
     ...     )
     ...     read_answers(file).iloc[0].tolist()
     ['Eva', 'w1', 'w2', 'w3', 'w4', 'w2', 'w4']
-
     """
     try:
         table = pd.read_csv(path, dtype=str, sep=None, engine="python", encoding="utf-8-sig")
@@ -194,7 +191,6 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     >>> trials = read_trials(answers)
     >>> trials.pairs[trials.chosen_pairs].tolist()
     [('w2', 'w4')]
-
     """
     if missing := [name for name in COLUMNS if name not in answers]:
         raise ValueError(
@@ -271,7 +267,6 @@ def count_pairs(
     >>> counts = count_pairs(answers)
     >>> counts.differences[("w2", "w4")], counts.differences[("w1", "w2")]
     (np.float64(0.0), np.float64(1.0))
-
     """
     trials = answers if isinstance(answers, Trials) else read_trials(answers, walkers=walkers)
     chosen, shown = np.zeros((2, len(trials.observers), len(trials.pairs)))

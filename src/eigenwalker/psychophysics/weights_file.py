@@ -37,7 +37,6 @@ def save_weights(weights: pd.DataFrame, path: str | Path, *, metric: str) -> Pat
     ...     path = save_weights(weights, f"{folder}/ours.csv", metric="positions-sigmoid")
     ...     load_metric(path).group_weights
     {'head': 0.2, 'forearm': 0.8}
-
     """
     weights.assign(metric=metric).to_csv(path, index_label="group")
     return Path(path)
@@ -66,7 +65,6 @@ def load_metric(name_or_path: str | Path) -> GroupMetric:
     --------
     >>> load_metric("positions-sigmoid").by
     'positions'
-
     """
     name = str(name_or_path)
     if name in PUBLISHED:

@@ -73,7 +73,6 @@ def assess(trajectories: xr.DataArray) -> Quality:
     >>> quality = assess(feet.trajectories(np.arange(0, 5, 0.01)))
     >>> quality.verdict, quality.n_strides, round(quality.r2, 6)
     ('use', 4, 1.0)
-
     """
     capture = check_trajectories(trajectories)
     repaired = repair_labels(capture)

@@ -101,7 +101,6 @@ class Quality:
         Frames that the file declares and lacks (``read_mocap(..., partial="keep")``).
     problem : str
         Why there are no steady strides; else empty.
-
     """
 
     rate_hz: float

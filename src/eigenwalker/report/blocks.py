@@ -107,7 +107,6 @@ class Report:
     >>> data = Section("Data", [Text("Twenty women and twenty men.")])
     >>> Report("Sex from gait", "Three of 40 walkers are misclassified.", [data]).title
     'Sex from gait'
-
     """
 
     title: str

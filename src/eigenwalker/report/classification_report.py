@@ -65,7 +65,6 @@ def write_classification_report(
     See Also
     --------
     eigenwalker.analysis.study_trait
-
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

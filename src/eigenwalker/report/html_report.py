@@ -62,7 +62,6 @@ def write_report(report: Report, folder: str | Path) -> Path:
     ...     page = write_report(ew.report.Report("<b>", "One walker."), folder)
     ...     "&lt;b&gt;" in page.read_text()
     True
-
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -103,7 +103,6 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
     Returns
     -------
     Path
-
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

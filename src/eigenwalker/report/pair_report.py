@@ -54,7 +54,6 @@ def write_pair_report(
     Returns
     -------
     Path
-
     """
     comparison = result.comparison
     maps = [loop_and_pair_maps(comparison, names), component_maps(comparison, names)]

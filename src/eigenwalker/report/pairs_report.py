@@ -70,7 +70,6 @@ def write_pairs_report(
     References
     ----------
     Pražák et al. (2010), section 4, figures 3 and 4.
-
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

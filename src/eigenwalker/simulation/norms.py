@@ -85,7 +85,6 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     --------
     >>> norm_coefficients("hip_flexion", 0.43, 1).tolist()
     [18.4, -3.2, 20.9]
-
     """
     coefficients = np.zeros(1 + 2 * max(n_harmonics, 4))
     curve = CURVES_DEG[name]

@@ -38,7 +38,6 @@ class Route:
     >>> walk = ew.simulate_walk(seed=1, route=Route(heading_deg=90))
     >>> bool(np.ptp(walk.sel(marker="pelvis", axis="y").values) > 10_000)  # 12 s along y, in mm
     True
-
     """
 
     standing_s: float = 0.0

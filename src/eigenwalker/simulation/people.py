@@ -74,7 +74,6 @@ def simulate_captures(
     ...     print(person["sex"], capture.sizes["time"])
     female 360
     male 360
-
     """
     people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
     planted = planted or {}
@@ -146,7 +145,6 @@ def simulate_population(
     >>> people = simulate_population(2, 2, seed=1)
     >>> people.X.shape
     (4, 229)
-
     """
     settings = {"n_women": n_women, "n_men": n_men, "seed": seed, "sex_effect": sex_effect}
     settings["effects"] = effects
@@ -225,7 +223,6 @@ def write_captures(
     'traits.csv'
     >>> sorted(path.name for path in folder.iterdir())
     ['traits.csv', 'truth.csv', 'walker_0001.csv', 'walker_0002.csv']
-
     """
     if f".{format}" not in FORMATS:
         known = [suffix.removeprefix(".") for suffix in FORMATS]

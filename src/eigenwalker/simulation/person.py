@@ -18,7 +18,6 @@ class Parameter(NamedTuple):
         Standard deviation within a sex.
     source : str
         Publication that these come from.
-
     """
 
     female: float
@@ -131,7 +130,6 @@ def average_person() -> dict[str, float]:
     --------
     >>> average_person()["height_mm"]
     1693.0
-
     """
     return {name: (p.female + p.male) / 2 for name, p in PARAMETERS.items()}
 

@@ -36,7 +36,6 @@ class PlantedEffect:
     --------
     random_effect : one of random directions.
     simulate_population : plants effects.
-
     """
 
     structure: np.ndarray = field(default_factory=lambda: np.zeros((_N_JOINTS, 3)))
@@ -76,7 +75,6 @@ def random_effect(
     >>> effect = random_effect("structure", size_mm=5, seed=1)
     >>> bool(effect.structure.any()), bool(effect.movement.any())
     (True, False)
-
     """
     if part not in ("structure", "dynamics"):
         raise ValueError(f"part={part!r} is not known; give 'structure' or 'dynamics'.")
@@ -118,7 +116,6 @@ def add_effect(walk: xr.DataArray, effect: PlantedEffect, amount: float) -> xr.D
     >>> lower = PlantedEffect(structure=np.full((15, 3), [0.0, 0.0, -10.0]))
     >>> round(float((add_effect(walk, lower, 2.0) - walk).min()))
     -20
-
     """
     if tuple(walk["marker"].values) != JOINTS.markers:
         raise ValueError("Effects are of the 15 joints; simulate the walk with markers='joints'.")

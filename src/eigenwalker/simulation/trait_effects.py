@@ -111,7 +111,6 @@ def draw_people(
     >>> people = draw_people(2, 1, seed=3)
     >>> people["sex"].tolist()
     ['female', 'female', 'male']
-
     """
     _check(n_women, n_men, effects)
     rng = np.random.default_rng(seed)

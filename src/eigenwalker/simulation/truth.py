@@ -45,7 +45,6 @@ class Truth:
     See Also
     --------
     truth_of : gives it.
-
     """
 
     people: pd.DataFrame
@@ -86,7 +85,6 @@ def truth_of(population: Population) -> Truth:
     [13.0, 17.0, 6.0, 14.0]
     >>> bool(truth.effects.loc["obliquity_factor", "sex"] < 0)
     True
-
     """
     if KEY not in population.provenance:
         raise ValueError(
@@ -140,7 +138,6 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
     >>> nervous = true_direction(people, "nervous", n_people=2)
     >>> bool(nervous[people.feature_names.index("frequency_hz")] > 0)
     True
-
     """
     if trait not in EFFECTS:
         raise ValueError(f"trait={trait!r} is not known; effects are of {sorted(EFFECTS)}.")

@@ -114,7 +114,6 @@ def simulate_walk(
     {'time': 1440, 'marker': 15, 'axis': 3}
     >>> round(walk.attrs["frequency_hz"], 2)
     0.9
-
     """
     _check(duration_s, rate_hz, noise_mm, gap_share, markers, sex)
     check_parameters(parameters)
@@ -174,7 +173,6 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
     >>> events = true_events(simulate_walk(seed=1, duration_s=2.5, frequency_hz=1.0))
     >>> events[events["event"] == "heel_strike"]["side"].tolist()
     ['left', 'right', 'left', 'right', 'left']
-
     """
     phase, time = walk["phase"].values, walk["time"].values
     kinds = ((HEEL_STRIKE, 0.0, "heel"), (TOE_OFF, walk.attrs["stance_of_stride"], "toe"))

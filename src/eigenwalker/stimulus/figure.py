@@ -204,7 +204,6 @@ class Figure:
         By how much it is turned to its left.
     repeat : bool
         Whether trajectories begin anew after their last frame, or hold still.
-
     """
 
     motion: Walker | xr.DataArray

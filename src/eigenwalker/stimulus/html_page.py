@@ -46,7 +46,6 @@ def stand_alone_page(stimulus: Stimulus) -> str:
     >>> page = stand_alone_page(make_stimulus(hop))
     >>> page[:15], '"frequency_hz":1.0' in page
     ('<!doctype html>', True)
-
     """
     # In JSON a "<" stands in texts only, where it may be written as its number; so no text can end
     # the script element that holds it.

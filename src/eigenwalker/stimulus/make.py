@@ -77,7 +77,6 @@ def make_stimulus(
     >>> shown = make_stimulus(hop, azimuth_deg=0, duration_s=1).then("invert")
     >>> shown.play([0.25]).positions[0, 0].round(6).tolist()
     [0.0, 0.0, 10.0]
-
     """
     several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else figures
     whole = [item if isinstance(item, Figure) else Figure(item) for item in several]
@@ -158,7 +157,6 @@ def with_information(
     >>> shown = with_information(people, 3, "structure")
     >>> bool(shown.frequency_hz == people.average[people.feature_names.index("frequency_hz")])
     True
-
     """
     same_size = population.size_normalised()
     if isinstance(walker, int | np.integer):

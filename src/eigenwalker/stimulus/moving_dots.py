@@ -25,7 +25,6 @@ class Moments(NamedTuple):
     positions : array of shape (time, dot, 3)
         Millimetres in the figure's own frame: x forward, y left, z up. NaN where not known.
     visible : array of bool of shape (time, dot)
-
     """
 
     positions: np.ndarray
@@ -46,7 +45,6 @@ class MovingDots:
         Seconds after which it repeats; of sampled trajectories, how long they last.
     blur_mm : float
         Standard deviation of each dot's blob; 0 for discs.
-
     """
 
     skeleton: Skeleton

@@ -36,7 +36,6 @@ class Played(NamedTuple):
         observer.
     picture : array of shape (time, dot, 2)
         Millimetres to the right of and above the middle of the picture, at the walker's scale.
-
     """
 
     time: np.ndarray

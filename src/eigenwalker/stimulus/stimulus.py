@@ -54,7 +54,6 @@ class Stimulus:
     ------
     ValueError
         If a part is wrong: a number out of range, an unknown transform, dots that are not there.
-
     """
 
     figures: Sequence[Figure]
@@ -114,7 +113,6 @@ class Stimulus:
         >>> shown = ew.make_stimulus(people.walker(people.average)).then("invert")
         >>> shown.then("scramble", seed=3).transforms[-1]["name"]
         'scramble'
-
         """
         situation = Situation(self.figures, self.scene, self.view, self.timing.duration_s)
         step = resolve_transform(name, parameters, situation)
@@ -138,7 +136,6 @@ class Stimulus:
         Returns
         -------
         Stimulus
-
         """
         low, high = self.extent(0)
         height_px = 2 * viewing_distance_mm * np.tan(np.deg2rad(height_deg) / 2) * px_per_cm / 10
@@ -172,7 +169,6 @@ class Stimulus:
         -------
         Played
             ``dots``, ``figures``, ``positions`` in the scene, ``visible``, ``picture`` in mm.
-
         """
         seconds = self.frame_times if time is None else np.atleast_1d(np.asarray(time, float))
         if not np.isfinite(seconds).all() or np.abs(seconds).max(initial=0) > 1e5:
@@ -195,7 +191,6 @@ class Stimulus:
         ------
         ValueError
             If it is none: each problem with its place, what was expected, what is there.
-
         """
         file = checked(content)
         return cls(
@@ -215,7 +210,6 @@ class Stimulus:
         ------
         ValueError
             If it is no JSON, or no stimulus.
-
         """
         return cls.from_dict(_parsed(text))
 
@@ -227,7 +221,6 @@ class Stimulus:
         ------
         UnreadableFile
             If it holds none.
-
         """
         path = Path(path)
         if path.stat().st_size > MAX_BYTES:

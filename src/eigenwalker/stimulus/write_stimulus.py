@@ -67,7 +67,6 @@ def write_stimulus(
     ...     path = ew.write_stimulus(ew.make_stimulus(hop), Path(folder) / "hop.svg")
     ...     path.read_text().startswith("<svg")
     True
-
     """
     path = Path(path)
     suffix = path.suffix.lower()

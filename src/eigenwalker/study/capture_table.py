@@ -36,7 +36,6 @@ def capture_table(
     ------
     ValueError
         If folder, table or pattern make no sense.
-
     """
     folder = Path(folder)
     if not folder.is_dir():

@@ -41,7 +41,6 @@ class Study:
         for those that were read the rate, duration, strides, frequency, speed and share explained.
     unlisted : tuple of str
         Captures of the folder that a traits table does not list.
-
     """
 
     population: Population | None
@@ -121,7 +120,6 @@ def fit_folder(
     ...     study = fit_folder(folder, trait_from_name=r"(?P<sex>[a-z]+)_", n_jobs=1)
     >>> study.population.traits["sex"].tolist(), len(study.refused)
     (['female', 'female', 'male'], 0)
-
     """
     folder = Path(folder)
     table = capture_table(folder, traits, trait_from_name)

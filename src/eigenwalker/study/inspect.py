@@ -61,7 +61,6 @@ def inspect_file(
     ...     facts = inspect_file(file)
     >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
     ('C3D', 'use', 10, [])
-
     """
     path = Path(path)
     facts = None

@@ -40,7 +40,6 @@ def reasons(quality: Quality) -> list[str]:
     >>> walk = ew.simulate_walk(seed=1)
     >>> reasons(ew.assess(walk.copy(data=walk.values * [1, -1, -1])))[0]
     'The head is not above the feet: the wrong axis points up.'
-
     """
     values = _values(quality)
     return [_SENTENCES[finding].format(**values) for finding in quality.findings]
@@ -212,7 +211,6 @@ def summarise(files: pd.DataFrame) -> pd.DataFrame:
     >>> summarise(files)
              median  least   most
     rate_hz   100.0  100.0  120.0
-
     """
     read = files[files["status"] != "refused"]
     columns = [name for name in _SUMMARY if name in read and read[name].notna().any()]

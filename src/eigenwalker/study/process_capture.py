@@ -54,7 +54,6 @@ class CaptureResult:
         strides, of all markers), ``first_frame``, ``last_frame``.
     capture : DataArray of shape (time, marker, axis)
         As it was read.
-
     """
 
     walk: xr.DataArray
@@ -137,7 +136,6 @@ def process_capture(
     Walker(15 markers, 4 postures in the eigenposture form, 0.870 Hz, r2 0.99...)
     >>> result.quality.verdict, result.quality.n_strides, len(result.repairs)
     ('use', 10, 0)
-
     """
     if isinstance(path_or_capture, xr.DataArray):
         if reading:

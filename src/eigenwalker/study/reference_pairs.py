@@ -75,7 +75,6 @@ def compare_with_references(
     >>> result = compare_with_references(comparison, metrics)
     >>> 0 < result.by_metric.share_nearer.item() < 1, max(result.self_distances) < 0.001
     (True, True)
-
     """
     pairs = simulated_distances(metrics, mannequin=mannequin, progress=progress)
     a, b = comparison.a, comparison.b
@@ -119,7 +118,6 @@ def simulated_distances(
     Returns
     -------
     DataFrame of pairs by metrics
-
     """
     people = _simulated_people(mannequin)
     return pd.DataFrame(
@@ -164,7 +162,6 @@ def self_distance(prepared: PreparedClip, *, metric: GroupMetric) -> float:
     -------
     float
         In units of the metric.
-
     """
     clip = prepared.clip
     n_frames = clip.sizes["time"]

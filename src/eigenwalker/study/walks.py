@@ -82,7 +82,6 @@ def walk_of_capture(
     See Also
     --------
     process_capture : The same with the walker and the quality.
-
     """
     result = process_capture(
         path, joints="full", default_unit=default_unit, default_rate_hz=default_rate_hz
@@ -143,7 +142,6 @@ def walks_of_folder(
     ...     walks = walks_of_folder(folder)
     >>> walks, list(walks.clips)
     (Walks(2 walks, 0 refused, 0 flagged), ['anna.c3d', 'ben.c3d'])
-
     """
     table = capture_table(folder, None, trait_from_name)
     label = next((column for column in table if column != FILE), None)
@@ -209,7 +207,6 @@ def walks_of_population(
     >>> walks = walks_of_population(ew.simulate_population(2, 2, seed=1), trait="sex")
     >>> walks.labels["walker 0"], list(walks.clips)
     ('female', ['walker 0', 'walker 1', 'walker 2', 'walker 3'])
-
     """
     labels = [] if trait is None else _labels(population, trait)
     names, flags = population.names, flags_of(population.traits)
@@ -260,7 +257,6 @@ def walker_space_distances(walks: Walks) -> np.ndarray:
     array of shape (pair,)
         Euclidean distances of their scores, in the order of `itertools.combinations`: what
         `fit_to_answers` takes as one of ``others``.
-
     """
     return pdist(WalkerSpace().fit_transform(np.stack(list(walks.vectors.values()))))
 

@@ -47,7 +47,6 @@ def parse_manifest(manifest: str) -> list[tuple[str, int]]:
     --------
     >>> parse_manifest('[["walk.amc", 12]]')
     [('walk.amc', 12)]
-
     """
     try:
         files = [(name, size) for name, size in json.loads(manifest)]
@@ -84,7 +83,6 @@ def safe_name(name: str) -> str:
     --------
     >>> safe_name("../../etc/passwd"), safe_name("walk 1 (slow).c3d"), safe_name("..")
     ('passwd', 'walk 1 (slow).c3d', 'file')
-
     """
     last = re.split(r"[/\\]", name)[-1]
     plain = re.sub(r"[^\w .()+=,-]", "_", last).strip(" .")

@@ -102,7 +102,6 @@ def read_mat(
     ...
     eigenwalker.io.errors.UnreadableFile: nowhere.mat: expected a file, but got nothing of
     that name in '.'; check the path.
-
     """
     turn = axes_matrix(axes)
     if sorted(dims) not in (sorted(DIMS), ["column", "time"]):

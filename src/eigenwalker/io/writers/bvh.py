@@ -119,7 +119,6 @@ def constant_bones(walk: xr.DataArray) -> xr.DataArray:
     >>> off_mm = np.linalg.norm(constant_bones(walk) - walk, axis=2)
     >>> bool(off_mm.max() < 45), bool(np.sqrt((off_mm**2).mean()) < 8)
     (True, True)
-
     """
     bones = fit_bones(check_trajectories(walk), np.eye(3))
     offsets = np.tile(bones.rest, (len(walk), 1, 1))
