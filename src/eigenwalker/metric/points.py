@@ -113,8 +113,11 @@ def common_positions(a: xr.DataArray, b: xr.DataArray) -> tuple[np.ndarray, np.n
 
 
 def content_ranks(clips: Sequence[np.ndarray]) -> np.ndarray:
-    """Return ranks of clips by their bytes, so that distances do not depend on their order."""
-    contents = [clip.tobytes() for clip in clips]
+    """Return ranks of clips by their values, so that distances do not depend on their order.
+
+    Values are rounded to a thousandth of their unit: last bits of a number decide nothing.
+    """
+    contents = [(clip.round(3) + 0.0).tobytes() for clip in clips]
     ranks = np.empty(len(contents), dtype=int)
     ranks[sorted(range(len(contents)), key=contents.__getitem__)] = np.arange(len(contents))
     return ranks
