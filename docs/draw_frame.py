@@ -5,14 +5,15 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.decomposition import decompose_fourier
-from eigenwalker.plotting.projection import observer_axes, project
-from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, USUAL, bare, new_figure
-from eigenwalker.plotting.walkers import draw_body
-from eigenwalker.simulation.walk import simulate_walk
+from eigenwalker import JOINTS, decompose_fourier, simulate_walk
+from eigenwalker.plotting import draw_body, observer_axes, project
+
+BLUE, RED = "#0077BB", "#CC3311"
+INK, GREY, PALE = "#1A1A1A", "#6E6E6E", "#C8C8C8"
+USUAL = 8.0
 
 VIEW, ELEVATION = 35.0, 18.0
 AXES = (("x", "forward", RED), ("y", "left", "#009988"), ("z", "up", BLUE))
@@ -90,8 +91,11 @@ def draw_views(axes: Axes) -> None:
 
 def main() -> None:
     """Write the picture."""
-    figure = new_figure(7.6, 3.3)
-    room, views = (bare(axes) for axes in figure.subplots(1, 2, width_ratios=(1, 1.25)))
+    figure = Figure(figsize=(7.6, 3.3), layout="constrained", dpi=150)
+    room, views = figure.subplots(1, 2, width_ratios=(1, 1.25))
+    for axes in (room, views):
+        axes.set_aspect("equal")
+        axes.axis("off")
     draw_room(room)
     draw_views(views)
     room.set(xlim=(-1450, 1450), ylim=(-750, 2150))

@@ -10,7 +10,7 @@ each other at such moments.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.plotting.difference_maps import (
+from eigenwalker.plotting import (
     MapPicture,
     figure_maps,
     figure_two_walks,

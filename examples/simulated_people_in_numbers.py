@@ -8,7 +8,7 @@ planted is found again. Nothing in the simulation was tuned to the first table.
 import numpy as np
 
 import eigenwalker as ew
-from eigenwalker.population.correspondence import match_sign_and_order, posture_correlations
+from eigenwalker.population import match_sign_and_order, posture_correlations
 from eigenwalker.simulation import (
     EFFECTS,
     PARAMETERS,

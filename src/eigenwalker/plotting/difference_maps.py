@@ -78,8 +78,30 @@ def picture_of_strides(
 ) -> MapPicture:
     """Return a map of two strides repeated, so that the path once round both is one line.
 
-    The path (step, 2) has corresponding moments of a and b in seconds, which run on over the seams;
-    one period is framed, at the path's beginning.
+    One period is framed, at the beginning of the path.
+
+    Parameters
+    ----------
+    values : array of shape (time_a, time_b)
+        The motion map of two strides.
+    times_a, times_b : array of shape (time,)
+        Their clocks in seconds.
+    path : array of shape (step, 2)
+        Corresponding moments of both in seconds, which continue over the seams.
+    title, unit, names : str
+        What is written above, at the scale, and at the axes.
+
+    Returns
+    -------
+    MapPicture
+
+    See Also
+    --------
+    figure_maps : draws it.
+
+    References
+    ----------
+    Pražák et al. (2010), figure 1.
     """
     length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (times_a, times_b))
     lengths = np.array([length_a, length_b])

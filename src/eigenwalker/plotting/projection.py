@@ -68,7 +68,22 @@ def project(
 
 
 def observer_axes(azimuth_deg: float, elevation_deg: float = 0.0) -> np.ndarray:
-    """Return the observer's right, up and the direction to the observer: rows of a rotation."""
+    """Return the axes of an observer as rows of a rotation matrix.
+
+    Parameters
+    ----------
+    azimuth_deg, elevation_deg : float
+        From where the observer looks: 0 and 0 is the front, azimuth 90 the walker's profile.
+
+    Returns
+    -------
+    array of shape (3, 3)
+        The observer's right, up, and the direction to the observer.
+
+    See Also
+    --------
+    project : positions as the observer sees them.
+    """
     view, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
     ahead = np.array([math.cos(view), -math.sin(view), 0.0])
     right = np.array([math.sin(view), math.cos(view), 0.0])

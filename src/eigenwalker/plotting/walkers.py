@@ -33,7 +33,26 @@ def draw_body(
     dashes: str | tuple = "-",
     zorder: float = 2.0,
 ) -> None:
-    """Draw a posture in projection (marker, 2), mm, its left limbs paler than its right ones."""
+    """Draw a posture as a stick figure, its left limbs paler than its right ones.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+        To draw into.
+    seen : array of shape (marker, 2)
+        The posture in projection, in mm (`project`).
+    body : Skeleton
+        Which markers are joined.
+    at : pair of float
+        Where to draw it, in mm.
+    color, width, dots, dashes, zorder
+        How lines look: the ink, the width in points, whether joints have dots, the line style of
+        matplotlib, and what lies over what.
+
+    See Also
+    --------
+    project, figure_walkers
+    """
     seen = np.asarray(seen) + at
     left = {marker for marker, _ in body.pairs}
     for link in body.segments:
