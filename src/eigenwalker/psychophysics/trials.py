@@ -199,7 +199,8 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     table = answers[COLUMNS].set_axis(pd.RangeIndex(2, len(answers) + 2))  # lines of a file
     table = table[table[CHOSEN].notna().all(axis=1)]
     if (empty := table.isna()).any(axis=None):
-        line, column = empty.stack().idxmax()
+        row, place = np.argwhere(empty.to_numpy())[0]
+        line, column = table.index[row], table.columns[place]
         raise ValueError(
             f"Line {line} of the answers has an empty cell in the column {column!r}; an "
             "answered trial needs its observer and the four walkers shown."
@@ -221,7 +222,8 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     pair_of = np.zeros((len(names), len(names)), dtype=int)
     pair_of[first, second] = pair_of[second, first] = np.arange(len(first))
     a_to_d, two = (
-        pd.Index(names).get_indexer(each.ravel()).reshape(each.shape) for each in (shown, chosen)
+        pd.Index(names).get_indexer(pd.Index(each.ravel())).reshape(each.shape)
+        for each in (shown, chosen)
     )
     pairs = np.stack([pair_of[a_to_d[:, i], a_to_d[:, j]] for i, j in combinations(range(4), 2)], 1)
     observers, observer = np.unique(

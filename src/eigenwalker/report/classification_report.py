@@ -70,7 +70,7 @@ def write_classification_report(
     folder.mkdir(parents=True, exist_ok=True)
     trait = study.result.contrast.trait
     stem = folder / "".join(letter if letter.isalnum() else "-" for letter in trait)
-    films = {
+    films: dict[Kind, list[Film]] = {
         kind: write_films(view.walkers, stem.with_name(f"{stem.name}-{kind.replace('_', '-')}"))
         for kind, view in study.views.items()
     }
