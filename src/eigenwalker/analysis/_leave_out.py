@@ -1,7 +1,7 @@
 """Principal components of all walkers but a few, fast and exact: the inside of the jack-knife.
 
-Every fold standardises anew, and with it changes every number of the covariance, so there is no
-cheap update of the decomposition that is exact. What is saved: the smaller side of the walkers is
+Every fold is standardised again, which changes every number of the covariance, so no cheap update
+of the decomposition is exact. Time is saved in three ways: the smaller side of the walkers is
 decomposed instead of the walkers; the covariance of a fold is that of all less that of the walkers
 left out; and since scores are orthogonal, ``c K = r`` is solved by ``c_i = (u_i . r) / s_i``.
 """

@@ -38,6 +38,10 @@ class Contrast:
     two_classes : bool
     persons : array of shape (walker,), or None
         The person of each walk, where some person has several.
+
+    See Also
+    --------
+    trait_contrast : Makes it.
     """
 
     trait: str

@@ -171,7 +171,8 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
 class DiscriminantRegressor(RegressorMixin, _Discriminant):
     """Predicts a trait that is a number (age, weight, a rating) by a weighted sum of scores.
 
-    As `DiscriminantClassifier`, with r the trait about its mean; predictions have the mean added.
+    The discriminant c solves ``c K = r`` as in `DiscriminantClassifier`, with r_j the trait of
+    walker j minus the mean trait. A prediction is the walker's sum ``c k`` plus that mean.
 
     Parameters
     ----------
@@ -187,9 +188,15 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
     coef_, intercept_, order_, spread_, pattern_
         As in `DiscriminantClassifier`; c is in units of the trait.
 
+    See Also
+    --------
+    DiscriminantClassifier : For a trait of two classes.
+    regression_curves : Errors for every number of components.
+
     References
     ----------
-    Troje (2002), The little difference.
+    Troje (2002), Decomposing biological motion, eq. 10, with the trait in place of +1 and -1; Troje
+    (2002), The little difference.
 
     Examples
     --------

@@ -187,7 +187,7 @@ def jackknife_curves(
     fit_intercept : bool
         As in `DiscriminantClassifier`.
     scale_in_fold : bool
-        Whether to standardise anew without the walker left out. Standardising once for all lets
+        Whether to standardise again without the walker left out. Standardising once for all lets
         its scale, though not its class, leak into the training.
     groups : array of shape (walker,), optional
         The person of each row: persons with several trials are left out with all of them.

@@ -1,4 +1,4 @@
-"""Errors that no choice makes too small: nested leave-one-out, and a permutation test."""
+"""Errors that allow for the choice of n components: nested leave-one-out, a permutation test."""
 
 # scipy and scikit-learn have no types:
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false

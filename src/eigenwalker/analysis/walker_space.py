@@ -42,8 +42,8 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         The divisors u. Standard deviations have ddof 1. A feature that does not vary, up to
         rounding of the largest number in the table, is divided by 1 and stays at its mean.
     eigenwalkers_ : array of shape (component, feature)
-        The rows of V', in units of the features: add them to a walker as they are. Their sign is
-        arbitrary in itself; here the standardised feature that weighs most is positive.
+        Row i is column i of V, in units of the features, so it can be added to a walker directly.
+        The sign is arbitrary; here the standardised feature with the largest weight is positive.
     explained_variance_ : array of shape (component,)
         Variance of the scores over the walkers (ddof 1).
     explained_variance_ratio_ : array of shape (component,)

@@ -1,4 +1,4 @@
-"""``eigenwalker info`` and ``eigenwalker convert``: one file, looked into or written anew."""
+"""``eigenwalker info`` and ``eigenwalker convert``: describe or convert one file."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
 def centred_harmonics(n_frames: int, cycles_per_frame: float, n_harmonics: int) -> np.ndarray:
     """Return the harmonic basis of evenly spaced frames, as rows, with time 0 in their middle.
 
-    The shape is (1 + 2 * harmonic, frame). It is `harmonic_basis`, faster.
+    The shape is (1 + 2 * harmonic, frame). A faster `harmonic_basis`, transposed.
     """
     turn = unit_phasors(2 * np.pi * cycles_per_frame, n_frames)
     rows = np.ones((1 + 2 * n_harmonics, n_frames))

@@ -40,8 +40,8 @@ def bone_rotations(parents: Sequence[int], rest: np.ndarray, positions: np.ndarr
     """Return the rotations of a rigid body's joints that bring it nearest to seen positions.
 
     From the root outwards, each joint turns its bones towards where the next joints were seen from
-    the place it has been given itself. So a bone of another length than the captured one costs its
-    difference once, and no joint further out pays for it again. A joint that carries one bone turns
+    its own new place. So a bone that is longer or shorter than the captured one causes one error
+    of that size; joints further out do not add to it. A joint that carries one bone turns
     it the shortest way; one that carries several turns them together by least squares. About the
     axis of a single bone nothing is known, and nothing turns.
 

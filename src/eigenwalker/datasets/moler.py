@@ -59,7 +59,8 @@ def read_walkers_mat(path: str | os.PathLike[str]) -> Population:
     Raises
     ------
     UnreadableFile
-        If it is no such file; it is read in a process of its own, which it may break.
+        If it is not such a file. It is read in a separate process, so it cannot
+        stop the program.
 
     See Also
     --------

@@ -46,7 +46,8 @@ class Eigenpostures:
     harmonics : array of int of shape (component,)
         The harmonic that explains most of each component's scores.
     amplitudes, phases : array of shape (component,)
-        Of the sines; phases in radians from the middle of the postures.
+        Of the sines ``a_i sin(2 pi h_i f t + phi_i)``: amplitudes in the unit of the postures,
+        phases in radians, t = 0 in the middle of the postures.
     sine_r2 : array of shape (component,)
         Coefficient of determination of each sine.
     rate_hz : float
@@ -65,14 +66,19 @@ class Eigenpostures:
 
 
 def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2) -> Eigenpostures:
-    """Return the principal components of postures with sines fitted to their scores.
+    r"""Return the principal components of postures with sines fitted to their scores.
 
     The numerical core of both decompositions, on plain arrays.
+
+    .. math:: p(t) = p_0 + \sum_i c_i(t) p_i, \qquad
+              c_i(t) \approx a_i \sin(2 \pi h_i f t + \varphi_i)
+
+    with unit p_i, the stride frequency f, and t = 0 in the middle of the postures.
 
     Parameters
     ----------
     postures : array of shape (time, feature)
-        Evenly sampled.
+        Evenly sampled, in any unit, such as mm; means and amplitudes are in the same unit.
     rate_hz : float
         Frames a second.
     n_harmonics : int
@@ -82,9 +88,14 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     -------
     Eigenpostures
 
+    See Also
+    --------
+    decompose_pca, decompose_fourier : The same for a walk, as a `Walker`.
+    eigenwalker.gait.frequency_of_scores : How the stride frequency is found.
+
     References
     ----------
-    Troje (2002), eq. 1 and 2, figs. 2 and 3.
+    Troje (2002), Decomposing biological motion, eq. 1 and 2, figs. 2 and 3.
     """
     mean, scatter = _mean_and_scatter(postures)
     power, axes = _largest_eigenpairs(scatter, min(2 * n_harmonics, postures.shape[1]))

@@ -15,7 +15,7 @@ ONE_STRIDE = 1.5
 after a stride that closes."""
 
 N_HARMONICS = 4
-"""Harmonics of the stride that are fitted beside the drift, so that it takes nothing of them."""
+"""Harmonics of the stride that are fitted together with the drift, which then contains none."""
 
 
 def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:

@@ -39,7 +39,7 @@ def fundamental_frequency(trajectories: xr.DataArray, *, n_harmonics: int = 2) -
     r"""Return the stride frequency of a walk.
 
     It is the frequency whose sines, with their harmonics, explain most of the variance of all
-    markers together, beside a constant velocity of each:
+    markers together, in addition to a constant velocity of each:
 
     .. math:: \min_{\omega, p_0, v, a_h, b_h} \sum_t \Big\| p(t) - p_0 - v t - \sum_h
         \big(a_h \sin h \omega t + b_h \cos h \omega t\big) \Big\|^2

@@ -49,8 +49,8 @@ def in_place(
        strides, to the nearest frame. Of a walk there and back the straight pass with most strides
        is taken. A walk with too few straight strides, in a circle or a figure of eight, is unwound:
        each frame is turned back by the slow heading of the body.
-    3. Forward progress and slow drift of the body are taken out together, by regression beside the
-       harmonics of the stride, which stay as they are.
+    3. Forward progress and slow drift of the body are taken out together, by one regression with
+       the harmonics of the stride, which do not change.
     4. The direction of walking is turned to +x. The pelvis (else the middle of the hips, else of
        all markers) is at x = y = 0 in the mean, and z = 0 is the floor: 0.084 of the length of
        thigh and shank below the lowest standing ankle, or, without legs, at the lowest marker.

@@ -233,6 +233,8 @@ def walker_to_mm(
     Returns
     -------
     array of shape (3 * marker + 1, 1 + 2 * harmonic)
+        In mm. Rows: all x, all y, all z; the last one has the period in frames, the size factor 1
+        and the speed in mm a frame. Columns: mean, cos 1, sin 1, cos 2, sin 2 ...
 
     See Also
     --------

@@ -29,7 +29,7 @@ WIDTH_OF_LEG = {"knee": 0.112, "ankle": 0.080, "elbow": 0.076}
 SHOULDER_OF_LEG = (0.043, 0.027)
 """How far the shoulder centre is below and inwards of the acromion, as shares of the leg."""
 SHOULDERS_TO_STERNUM = 0.15
-"""How far the sternum is along the line from amid the acromia to the pelvis."""
+"""How far the sternum is along the line from the middle of the acromia to the pelvis."""
 HEAD_OF_LEG = 0.18
 """How far the head's centre is above the middle between seventh cervical vertebra and clavicles, as
 a share of the leg (ANSUR II, 2014: tragion 0.926, cervicale 0.863, suprasternale 0.815 of height).
@@ -160,7 +160,7 @@ class _Body:
         self._inwards_of_marker(elbow, self.joints[shoulder], outward)
 
     def _inwards_of_marker(self, name: str, above: np.ndarray, outward: np.ndarray) -> None:
-        """The centre of a hinge: amid its inner and outer marker, else by the chord function.
+        """The centre of a hinge: midway between inner and outer marker, else by the chord function.
 
         Where the joint above is missing, the centre stands to its marker as before and after.
         """

@@ -44,6 +44,10 @@ class Loop:
     n_periods : int
         2 if two periods were blended; 1 if the clip holds a single period, whose seam was
         distributed over it.
+
+    See Also
+    --------
+    eigenwalker.metric.loop : Makes it.
     """
 
     cycle: xr.DataArray

@@ -85,7 +85,7 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
 
 
 def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
-    """Return pairs of columns of which a fit determines only the sum of both weights.
+    """Return pairs of columns so alike that a fit hardly tells their two weights apart.
 
     Parameters
     ----------
@@ -95,7 +95,12 @@ def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns ``first``, ``second`` and ``correlation``, where that is above `COLLINEAR`.
+        Columns ``first``, ``second`` and ``correlation`` (Pearson, over pairs of walks), where that
+        is above 0.95 (`COLLINEAR`).
+
+    See Also
+    --------
+    eigenwalker.psychophysics.bootstrap_weights : Intervals of the weights.
 
     Examples
     --------

@@ -29,7 +29,7 @@ def least_cost_path(cost: np.ndarray, *, slope_limit: int | None = None) -> np.n
     at most L steps (1, 0) or (0, 1) follow a step (1, 1), all of one kind: one clip is held while
     at most L frames of the other pass. :math:`\epsilon` is `HOLD_COST` times the median of D, and 0
     without a limit (plain dynamic time warping). Costs are of shape (frame, other frame), 0 or
-    more, none missing; paths of shape (step, 2).
+    more, without NaN; paths of shape (step, 2).
     """
     n, m = cost.shape
     if not n or not m:

@@ -58,6 +58,14 @@ class Registration:
         For each step, how the second clip is rotated and translated to lie over the first.
     periodic : bool
         Whether they are strides, which repeat.
+
+    See Also
+    --------
+    register, register_by_spline, register_walks : Make it.
+
+    References
+    ----------
+    Kovar & Gleicher (2003), Flexible automatic motion blending with registration curves, section 3.
     """
 
     first: xr.DataArray

@@ -88,8 +88,8 @@ def retarget(walk: Clip) -> xr.DataArray:
     The proportions of the mannequin (`SHARES`, `HEIGHT_MM`) are constant, midway between those of
     women and men. In each frame
 
-    1. spine, neck, arms, hands, thighs and calves keep their directions and get its lengths; hips
-       and shoulders are fixed to the frames of pelvis and trunk.
+    1. spine, neck, arms, hands, thighs and calves keep the walker's directions and get the
+       mannequin's lengths; hips and shoulders are fixed to the frames of pelvis and trunk.
     2. feet are rotated by a constant angle, so that where they stand (ankle and toe lowest, a fifth
        of the frames) they are as flat as the mannequin's: how steep the line from ankle to toe is
        depends on build and on where the points are.
@@ -116,6 +116,10 @@ def retarget(walk: Clip) -> xr.DataArray:
     ------
     ValueError
         If some of the 15 joints are missing.
+
+    See Also
+    --------
+    prepare_walk : From a capture to the mannequin in one step.
 
     References
     ----------

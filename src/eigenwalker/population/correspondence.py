@@ -2,7 +2,8 @@
 
 The principal components of one walk are determined up to sign, and where two of them explain nearly
 the same variance, up to any rotation; in real walks components 2 and 3 change places. Averages over
-walkers make sense only once eigenposture i of each means the same. The papers do not say how; here
+walkers make sense only if eigenposture i means the same in each of them. The papers do not say
+how; here
 
 1. each walk gives the plane in which its postures move at each harmonic, by regression on the sine
    and cosine of that harmonic, whatever the order of its components;
@@ -33,8 +34,8 @@ _CONVERGED = 1e-10
 MIN_SIMILARITY = 0.3
 """Least cosine between an eigenposture and the average walker's that counts as the same."""
 MIN_SHARE = 0.002
-"""Share of a walker's movement below which a posture is not compared: the fourth of a typical
-walker has 0.01."""
+"""Share of a walker's movement below which a posture is not compared. A typical walker's fourth
+posture has 0.01."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,18 @@ class _Aligned(NamedTuple):
 def correspond(
     walkers: Sequence[Walker], *, leave_out: Sequence[bool] | None = None
 ) -> tuple[tuple[Walker, ...], Correspondence]:
-    """Return walkers in correspondence, and how far correspondence holds.
+    r"""Return walkers in correspondence, and how far correspondence holds.
+
+    For each walker and harmonic, the unit axes U (2, feature) of the plane of its movement are
+    rotated or mirrored to those of the average walker, A:
+
+    .. math:: R = \arg\min_{R^T R = I} \lVert R U - A \rVert
+
+    The clock is then shifted so that the first phase is 0. Average and axes are found again until
+    they no longer change. In the Fourier form there are no free axes: the clock of a walker is
+    shifted by half a stride if its first harmonic is opposite to the average's. A walker is flagged
+    if a posture has a cosine below 0.3 with the average's; postures with less than 0.002 of the
+    walker's movement are not compared.
 
     Parameters
     ----------
@@ -98,6 +110,12 @@ def correspond(
     See Also
     --------
     correspond_to : One walker in correspondence with others.
+    match_sign_and_order : Sign and order only, as in the paper.
+
+    References
+    ----------
+    Not from the papers: Troje (2002) averages eigenpostures (eq. 5) without saying how they were
+    matched. Schönemann (1966), Psychometrika 31, 1-10: the orthogonal Procrustes problem.
     """
     _check_comparable(walkers)
     trusted = np.ones(len(walkers), dtype=bool)
@@ -127,6 +145,13 @@ def correspond(
 def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, np.ndarray, str]:
     """Return one walker in correspondence with a population.
 
+    Parameters
+    ----------
+    walker : Walker
+        Of the same markers, form and number of harmonics as the population.
+    reference : ReferenceWalker
+        ``population.correspondence.reference``, as `correspond` finds it.
+
     Returns
     -------
     walker : Walker
@@ -134,6 +159,10 @@ def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, n
         Cosine between its eigenpostures and the average walker's.
     flag : str
         Why correspondence does not hold; empty where it does.
+
+    See Also
+    --------
+    correspond : Many walkers at once, and how it is done.
     """
     if walker.markers != reference.markers or walker.form != reference.form:
         raise ValueError(

@@ -29,6 +29,10 @@ NAMED_PARTS = {
 class FeatureLayout:
     """The order of the numbers in a feature vector.
 
+    ``(p0, p1, p2, ..., frequency, phase2, phase3, ...)``: each posture is x, y, z of one
+    marker after the other, in mm; the frequency is in Hz, phases are in radians. The first phase is
+    always 0, so it is not a feature.
+
     Parameters
     ----------
     markers : tuple of str

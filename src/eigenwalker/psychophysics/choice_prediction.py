@@ -21,8 +21,9 @@ from eigenwalker.psychophysics.trials import Trials, count_pairs
 def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     """Return the expected difference of each pair, predicted without its two walkers.
 
-    Weights are fitted to the trials that showed neither walker of the pair, and predict the choices
-    in those that showed both.
+    For each pair, weights are fitted (`fit_choices`) to the trials that showed neither of its two
+    walkers. With these weights, its difference is 1 - P, with P the mean probability that it is
+    chosen in the trials that showed it.
 
     Parameters
     ----------
@@ -32,8 +33,13 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     Returns
     -------
     array of shape (pair,)
-        Expected share of times that the pair is not chosen; NaN where no trial showed it, or all
-        other trials showed one of the two, as they do where there are five walkers or fewer.
+        Expected share of times that the pair is not chosen, from 0 to 1. NaN if no trial showed it,
+        or if every trial showed one of its walkers; with five walkers or fewer that is always so.
+
+    See Also
+    --------
+    compare_by_choices : Several metrics, compared in this way.
+    leave_walkers_out : The same split for `PerceptualMetric`.
     """
     table = np.asarray(X, dtype=float)
     problem = ChoiceProblem.from_trials(table, trials)

@@ -181,7 +181,7 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     distances : array of shape (pair,)
         d of each pair.
     trials : Trials
-        Of which what was shown counts, not what was chosen.
+        Only what was shown is used, not what was chosen.
 
     Returns
     -------

@@ -149,7 +149,11 @@ def non_negative_fit(
     sample_weight: np.ndarray | None = None,
     fit_constant: bool = True,
 ) -> Weights:
-    """Return the weights, none below 0, and the free constant of least squared error.
+    r"""Return the weights, none below 0, and the free constant with the least squared error.
+
+    .. math:: \min_{w \ge 0, \, c} \sum_i s_i \Big(y_i - c - \sum_k w_k X_{ik}\Big)^2
+
+    with the sample weights s (1 if left out), and c = 0 without a constant.
 
     Parameters
     ----------
@@ -160,6 +164,15 @@ def non_negative_fit(
     Returns
     -------
     Weights
+
+    See Also
+    --------
+    PerceptualMetric : The same as an estimator of scikit-learn, which checks what it gets.
+
+    References
+    ----------
+    Lawson & Hanson (1974), Solving least squares problems, chapter 23. Pražák et al. (2010),
+    section 5.
 
     Examples
     --------

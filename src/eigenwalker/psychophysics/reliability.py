@@ -55,7 +55,7 @@ def bootstrap_weights(
     n_samples: int = 1000,
     random_state: int = 0,
 ) -> Bootstrap:
-    """Return weights of `PerceptualMetric` refitted to observers, and walkers, drawn anew.
+    """Return weights of `PerceptualMetric` refitted to resampled observers and walkers.
 
     Observers are drawn with replacement rather than answers, since the answers of one observer
     belong together; walkers rather than pairs, for the same reason. Neither is calibrated: with

@@ -67,7 +67,12 @@ class Trials:
         The pairs of the four walkers shown, as rows of `pairs`. Other experiments may show more
         pairs or fewer.
     chosen : array of int of shape (trial,)
-        Which of the pairs shown was chosen, counted from 0.
+        Which of the pairs shown was chosen: column of `shown`, counted from 0.
+
+    See Also
+    --------
+    read_trials : Makes it of a table of answers.
+    fit_choices : Fits weights to it.
     """
 
     pairs: pd.MultiIndex
@@ -251,7 +256,12 @@ def count_pairs(
     Returns
     -------
     PairCounts
-        Its `differences` are what `PerceptualMetric` is fitted to.
+        Its `differences`, over all observers 1 - (times chosen) / (times shown) of each pair, are
+        what `PerceptualMetric` is fitted to.
+
+    See Also
+    --------
+    read_trials : The same answers, trial by trial.
 
     References
     ----------

@@ -80,8 +80,8 @@ class Quality:
     bone_length_variation : mapping of (str, str) to float
         Coefficient of variation of the length of each limb, in the steady strides.
     height_mm, lean_deg : float
-        Height of the head above the feet (or ankles), NaN where it is not; and angle of the line
-        between them from upright, NaN where they are not known.
+        Height of the head above the feet (or ankles), NaN if it is not above them; and angle
+        between the vertical and the line from feet to head. Both NaN if head or feet are unknown.
     unit, unit_guessed
         Unit of length of the file, and whether it was guessed from the size of the body.
     n_strides, steady_share

@@ -16,7 +16,7 @@ from eigenwalker.report.html_report import write_report
 from eigenwalker.report.metric_messages import CITE, plain_name
 
 FEW_OBSERVERS = 10
-"""Below so many, intervals from drawing observers hold planted weights much too seldom."""
+"""With fewer, intervals from resampled observers contain the true weights much too rarely."""
 AGREEMENT = 0.3
 """Correlation of halves of the observers above which they agree about something."""
 PAIRS_NAME, COMPARED_NAME = "pairs.csv", "metrics.csv"

@@ -97,8 +97,9 @@ def body_of(person: Mapping[str, float]) -> Body:
 
     Shares of height are those of ANSUR II (see `PARAMETERS`). The hips lie where Harrington et al.
     (2007, J Biomech 40:595) find them in a pelvis 240 mm wide and 150 mm deep, seen from its
-    centre. Recalled, not looked up: the sternum point, in the upper chest amid clavicles and back,
-    lies 0.008 of height above the shoulders, the ankle 0.042 ahead of the heel's contact.
+    centre. From memory, without a source: the sternum point, in the upper chest midway between
+    clavicles and back, lies 0.008 of height above the shoulders, the ankle 0.042 ahead of the
+    heel's contact.
     """
     height = person["height_mm"]
 

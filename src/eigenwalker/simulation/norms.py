@@ -55,13 +55,17 @@ SPEED_SLOPES_DEG = MappingProxyType(
 def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
     """Return the Fourier coefficients, in degrees, of a joint's norm at a walking speed.
 
-    One number, the dimensionless speed, changes hip, knee and ankle together along the lines that
-    Schwartz et al. (2008) measured.
+    The group mean at free speed, plus a change that is linear in the dimensionless speed v:
+    ``c(v) = c_free + slope * (v - 0.43) / 0.1``. Both are from children (Schwartz et al. 2008); the
+    slope is that of a line through their slow, free and fast groups. Curves of the trunk do not
+    depend on speed.
 
     Parameters
     ----------
     name : str
-        ``"hip_flexion"``, ``"knee_flexion"``, ``"pelvis_rotation"`` ...
+        ``"pelvis_tilt"``, ``"pelvis_obliquity"``, ``"pelvis_rotation"``, ``"hip_flexion"``,
+        ``"knee_flexion"``, ``"ankle_dorsiflexion"``, ``"trunk_obliquity"`` or
+        ``"trunk_rotation"``.
     speed : float
         Speed divided by sqrt(g times leg length).
     n_harmonics : int
@@ -74,7 +78,7 @@ def norm_coefficients(name: str, speed: float, n_harmonics: int) -> np.ndarray:
 
     See Also
     --------
-    core.harmonic_basis : the waves that these coefficients weight.
+    eigenwalker.core.harmonic_basis : the waves that these coefficients weight.
 
     References
     ----------

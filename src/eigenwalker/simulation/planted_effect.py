@@ -21,7 +21,12 @@ _N_JOINTS = len(JOINTS.markers)
 
 @dataclass(frozen=True)
 class PlantedEffect:
-    """What one unit of a trait adds to a walk of the 15 joints.
+    r"""What one unit of a trait adds to a walk of the 15 joints.
+
+    .. math:: \Delta p(\phi) = s + m_1 \cos 2 \pi \phi + m_2 \sin 2 \pi \phi
+              + m_3 \cos 4 \pi \phi + m_4 \sin 4 \pi \phi
+
+    with s the structure, m the movement, and the phase :math:`\phi` in strides.
 
     Parameters
     ----------

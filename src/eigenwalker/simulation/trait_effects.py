@@ -86,15 +86,15 @@ def draw_people(
     sex_effect : float
         Multiplies all differences between the sexes, of body and of movement: 0 removes them.
     effects : mapping of trait to mapping of parameter to effect size
-        In SDs of the parameter: for ``"sex"`` men less women, beside what `PARAMETERS` says of
-        each; else for each SD of the trait. ``{}`` switches all these effects off.
+        In SDs of the parameter: for ``"sex"`` men minus women, in addition to the difference
+        in `PARAMETERS`; else for each SD of the trait. ``{}`` switches all these effects off.
 
     Returns
     -------
     DataFrame of n_women + n_men rows
         The columns `TRAITS`; the other keys of `PARAMETERS`; and the score of each trait in
         the unit of its effects: ``sex_score`` (-0.5 for women, 0.5 for men), ``weight_score``
-        (body mass beside height), ``age_score``, ``happy_score``, ``nervous_score`` in SDs.
+        (body mass index), ``age_score``, ``happy_score``, ``nervous_score`` in SDs.
 
     Raises
     ------

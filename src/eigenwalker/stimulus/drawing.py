@@ -14,7 +14,7 @@ from eigenwalker.stimulus.solids import Look, draw_hulls
 from eigenwalker.stimulus.stimulus import Stimulus
 
 STICK_PER_DOT = 0.6
-"""Width of a stick beside the diameter of a dot."""
+"""Width of a stick, as a share of the diameter of a dot."""
 
 
 def places_px(stimulus: Stimulus, played: Played) -> np.ndarray:

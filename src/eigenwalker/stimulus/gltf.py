@@ -21,7 +21,7 @@ from eigenwalker.io.writers.bvh import Bones, fit_bones
 FLOAT, SHORT, VERTICES = 5126, 5123, 34962
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 THICK = 0.09
-"""Half the thickness of a bone beside its length."""
+"""Half the thickness of a bone, as a share of its length."""
 
 
 class _Buffer:

@@ -125,7 +125,7 @@ def walking(walker: Walker, skeleton: Skeleton) -> MovingDots:
 def sampled(skeleton: Skeleton, samples: np.ndarray, rate_hz: float, *, repeat: bool) -> MovingDots:
     """Return sampled trajectories as a moving figure, a straight line between frames.
 
-    Before the first and after the last frame it holds still, or begins anew one frame after the
+    Before the first and after the last frame it holds still, or starts again one frame after the
     last. Between two frames of which one lacks a dot, the dot is not visible.
     """
     n_frames = len(samples)

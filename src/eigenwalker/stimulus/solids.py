@@ -1,7 +1,7 @@
 """Hulls of two balls as pixels, in three dimensions, with soft light and soft edges.
 
-Each pixel's line of sight is laid against each hull: how far beside its outline it passes says how
-much of the pixel is covered, where it meets it first says how bright it is there.
+For each pixel and hull, the distance of the line of sight from the hull's outline gives how much of
+the pixel is covered, and the point where it first meets the hull gives the brightness.
 """
 
 from __future__ import annotations

@@ -140,7 +140,7 @@ FigureNumbers = TypeAliasType(
 
 
 class Context(NamedTuple):
-    """What a transform knows beside the dots that it changes.
+    """What a transform knows in addition to the dots that it changes.
 
     The observer's right, up and the direction to the observer, rows of a matrix in the figure's own
     frame; and the figure's number, from 0: figures of one scene draw different random numbers.

@@ -1,4 +1,4 @@
-"""A folder of captures made into a population, one bad file stopping no other."""
+"""A folder of captures made into a population; a bad file does not stop the others."""
 
 from __future__ import annotations
 
@@ -41,6 +41,10 @@ class Study:
         for those that were read the rate, duration, strides, frequency, speed and share explained.
     unlisted : tuple of str
         Captures of the folder that a traits table does not list.
+
+    See Also
+    --------
+    fit_folder : Makes it.
     """
 
     population: Population | None

@@ -46,7 +46,14 @@ def inspect_file(
     Returns
     -------
     dict
-        Names and values fit for JSON; lists hold one sentence an entry.
+        Names and values fit for JSON; lists hold one sentence an entry. ``kind`` is "capture" or
+        "population". A capture has ``verdict``, ``problems``, ``format``, what `Quality` measured
+        and its marker set; a population has ``walkers`` (their number), ``flagged``, ``form``,
+        ``features``, ``markers``, ``traits``, ``frequency_hz`` (mean) and ``provenance``.
+
+    See Also
+    --------
+    process_capture : The walker of a capture.
 
     Raises
     ------

@@ -65,7 +65,7 @@ def capture_remark(flag: str, warnings: RetargetingWarnings | None = None) -> st
 
 
 def capture_lines(result: CaptureResult) -> list[str]:
-    """Return what is to be known of a capture beside its walker, in sentences."""
+    """Return what to know about a capture in addition to its walker, in sentences."""
     quality, walker = result.quality, result.walker
     explained = walker.fit.fourier_r2 if walker.fit else float("nan")
     lines = [

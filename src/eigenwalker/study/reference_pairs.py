@@ -25,7 +25,7 @@ from eigenwalker.study.walks import walks_of_population, without_rotations
 
 @dataclass(frozen=True, eq=False)
 class ReferenceComparison:
-    """A comparison of two walks beside distances to hold it against.
+    """A comparison of two walks, with reference distances.
 
     ``self_distances`` tell how far each walk is from itself (`self_distance`). The rows of
     ``by_metric`` are metrics; its columns are the ``distance`` of the two walks; ``by_joints``, the
@@ -46,11 +46,11 @@ def compare_with_references(
     mannequin: bool = True,
     progress: Progress | None = None,
 ) -> ReferenceComparison:
-    """Return a comparison beside distances of simulated people, and of each walk from itself.
+    """Return a comparison with two references: simulated people, and each walk and itself.
 
-    Hands, feet and clavicles, which simulated people do not have, are left out of the comparison
-    with them. Joint angles get none: they depend on whether a capture is of joints, as that of
-    simulated people, or of points on the skin.
+    Simulated people have no hands, feet and clavicles, so these are left out when walks are
+    compared with them. Metrics of joint angles are not compared with simulated people:
+    angles depend on whether a capture holds joints, as simulated ones do, or points on the skin.
 
     Parameters
     ----------
@@ -66,6 +66,10 @@ def compare_with_references(
     Returns
     -------
     ReferenceComparison
+
+    See Also
+    --------
+    self_distance, simulated_distances : The two references.
 
     Examples
     --------

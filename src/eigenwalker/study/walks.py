@@ -50,7 +50,21 @@ class Walks:
 
 
 class CaptureWalk(NamedTuple):
-    """The walk of a capture; what is wrong with the capture, and a remark on both, in words."""
+    """The walk of a capture, what is wrong with the capture, and remarks.
+
+    Parameters
+    ----------
+    clip : PreparedClip
+        The steady strides, in mm; on the mannequin if that was asked for.
+    flag : str
+        What is wrong with the capture, in a sentence; empty if nothing is.
+    remark : str
+        What to know before comparing the walk, in words; empty if there is nothing.
+
+    See Also
+    --------
+    walk_of_capture : Makes it.
+    """
 
     clip: PreparedClip
     flag: str
@@ -256,7 +270,16 @@ def walker_space_distances(walks: Walks) -> np.ndarray:
     -------
     array of shape (pair,)
         Euclidean distances of their scores, in the order of `itertools.combinations`: what
-        `fit_to_answers` takes as one of ``others``.
+        `fit_to_answers` takes as one of ``others``. Without unit: features are standardised.
+
+    Raises
+    ------
+    ValueError
+        If the walks are of captures, which have no ``vectors``.
+
+    See Also
+    --------
+    eigenwalker.psychophysics.fit_to_answers : Compares them with metrics.
     """
     return pdist(WalkerSpace().fit_transform(np.stack(list(walks.vectors.values()))))
 

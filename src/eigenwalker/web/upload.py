@@ -1,4 +1,4 @@
-"""Files that are sent to a server: taken up to a size, under names that lead nowhere."""
+"""Files that are sent to a server: taken up to a size, under safe names in one folder."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def split_multipart(body: Path, files: list[tuple[str, int]], folder: Path) -> l
 
 
 def safe_name(name: str) -> str:
-    """Return a name for a file that leads nowhere and means nothing to a system.
+    """Return a safe name for a file: no path, and no name that an operating system reserves.
 
     Examples
     --------
