@@ -46,9 +46,7 @@ def captures() -> Path:
 @pytest.fixture(scope="session")
 def mannequins() -> dict[str, PreparedClip]:
     """21 of the built-in people, ready to be compared, on the neutral mannequin."""
-    from eigenwalker.datasets.built_in import (
-        load_population,  # these load numba, which is told above
-    )
+    from eigenwalker.datasets import load_population  # loads numba: after its cache is set
     from eigenwalker.metric import prepare, retarget
 
     walkers = load_population().walkers[:21]

@@ -9,8 +9,10 @@ import lazy_loader
 
 from eigenwalker._version import __version__ as __version__
 
-_ALIASES = {"assess", "direction", "jackknife_curves", "loop"}
-_ALIASES |= {"motion_map", "read_walkers_mat", "register"}
+_ALIASES = {
+    *("assess", "direction", "jackknife_curves", "loop"),
+    *("motion_map", "read_walkers_mat", "register"),
+}
 """Names of rooms that also work from the top, and are not listed there."""
 
 __getattr__, _, _names = lazy_loader.attach_stub(__name__, __file__)

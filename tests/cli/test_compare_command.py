@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable
+from functools import partial
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-import typer
 
-from eigenwalker.cli import main as cli
-from eigenwalker.cli.compare_command import compare
 from eigenwalker.io.write import write_mocap
 from eigenwalker.metric import PUBLISHED, pair_distances
 from eigenwalker.population.population import Population
@@ -26,23 +23,9 @@ Typed = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture
-def run(monkeypatch, capsys) -> Typed:
-    """Type a command; get its exit code, what it printed, and its complaint."""
-    app = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False)
-    app.command()(compare)
-    monkeypatch.setattr(cli, "app", app)
-
-    def typed(*words: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["eigenwalker", *map(str, words)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as stop:
-            code = int(stop.code or 0)
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return typed
+def run(run_command: Typed) -> Typed:
+    """Type ``compare`` and what follows; get its exit code, output and complaint."""
+    return partial(run_command, "compare")
 
 
 @pytest.fixture(scope="module")
