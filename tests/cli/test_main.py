@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import eigenwalker as ew
 from eigenwalker.io import write_mocap
 from eigenwalker.population import Population
 from eigenwalker.simulation import Route, simulate_captures, simulate_population, simulate_walk
@@ -45,13 +46,30 @@ def test_help_imports_nothing_heavy() -> None:
         "import sys; import eigenwalker.cli.main as cli; sys.argv = ['eigenwalker', '--help']\n"
         "try: cli.main()\n"
         "except SystemExit: pass\n"
-        "print([name for name in ('numpy', 'pandas', 'xarray', 'scipy', 'rich') "
+        "print([name for name in ('numpy', 'pandas', 'xarray', 'scipy', 'rich', 'typer') "
         "if name in sys.modules])"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout.splitlines()[-1] == "[]"
     for command in ("demo", "info", "fit", "classify", "synthesize"):
         assert command in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "answer"),
+    [
+        (["-h"], 0, "Commands:"),
+        ([], 2, "Commands:"),
+        (["--version"], 0, f"eigenwalker {ew.__version__}"),
+        (["compre"], 2, "Did you mean 'compare'?"),
+        (["--bad"], 2, "No such option '--bad'"),
+        (["fit", "-h"], 0, "Usage: eigenwalker fit"),
+        (["data", "list", "-h"], 0, "Usage: eigenwalker data list"),
+    ],
+)
+def test_what_no_command_is_typed_for(run, words, code, answer) -> None:
+    ended, printed, errors = run(*words)
+    assert (ended, answer in printed + errors) == (code, True)
 
 
 def test_fit_reads_a_folder_and_ends_with_0(run, folder, tmp_path) -> None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-import typer
 
-from eigenwalker.cli import options
-from eigenwalker.cli.main import COMMANDS, app
-from eigenwalker.cli.options import EXIT_FAILED, parse_trait_steps, progress_bar
+from eigenwalker.cli import exit_codes
+from eigenwalker.cli.exit_codes import EXIT_FAILED
+from eigenwalker.cli.main import COMMANDS, load_command
+from eigenwalker.cli.options import parse_trait_steps, progress_bar
 from eigenwalker.simulation import simulate_population
 
 
@@ -54,11 +54,10 @@ def test_steps_that_lead_nowhere_are_refused_by_all(
 
 
 def test_every_command_that_takes_a_trait_is_tested_here():
-    group = typer.main.get_command(app)
     taking = {
         name
         for name in COMMANDS
-        for parameter in group.get_command(None, name).params
+        for parameter in load_command(name).params
         if "--trait" in parameter.opts
     }
     assert taking == set(TAKE_A_TRAIT)
@@ -66,10 +65,9 @@ def test_every_command_that_takes_a_trait_is_tested_here():
 
 def test_options_are_shared_not_copied():
     """Options of one name have one help text, but for those that mean another thing."""
-    group = typer.main.get_command(app)
     helps = {}
     for name in COMMANDS:
-        for parameter in group.get_command(None, name).params:
+        for parameter in load_command(name).params:
             helps.setdefault(parameter.opts[0], {})[name] = getattr(parameter, "help", None)
     for option in ("--unit", "--from", "--view", "--elevation", "--open"):
         assert len(set(helps[option].values())) == 1, helps[option]
@@ -82,4 +80,6 @@ def test_the_progress_bar_is_silent_off_a_terminal(capsys):
 
 
 def test_exit_codes_are_apart():
-    assert len({options.EXIT_PARTIAL, options.EXIT_FAILED, options.EXIT_INTERRUPTED, 0}) == 4
+    assert (
+        len({exit_codes.EXIT_PARTIAL, exit_codes.EXIT_FAILED, exit_codes.EXIT_INTERRUPTED, 0}) == 4
+    )

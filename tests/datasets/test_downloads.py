@@ -15,7 +15,7 @@ from urllib.parse import unquote
 import pooch
 import pytest
 
-from eigenwalker.cli.options import EXIT_FAILED
+from eigenwalker.cli.exit_codes import EXIT_FAILED
 from eigenwalker.datasets import downloads
 from eigenwalker.datasets.downloads import Collection, PublishedFile, collections, fetch_captures
 from eigenwalker.io import UnitGuessed, read_mocap

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from eigenwalker.cli.exit_codes import EXIT_PARTIAL
 from eigenwalker.cli.options import (
-    EXIT_PARTIAL,
     Rate,
     ReportFolder,
     TraitFromName,

@@ -5,12 +5,9 @@ from __future__ import annotations
 import sys
 import warnings
 from importlib import import_module
-from typing import Annotated, Any
+from typing import Any
 
-import typer
-from typer.core import TyperGroup
-
-from eigenwalker.cli.options import EXIT_FAILED
+from eigenwalker.cli.exit_codes import EXIT_FAILED
 
 COMMANDS = {
     "demo": ("classify_command", "Classify a trait, and write a page to play with the walkers."),
@@ -27,60 +24,68 @@ COMMANDS = {
 }
 """The module of each command, and its line in the help of all."""
 
+HELP = """\
+Usage: eigenwalker [OPTIONS] COMMAND [ARGS]...
 
-class _LazyGroup(TyperGroup):
-    """Loads a command's module only to run it, so that the help of all answers at once."""
+  How people walk: from captures to a model, classifiers, and walkers of any
+  trait.
 
-    def __init__(self, **settings: Any) -> None:
-        super().__init__(**settings)
-        self.commands = dict.fromkeys(COMMANDS)  # pyright: ignore[reportAttributeAccessIssue] - names to suggest
+Options:
+  --version   Say the version and end.
+  -h, --help  Show this message and exit.
 
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        if cmd_name not in COMMANDS:
-            return None
-        module, _ = COMMANDS[cmd_name]
-        command = getattr(import_module(f"eigenwalker.cli.{module}"), cmd_name)
-        if not isinstance(command, typer.Typer):
-            function, command = command, typer.Typer(rich_markup_mode=None, add_completion=False)
-            command.command(cmd_name)(function)
-        return typer.main.get_command(command)
-
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, line) for name, (_, line) in COMMANDS.items()])
-
-
-app = typer.Typer(
-    cls=_LazyGroup,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    no_args_is_help=True,
-    add_completion=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="How people walk: from captures to a model, classifiers, and walkers of any trait.",
-)
+Commands:
+""" + "\n".join(f"  {name:<12}{line}" for name, (_, line) in COMMANDS.items())
+"""Printed by itself: without the library of options the help of all is there at once."""
 
 
 def main() -> None:
     """Run the command line; errors and warnings are printed as sentences, without a traceback."""
     warnings.showwarning = _print_warning
-    try:
-        app()
-    except (ValueError, OSError) as error:
-        print(f"eigenwalker: {error}", file=sys.stderr)
-        sys.exit(EXIT_FAILED)
+    name, *words = sys.argv[1:] or [""]
+    if name in ("-h", "--help", ""):
+        print(HELP)
+        sys.exit(0 if name else EXIT_FAILED)
+    if name == "--version":
+        from eigenwalker._version import __version__
+
+        print(f"eigenwalker {__version__}")
+    elif name not in COMMANDS:
+        sys.exit(_explain_unknown(name))
+    else:
+        try:
+            load_command(name)(args=words, prog_name=f"eigenwalker {name}")
+        except (ValueError, OSError) as error:
+            print(f"eigenwalker: {error}", file=sys.stderr)
+            sys.exit(EXIT_FAILED)
+
+
+def load_command(name: str) -> Any:
+    """Return the command of that name, as click runs it; only its own module is imported."""
+    import typer
+
+    command = getattr(import_module(f"eigenwalker.cli.{COMMANDS[name][0]}"), name)
+    if not isinstance(command, typer.Typer):
+        function, command = command, typer.Typer(rich_markup_mode=None, add_completion=False)
+        command.command(name)(function)
+    command = typer.main.get_command(command)
+    command.context_settings["help_option_names"] = ["-h", "--help"]
+    return command
+
+
+def _explain_unknown(word: str) -> int:
+    from difflib import get_close_matches
+
+    what = "option" if word.startswith("-") else "command"
+    near = get_close_matches(word, [*COMMANDS, "--help", "--version"], n=1)
+    guess = f" Did you mean '{near[0]}'?" if near else ""
+    usage = HELP.partition("\n")[0]
+    print(
+        f"{usage}\nTry 'eigenwalker -h' for help.\n\nError: No such {what} '{word}'.{guess}",
+        file=sys.stderr,
+    )
+    return EXIT_FAILED
 
 
 def _print_warning(message: Warning | str, *_: object, **__: object) -> None:
     print(f"eigenwalker: {message}", file=sys.stderr)
-
-
-@app.callback(invoke_without_command=True)
-def _version(
-    version: Annotated[bool, typer.Option("--version", help="Say the version and end.")] = False,
-) -> None:
-    if version:
-        from eigenwalker._version import __version__
-
-        print(f"eigenwalker {__version__}")
-        raise typer.Exit

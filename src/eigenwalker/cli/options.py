@@ -18,11 +18,6 @@ if TYPE_CHECKING:
     from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.population.population import Population
 
-EXIT_PARTIAL = 1
-"""Some files could not be used; the others were."""
-EXIT_FAILED = 2
-EXIT_INTERRUPTED = 130
-
 
 def option(about: str, *names: str) -> Any:
     """Return an option of a command, with its help text."""
