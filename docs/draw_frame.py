@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 
-from eigenwalker import JOINTS, decompose_fourier, simulate_walk
+from eigenwalker import decompose_fourier, simulate_walk
 from eigenwalker.plotting import draw_body, observer_axes, project
 
 BLUE, RED = "#0077BB", "#CC3311"
@@ -31,7 +31,7 @@ def draw_room(axes: Axes) -> None:
     for line in np.arange(-1000, 1001, 500):
         for ends in ([[line, -1000, 0], [line, 1000, 0]], [[-1000, line, 0], [1000, line, 0]]):
             axes.plot(*seen(ends).T, color=PALE, lw=0.5, zorder=0)
-    draw_body(axes, seen(posture), JOINTS.restricted_to(walker.markers))
+    draw_body(axes, seen(posture), walker.markers)
     for (letter, words, ink), way in zip(AXES, np.eye(3), strict=True):
         length = 750 if letter != "z" else 2050
         tip = seen(length * way)

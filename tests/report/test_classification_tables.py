@@ -63,20 +63,20 @@ def test_missed_walkers_are_named_with_their_class(people) -> None:
     sex = np.random.default_rng(0).permutation(people.traits["sex"].to_numpy())
     people = replace(people, traits=people.traits.assign(sex=sex))
     found = classify(people, "sex", inputs=INPUTS[:4], n_permutations=0)
-    table = missed_table(people.names, found)
+    table = missed_table(ew.analysis.study_trait(people, found))
     assert table is not None
     row = int(found.often_misclassified().index[0])
     assert table.rows[0][0] == f"walker {row} ({sex[row]})"
     files = [f"{n}.c3d" if n else "" for n in range(12)]
     named = replace(people, traits=people.traits.assign(file=files))
     assert named.names[:2] == ["walker 0", "1.c3d"]
-    assert results_table(found).columns[0] == "input"
+    assert results_table(ew.analysis.study_trait(people, found)).columns[0] == "input"
 
 
 def test_the_printed_table_says_where_p_ends_and_what_is_missing() -> None:
     people = ew.simulate_population(12, 12, seed=0, sex_effect=3)
     found = classify(people, "sex", inputs=[INPUTS[2], INPUTS[11]], n_permutations=19)
-    words = printed_results(found).set_index("input")
+    words = printed_results(found.table(), 19).set_index("input")
     assert words["p"]["structure (p0)"] == "<= 0.05"
     assert words["separated at n"]["frequency alone"] == "-"
     assert found.table()["p"].min() == 1 / 20
@@ -88,5 +88,5 @@ def test_classes_of_unequal_size_are_mentioned() -> None:
     people = ew.simulate_population(12, 12, seed=0, sex_effect=3).select(np.arange(3, 24))
     found = classify(people, "sex", inputs=INPUTS[9:10], n_permutations=0)
     assert "(female 9, male 12), and the discriminant has no constant" in chance_sentence(found)
-    assert printed_results(found)["p"].tolist() == ["-"]
+    assert printed_results(found.table(), 0)["p"].tolist() == ["-"]
     assert multiple_inputs_sentence(found) == ""

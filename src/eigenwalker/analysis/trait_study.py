@@ -36,14 +36,26 @@ class TraitView:
 class TraitStudy:
     """Everything about a trait of a population that its report shows.
 
-    ``names`` and ``traits`` are of all walkers, ``walkers`` those without a flag, ``correlations``
-    how alike their postures are (None of one). ``views`` holds walkers along the ``discriminant``,
-    and along the ``mean_difference`` with size divided out; ``class_averages`` that of either
-    class, and both with their difference tripled (none of a number). ``X`` of shape
-    (walker, feature) holds the walkers that have the trait, and ``space`` is fitted to them.
+    Attributes
+    ----------
+    result, table, missed
+        How well the trait is told, `result.table()`, and the walkers that several inputs
+        misclassify (None of a number).
+    names, traits, provenance
+        Of all walkers.
+    walkers, average, correlations
+        The walkers without a flag, their average, and how alike their postures are (None of one).
+    views : mapping of str to TraitView
+        Walkers along the ``discriminant``, and along the ``mean_difference`` without their size.
+    class_averages : mapping of str to Walker
+        Of either class, and both with their difference tripled; none of a number.
+    X, space
+        The walkers that have the trait (walker, feature), and the space fitted to them.
     """
 
     result: Classification | Regression
+    table: pd.DataFrame
+    missed: pd.Series | None
     names: list[str]
     traits: pd.DataFrame
     provenance: Mapping[str, str]
@@ -102,6 +114,8 @@ def study_trait(population: Population, result: Classification | Regression) -> 
     X = population.X[contrast.rows]
     return TraitStudy(
         result=result,
+        table=result.table(),
+        missed=result.often_misclassified() if isinstance(result, Classification) else None,
         names=population.names,
         traits=population.traits,
         provenance=population.provenance,

@@ -111,7 +111,7 @@ def _print_result(result: Classification | Regression) -> None:
         printed_results,
     )
 
-    print(printed_results(result).to_string(index=False))
+    print(printed_results(result.table(), result.n_permutations).to_string(index=False))
     print(f"\n{chance_sentence(result)}")
     if sentence := multiple_inputs_sentence(result):
         print(sentence)

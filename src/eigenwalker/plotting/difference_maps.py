@@ -224,7 +224,6 @@ def figure_two_walks(
         Seen from the side above, from the front below; the first walk blue, the second red, their
         left limbs paler.
     """
-    body = skeleton.restricted_to(markers)
     frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)
     views = (90.0, 0.0)
     seen = {
@@ -241,8 +240,8 @@ def figure_two_walks(
     for row, view in enumerate(views):
         for column in range(n_moments):
             for walk, color in zip(seen[view], (BLUE, RED), strict=True):
-                at = (column * pitch, -row * storey)
-                draw_body(axes, walk[column], body, at=at, color=color, width=1.1, dots=False)
+                look = {"skeleton": skeleton, "color": color, "width": 1.1, "dots": False}
+                draw_body(axes, walk[column], markers, at=(column * pitch, -row * storey), **look)
     for column in range(n_moments):
         share = f"{100 * column / n_moments:.0f} %"
         axes.text(column * pitch, low - storey - 90, share, fontsize=SMALL, ha="center", color=GREY)

@@ -73,7 +73,6 @@ def figure_eigenpostures(
     >>> figure_eigenpostures(hop).axes[0].texts[1].get_text()
     'harmonic 2, 20-fold'
     """
-    body = skeleton.restricted_to(walker.markers)
     gains = [_gain(posture) for posture in walker.p]
     extremes = [
         (walker.p0 + gain * p, walker.p0 - gain * p)
@@ -92,7 +91,8 @@ def figure_eigenpostures(
     for column, (plus, minus) in enumerate(extremes):
         for row, view in enumerate(azimuths_deg):
             shown = project([walker.p0, plus, minus], azimuth_deg=view)
-            _draw_extremes(axes, shown, body, (column * pitch, -row * story))
+            body = {"skeleton": skeleton, "at": (column * pitch, -row * story)}
+            _draw_extremes(axes, shown, walker.markers, body)
         harmonic, gain = walker.harmonics[column], gains[column]
         where = (column * pitch, top + 190)
         axes.text(*where, _name(walker, column), fontsize=USUAL, ha="center", color=INK)
@@ -115,12 +115,14 @@ def _name(walker: Walker, component: int) -> str:
     return f"{number}  {MOLER[component]}"
 
 
-def _draw_extremes(axes: Axes, shown: np.ndarray, body: Skeleton, at: tuple[float, float]) -> None:
+def _draw_extremes(
+    axes: Axes, shown: np.ndarray, markers: Sequence[str], body: dict[str, Any]
+) -> None:
     """Mean posture, mean plus and mean minus the eigenposture: `shown` of (3, marker, 2)."""
     mean, plus, minus = shown
-    draw_body(axes, mean, body, at=at, color=PALE, width=2.2, dots=False, zorder=0)
-    draw_body(axes, minus, body, at=at, color=RED, width=0.8, dots=False, dashes=(0, (3, 2)))
-    draw_body(axes, plus, body, at=at, color=BLUE, width=1.1, dots=False, zorder=3)
-    for start, end in zip(mean + at, plus + at, strict=True):
+    draw_body(axes, mean, markers, color=PALE, width=2.2, dots=False, zorder=0, **body)
+    draw_body(axes, minus, markers, color=RED, width=0.8, dots=False, dashes=(0, (3, 2)), **body)
+    draw_body(axes, plus, markers, color=BLUE, width=1.1, dots=False, zorder=3, **body)
+    for start, end in zip(mean + body["at"], plus + body["at"], strict=True):
         if np.linalg.norm(end - start) > 40:
             axes.add_patch(FancyArrowPatch(tuple(start), tuple(end), **_ARROW))

@@ -24,8 +24,9 @@ INCH_MM = 850.0
 def draw_body(
     axes: Axes,
     seen: np.ndarray,
-    body: Skeleton,
+    markers: Sequence[str],
     *,
+    skeleton: Skeleton = LINKS,
     at: tuple[float, float] = (0.0, 0.0),
     color: str = INK,
     width: float = 1.5,
@@ -41,7 +42,9 @@ def draw_body(
         To draw into.
     seen : array of shape (marker, 2)
         The posture in projection, in mm (`project`).
-    body : Skeleton
+    markers : sequence of str
+        Their names.
+    skeleton : Skeleton
         Which markers are joined.
     at : pair of float
         Where to draw it, in mm.
@@ -53,10 +56,12 @@ def draw_body(
     --------
     project, figure_walkers
     """
-    seen = np.asarray(seen) + at
-    left = {marker for marker, _ in body.pairs}
-    for link in body.segments:
-        ends = seen[[body.index(marker) for marker in link]]
+    places = dict(zip(markers, np.asarray(seen) + at, strict=True))
+    left = {one for one, other in skeleton.pairs if {one, other} <= places.keys()}
+    for link in skeleton.segments:
+        if not set(link) <= places.keys():
+            continue
+        ends = np.array([places[marker] for marker in link])
         tone = 0.45 if left & set(link) else 1.0
         axes.plot(
             *ends.T,
@@ -66,14 +71,12 @@ def draw_body(
             solid_capstyle="round",
             zorder=zorder - (tone < 1),
         )
-    for marker, place in zip(body.markers, seen, strict=True):
+    for marker, place in places.items():
         if dots and marker != "head":
             ink = _mixed(color, 0.45 if marker in left else 1.0)
             axes.plot(*place, "o", ms=1.9 * width, color=ink, mew=0, zorder=zorder + 0.1)
-    if "head" in body.markers:
-        head = Circle(
-            tuple(seen[body.index("head")]), HEAD_MM, fc="none" if not dots else "white", ec=color
-        )
+    if "head" in places:
+        head = Circle(tuple(places["head"]), HEAD_MM, fc="white" if dots else "none", ec=color)
         head.set(lw=width, ls=dashes, zorder=zorder)
         axes.add_patch(head)
 
@@ -113,7 +116,6 @@ def figure_joints(
     >>> [text.get_text() for text in figure_joints(still, azimuths_deg=[0]).axes[0].texts]
     ['head', 'front']
     """
-    body = skeleton.restricted_to(walker.markers)
     pictures = [project(walker.p0, azimuth_deg=view) for view in azimuths_deg]
     reach = max(np.abs(picture[:, 0]).max() for picture in pictures) + HEAD_MM
     pitch, names = 2 * reach + 120, 620.0
@@ -124,9 +126,9 @@ def figure_joints(
     top = max(picture[:, 1].max() for picture in pictures) + 1.5 * HEAD_MM
     figure, axes = panel((reach + names + right) / INCH_MM, (top + 230) / INCH_MM)
     bare(axes)
-    _name_joints(axes, pictures[0], body, reach)
+    _name_joints(axes, dict(zip(walker.markers, pictures[0], strict=True)), skeleton, reach)
     for middle, view, picture in zip(middles, azimuths_deg, pictures, strict=True):
-        draw_body(axes, picture, body, at=(middle, 0))
+        draw_body(axes, picture, walker.markers, skeleton=skeleton, at=(middle, 0))
         axes.text(middle, -170, view_name(view), fontsize=USUAL, ha="center", color=GREY)
     axes.set_xlim(-reach - names, right)
     axes.set_ylim(-230, top)
@@ -139,16 +141,18 @@ def view_name(azimuth_deg: float) -> str:
     return names.get(azimuth_deg, f"{azimuth_deg:g}°")
 
 
-def _name_joints(axes: Axes, seen: np.ndarray, body: Skeleton, reach: float) -> None:
+def _name_joints(
+    axes: Axes, seen: Mapping[str, np.ndarray], skeleton: Skeleton, reach: float
+) -> None:
     """Names of the joints at both sides of a body, joined to them by thin lines."""
-    left = {marker for marker, _ in body.pairs}
-    right = {marker for _, marker in body.pairs}
-    middle = [marker for marker in body.markers if marker not in left | right]
+    pairs = [pair for pair in skeleton.pairs if set(pair) <= seen.keys()]
+    left, right = {one for one, _ in pairs}, {other for _, other in pairs}
+    middle = [marker for marker in seen if marker not in left | right]
     for side, members in ((1, left | set(middle[::2])), (-1, right | set(middle[1::2]))):
-        named = sorted((seen[body.index(marker)][1], marker) for marker in members)
+        named = sorted((seen[marker][1], marker) for marker in members)
         heights = _apart([height for height, _ in named])
         for (height, marker), place in zip(named, heights, strict=True):
-            x = seen[body.index(marker)][0]
+            x = seen[marker][0]
             corner, end = side * (reach + 15), side * (reach + 75)
             axes.plot([x, corner, end], [height, height, place], color=PALE, lw=0.6, zorder=0)
             axes.text(
@@ -229,13 +233,12 @@ def figure_walkers(
         (len(walkers) * pitch + 100) / INCH_MM, (len(azimuths_deg) * story + 170) / INCH_MM
     )
     bare(axes)
-    bodies = [skeleton.restricted_to(walker.markers) for walker in walkers.values()]
     for row, shown in enumerate(pictures):
-        for column, (picture, body) in enumerate(zip(shown, bodies, strict=True)):
+        for column, (picture, walker) in enumerate(zip(shown, walkers.values(), strict=True)):
             at = (column * pitch, -row * story)
             paths = picture + at
             axes.plot(*np.moveaxis(paths, -1, 0), color=PALE, lw=0.7, zorder=0.5)
-            draw_body(axes, picture[0], body, at=at)
+            draw_body(axes, picture[0], walker.markers, skeleton=skeleton, at=at)
     for column, title in enumerate(walkers):
         where = (column * pitch, top + 60)
         axes.text(*where, title, fontsize=USUAL, ha="center", color=INK, parse_math=False)

@@ -19,57 +19,7 @@ from eigenwalker.plotting.walker_films import Style, write_film
 from eigenwalker.plotting.walker_space_figure import figure_space
 from eigenwalker.plotting.walkers import figure_joints, figure_walkers
 from eigenwalker.report.blocks import Figure, Film
-
-_POLES = (
-    "From {negative} to {positive}: standard deviations of the walkers along the axis.",
-    "Stick figures from one pole of the trait to the other, front and side.",
-)
-_CAPTIONS = {
-    "variance": (
-        "Variance of the first components, mean and standard deviation over walkers.",
-        "Bar chart: most variance lies in the first component, little after the fourth.",
-    ),
-    "scores": (
-        "{source}: scores of the eigenpostures over time, and below them the sines that take their "
-        "place.",
-        "Four wavy curves over five seconds, and below them the same as pure sines.",
-    ),
-    "joints": (
-        "The joints of the average walker.",
-        "Stick figure of the average walker from three sides, joints named.",
-    ),
-    "eigenpostures": (
-        "What each eigenposture of the average walker does to its mean posture (grey). Blue: the "
-        "mean posture plus the eigenposture, with arrows from where each joint is on average; red "
-        "and dashed: minus the eigenposture. Left limbs are paler. Small movements are drawn "
-        "larger: 5-fold is five times what they are.",
-        "Stick figures of the mean posture with each eigenposture added and taken away.",
-    ),
-    "class curves": (
-        "Misclassified walkers over the number of components: among those trained on (dashed) and "
-        "among those left out (solid).",
-        "Nine panels of two curves each: training errors fall to zero, errors on walkers left out "
-        "stay above.",
-    ),
-    "regression curves": (
-        "Share of the variance of {trait} explained over the number of components: of those "
-        "trained on (dashed) and of those left out (solid). Below 0 the mean explains more; a "
-        "curve that falls far below leaves its panel.",
-        "Panels of two curves each: on those trained on the share explained rises to one, on those "
-        "left out it stays below.",
-    ),
-    "discriminant": _POLES,
-    "mean_difference": _POLES,
-    "classes": (
-        "The average of either class, and their difference tripled.",
-        "Stick figures of both classes' averages, and of both exaggerated.",
-    ),
-    "space": (
-        "Walkers on the first two eigenwalkers, and the axis of the discriminant.",
-        "Scatter plot of walkers with the axis of the trait drawn through the average.",
-    ),
-}
-"""Caption of each figure, and text for screen readers."""
+from eigenwalker.report.words import WORDS
 
 
 def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, Figure]:
@@ -82,11 +32,10 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
         drawings["scores"] = figure_scores(example, decompose_pca(example))
     drawings["joints"] = figure_joints(study.average)
     drawings["eigenpostures"] = figure_eigenpostures(study.average)
+    curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
     if isinstance(result, Classification):
-        curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
         drawings["class curves"] = figure_curves(curves, n_walkers=len(contrast.rows))
     else:
-        curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
         drawings["regression curves"] = figure_regression_curves(curves)
     for kind, view in study.views.items():
         drawings[kind] = figure_walkers(view.walkers)
@@ -104,7 +53,7 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
     names = {"trait": contrast.trait, "negative": contrast.negative, "positive": contrast.positive}
     names["source"] = source[:1].upper() + source[1:].replace("_", " ")
     return {
-        name: Figure(drawing, *(text.format(**names) for text in _CAPTIONS[name]))
+        name: Figure(drawing, *(text.format(**names) for text in WORDS["figures"][name].values()))
         for name, drawing in drawings.items()
     }
 

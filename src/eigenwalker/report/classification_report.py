@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
-from eigenwalker.analysis.classification import Classification, Regression
+from eigenwalker.analysis.classification import Classification
 from eigenwalker.analysis.direction import Kind
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.report.blocks import Block, Code, Figure, Film, Items, Link, Report, Section, Text
@@ -25,17 +25,7 @@ from eigenwalker.report.classification_tables import (
     traits_table,
 )
 from eigenwalker.report.html_report import write_report
-
-_VIEWS = {
-    "discriminant": "Along the discriminant, in the space of the first ten eigenwalkers, as in the "
-    "paper: what tells the walkers apart.",
-    "mean_difference": "Along the mean difference, size divided out: what goes along with the "
-    "trait in build and movement, whoever is tall.",
-}
-_CITE = (
-    "Troje, N. F. (2002). Decomposing biological motion: A framework for analysis and synthesis of "
-    "human gait patterns. Journal of Vision, 2(5), 371-387."
-)
+from eigenwalker.report.words import CITE, WORDS
 
 
 def write_classification_report(
@@ -77,14 +67,14 @@ def write_classification_report(
     figures = draw_figures(study, example)
     report = Report(
         title=f"{_capital(trait)} from gait",
-        lead=_lead(study.result),
+        lead=_lead(study),
         sections=[
             Section("Who walked", _who(study)),
             Section("How well the model holds", _model(study, figures)),
             Section("What tells them apart", _results(study, figures)),
             Section("What it looks like", _appearance(study, figures, films)),
             Section("Mind", [Items(_cautions(study))]),
-            Section("Made with", [Code(f"eigenwalker {__version__}\n{_CITE}")]),
+            Section("Made with", [Code(f"eigenwalker {__version__}\n{CITE['troje2002']}")]),
         ],
         beside=beside,
     )
@@ -95,8 +85,9 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:].replace("_", " ")
 
 
-def _lead(result: Classification | Regression) -> str:
-    n_walkers, best = len(result.contrast.rows), result.table().iloc[0]
+def _lead(study: TraitStudy) -> str:
+    result = study.result
+    n_walkers, best = len(result.contrast.rows), study.table.iloc[0]
     if isinstance(result, Classification):
         are = "is" if best["errors"] == 1 else "are"
         n = best["best n"]
@@ -153,12 +144,12 @@ def _model(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
 
 def _results(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
     result = study.result
-    blocks: list[Block] = [results_table(result)]
+    blocks: list[Block] = [results_table(study)]
     if sentence := multiple_inputs_sentence(result):
         blocks.append(Text(sentence))
     if not isinstance(result, Classification):
         return [*blocks, figures["regression curves"]]
-    missed = missed_table(study.names, result)
+    missed = missed_table(study)
     return [*blocks, figures["class curves"], *([missed] if missed else [])]
 
 
@@ -168,7 +159,7 @@ def _appearance(
     blocks: list[Block] = []
     for kind, view in study.views.items():
         tables = [gait_table(view.walkers), plausibility_table(view.plausibility)]
-        blocks += [Text(_VIEWS[kind]), *films[kind], figures[kind], *tables]
+        blocks += [Text(WORDS["views"][kind]), *films[kind], figures[kind], *tables]
     if "classes" in figures:
         blocks.append(figures["classes"])
     return [*blocks, figures["space"]]

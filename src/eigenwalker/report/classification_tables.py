@@ -9,34 +9,17 @@ import pandas as pd
 
 from eigenwalker.analysis.classification import N_PANELS, Classification, Regression
 from eigenwalker.analysis.plausibility import Plausibility
+from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.report.blocks import Table
-
-_GAIT = {
-    "frequency_hz": ("strides a second (Hz)", 1, 2),
-    "cadence_steps_min": ("steps a minute", 1, 0),
-    "speed_mm_s": ("speed (m/s)", 1e-3, 2),
-    "stride_time_s": ("stride, time (s)", 1, 2),
-    "stride_length_mm": ("stride, length (mm)", 1, 0),
-    "step_length_left_mm": ("left step, length (mm)", 1, 0),
-    "step_length_right_mm": ("right step, length (mm)", 1, 0),
-    "step_width_mm": ("steps, width (mm)", 1, 0),
-    "step_asymmetry": ("step lengths, left beyond right (%)", 100, 1),
-    "stance_share_left": ("left foot stands (% of the stride)", 100, 1),
-    "stance_share_right": ("right foot stands (% of the stride)", 100, 1),
-    "stance_asymmetry": ("standing, left beyond right (%)", 100, 1),
-    "double_support_share": ("both feet stand (% of the stride)", 100, 1),
-    "pelvis_vertical_range_mm": ("pelvis, vertical range (mm)", 1, 0),
-}
-"""Name and unit of each gait parameter, a factor to multiply it with, and decimals. How stride
-times vary is not among them: a walker's are all the same."""
+from eigenwalker.report.words import WORDS
 
 
-def results_table(result: Classification | Regression) -> Table:
+def results_table(study: TraitStudy) -> Table:
     """Return how well a trait is predicted from each input."""
-    units = "persons" if result.contrast.persons is not None else "walkers"
-    printed = printed_results(result)
+    units = "persons" if study.result.contrast.persons is not None else "walkers"
+    printed = printed_results(study.table, study.result.n_permutations)
     return Table(
         f"Predicted of {units} left out one at a time",
         [str(column) for column in printed],
@@ -44,12 +27,12 @@ def results_table(result: Classification | Regression) -> Table:
     )
 
 
-def printed_results(result: Classification | Regression) -> pd.DataFrame:
+def printed_results(table: pd.DataFrame, n_permutations: int) -> pd.DataFrame:
     """Return the results as printed: "-" where there is nothing, p with its lower limit."""
-    least = 1 / (1 + result.n_permutations)
+    least = 1 / (1 + n_permutations)
 
     def printed_p(p: float) -> str:
-        if not result.n_permutations:
+        if not n_permutations:
             return "-"
         return f"<= {least:.2g}" if p <= least else f"{p:.2g}"
 
@@ -58,7 +41,6 @@ def printed_results(result: Classification | Regression) -> pd.DataFrame:
             return "-"
         return f"{value:.3g}" if isinstance(value, float) else str(value)
 
-    table = result.table()
     printed = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
     return printed.assign(p=[printed_p(p) for p in table["p"]])
 
@@ -92,7 +74,7 @@ def gait_table(walkers: Mapping[str, Walker]) -> Table:
     """Return the gait parameters of walkers, by title, that any of them has."""
     parameters = [gait_parameters(walker) for walker in walkers.values()]
     rows = []
-    for name, (title, factor, decimals) in _GAIT.items():
+    for name, (title, factor, decimals) in WORDS["gait"].items():
         cells = [_fixed(factor * each[name], decimals) for each in parameters]
         if any(cells):
             rows.append([title, *cells])
@@ -114,17 +96,17 @@ def plausibility_table(walkers: Mapping[str, Plausibility]) -> Table:
     )
 
 
-def missed_table(names: Sequence[str], result: Classification, most: int = 10) -> Table | None:
+def missed_table(study: TraitStudy, most: int = 10) -> Table | None:
     """Return the walkers that several classifiers misclassify, with their class; None if none."""
-    counts = result.often_misclassified().head(most)
-    if counts.empty:
+    if study.missed is None or study.missed.empty:
         return None
-    classes = dict(zip(result.contrast.rows, result.contrast.labels, strict=True))
+    counts, contrast = study.missed.head(most), study.result.contrast
+    classes = dict(zip(contrast.rows, contrast.labels, strict=True))
     rows = [
-        [f"{names[row]} ({classes[row]})", int(count)]
+        [f"{study.names[row]} ({classes[row]})", int(count)]
         for row, count in zip(counts.index.to_numpy(), counts, strict=True)
     ]
-    n_inputs = len(result.results[:N_PANELS])
+    n_inputs = len(study.result.results[:N_PANELS])
     return Table(
         "Walkers that several classifiers miss", ["walker", f"missed, of {n_inputs} inputs"], rows
     )

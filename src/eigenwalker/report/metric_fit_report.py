@@ -13,7 +13,7 @@ from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, Metri
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_messages import CITE, plain_name
+from eigenwalker.report.words import CITE, WORDS, plain_name
 
 FEW_OBSERVERS = 10
 """With fewer, intervals from resampled observers contain the true weights much too rarely."""
@@ -113,10 +113,11 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
     weights: list[Block] = [_weights_figure(fit)]
     for target, table in (("choices", fit.by_choices), ("differences", fit.weights)):
         weights.append(_weights_table(f"Weights of {fit.name}, fitted to {target}", table))
+    method = [text.format(metric=fit.name) for text in WORDS["metric"]["fit"]]
     sections = [
         Section("Weights", weights),
         Section("Predictions", [*_predictions(fit), *_comparisons(fit.compared)]),
-        Section("How this was done", [Items(_method(fit.name)), Text(CITE)]),
+        Section("How this was done", [Items(method), Text(CITE["prazak2010"])]),
     ]
     lead = " ".join(fit_sentences(fit))
     return write_report(Report("A metric fitted to answers", lead, sections), folder)
@@ -198,24 +199,3 @@ def _comparisons(compared: pd.DataFrame) -> list[Table]:
         )
         tables.append(Table(caption, ["metric", *columns.values()], rows))
     return tables
-
-
-def _method(name: str) -> list[str]:
-    return [
-        "The perceived difference of a pair is the share of times it was shown and not chosen as "
-        "the most similar.",
-        f"Component and function are those of {name}; no weight is below 0.",
-        "Fitted to choices, weights make the pairs chosen most likely, if a pair's odds against "
-        "another shown beside it fall as e to the power of their distances' difference. This "
-        "likelihood has one maximum. Intervals are of 1000 samples of observers.",
-        "Fitted to differences, as in the paper, weights and a free constant are the least "
-        "squares, of which there is one. Shares of choices level off where walks differ much, and "
-        "no sum of distances does; weights of groups that go together then get mixed up. "
-        "Intervals are of 1000 samples of observers and walkers.",
-        "Unseen are pairs of walkers to whose other pairs no weight was fitted. For choices none "
-        "of the trials counted that showed one of the two. For differences other pairs' shares "
-        "come in part from such trials.",
-        "What no fit to the differences can be expected to exceed is the square root of their "
-        "reliability (split-half, Spearman and Brown). Choices are predicted knowing what else was "
-        "shown, which differences do not, so that they can be predicted better.",
-    ]

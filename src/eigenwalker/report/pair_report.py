@@ -14,21 +14,9 @@ from eigenwalker.plotting.difference_maps import figure_two_walks
 from eigenwalker.plotting.fitted_weights import figure_shares
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_messages import (
-    CITE,
-    SCALE_IS_UNKNOWN,
-    WHERE_POINTS_SIT,
-    body_sentence,
-    missing_points,
-    plain_name,
-)
 from eigenwalker.report.pair_figures import component_maps, loop_and_pair_maps, transitions
+from eigenwalker.report.words import CITE, WORDS, body_sentence, missing_points, plain_name
 from eigenwalker.study.reference_pairs import ReferenceComparison
-
-NO_PERCENTAGE_OF_ANGLES = (
-    "Joint angles get no percentage: they depend on where the points of a capture sit, in the "
-    "joints, as those of simulated people, or on the skin."
-)
 
 
 def write_pair_report(
@@ -62,7 +50,7 @@ def write_pair_report(
         Section("Where", _where(comparison)),
         Section("Motion maps", maps),
         Section("From one walk into the other", transitions(comparison, names)),
-        Section("How this was done", [Items(_method(comparison)), Text(CITE)]),
+        Section("How this was done", [Items(_method(comparison)), Text(CITE["prazak2010"])]),
     ]
     lead = " ".join([*pair_sentences(result, names), *remark_sentences(remarks or {})])
     return write_report(Report(f"{names[0]} and {names[1]}", lead, sections), folder)
@@ -152,8 +140,8 @@ def _how_different(result: ReferenceComparison, names: tuple[str, str]) -> list[
     return [
         _bodies(result.comparison, names),
         Table(caption, columns, rows),
-        Text(NO_PERCENTAGE_OF_ANGLES),
-        Text(SCALE_IS_UNKNOWN),
+        Text(WORDS["metric"]["no_percentage_of_angles"]),
+        Text(WORDS["metric"]["scale_is_unknown"]),
     ]
 
 
@@ -207,5 +195,5 @@ def _method(comparison: Comparison) -> list[str]:
         if all("rotation" in clip.coords for clip in clips)
         else "Angles are of positions.",
         *missing_points(clips),
-        WHERE_POINTS_SIT,
+        WORDS["metric"]["where_points_sit"],
     ]

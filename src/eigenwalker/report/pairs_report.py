@@ -22,13 +22,7 @@ from eigenwalker.psychophysics.dissimilarity_structure import (
 )
 from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.metric_messages import (
-    CITE,
-    SCALE_IS_UNKNOWN,
-    WHERE_POINTS_SIT,
-    body_sentence,
-    missing_points,
-)
+from eigenwalker.report.words import CITE, WORDS, body_sentence, missing_points
 from eigenwalker.study.walks import Walks
 
 MAX_ROWS = 60
@@ -93,7 +87,9 @@ def write_pairs_report(
     ):
         if reasons:
             sections.append(Section(title, [_items(reasons)]))
-    sections.append(Section("How this was done", [Items(_method(walks, metric)), Text(CITE)]))
+    sections.append(
+        Section("How this was done", [Items(_method(walks, metric)), Text(CITE["prazak2010"])])
+    )
     lead = " ".join(pairs_sentences(table, metric))
     return write_report(Report(f"{len(names)} walks compared", lead, sections), folder)
 
@@ -220,6 +216,6 @@ def _method(walks: Walks, metric: GroupMetric) -> list[str]:
         "Walks were brought in place, looped, registered pair by pair in phase, heading and "
         f"place, and compared along the path by the metric {metric.name}.",
         *missing_points(clips),
-        SCALE_IS_UNKNOWN,
-        WHERE_POINTS_SIT,
+        WORDS["metric"]["scale_is_unknown"],
+        WORDS["metric"]["where_points_sit"],
     ]

@@ -1,27 +1,20 @@
-"""Sentences that the reports on differences of walks share."""
+"""The fixed words of the reports, of ``words.toml``, and sentences that reports on walks share."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
+from importlib.resources import files
+from typing import Any
 
 import xarray as xr
 
 from eigenwalker.metric.retargeting import is_mannequin
 
-CITE = (
-    "Pražák, M., McDonnell, R., Kavan, L., & O'Sullivan, C. (2010). A perception based metric for "
-    "comparing human locomotion. Computer Animation and Social Agents."
+WORDS: dict[str, Any] = tomllib.loads(
+    files("eigenwalker.report").joinpath("words.toml").read_text(encoding="utf-8")
 )
-SCALE_IS_UNKNOWN = (
-    "The published weights tell how joint groups compare. The unit in which the paper measured, "
-    "and what its normalisation constant does, are not known, so that the number has no scale of "
-    "its own and tells no share of observers: compare it with those of other pairs. "
-    "PerceptualMetric fits a scale to observers' answers."
-)
-WHERE_POINTS_SIT = (
-    "Captures of different marker sets also differ by where their points sit on the body, joint "
-    "angles most of all: compare like with like where you can."
-)
+CITE = WORDS["cite"]
 
 
 def plain_name(name: object) -> str:
