@@ -11,13 +11,13 @@ from scipy.optimize import minimize
 from sklearn.linear_model import LogisticRegression
 
 from eigenwalker.metric import PUBLISHED, group_table
-from eigenwalker.psychophysics.choice_prediction import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.conditional_logit import (
     bootstrap_choices,
     choice_probabilities,
     expected_differences,
     fit_choices,
 )
+from eigenwalker.psychophysics.cross_validation import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric
 from eigenwalker.psychophysics.trials import Trials, count_pairs, read_trials
 

@@ -23,7 +23,7 @@ from eigenwalker.metric.joint_groups import GROUPS, By
 
 
 class PublishedFit(NamedTuple):
-    """A row of figure 5: the difference from the observers, both constants and the weights."""
+    """A row of figure 5: difference from the observers, both constants, weights of `GROUPS`."""
 
     difference: float
     constant: float
@@ -44,14 +44,9 @@ velocities sigmoid     21.993 0.189   36.532 0.000 0.000 0.000 0.000 0.564 0.000
 """
 
 
-def _row(numbers: list[str]) -> PublishedFit:
-    difference, constant, normalisation, *weights = map(float, numbers)
-    return PublishedFit(difference, constant, normalisation, tuple(weights))
-
-
 FIGURE_5: Mapping[tuple[By, Shape], PublishedFit] = {
-    (by, shape): _row(numbers)  # pyright: ignore[reportAssignmentType] - words of the table above
-    for by, shape, *numbers in map(str.split, _FIGURE_5.strip().splitlines())
+    (by, shape): PublishedFit(*map(float, row[:3]), tuple(map(float, row[3:])))  # pyright: ignore[reportAssignmentType, reportCallIssue] - words of the table above
+    for by, shape, *row in map(str.split, _FIGURE_5.strip().splitlines())
 }
 """The nine rows as printed, weights in the order of `GROUPS`; angles have no hand and no toe. (The
 text says that velocities use hands, thighs and calves; the table says hands, calves and toes, and

@@ -154,18 +154,14 @@ def retarget(walk: Clip) -> xr.DataArray:
 
 def is_mannequin(clip: xr.DataArray) -> bool:
     """Return whether a clip is of the mannequin: trunk and legs have its lengths."""
-    index = {str(name): i for i, name in enumerate(clip.marker.values)}
-    n_links = 0
+    place = {str(name): clip.values[:, i] for i, name in enumerate(clip.marker.values)}
+    ratios = []
     for (start, end), part in _RECOGNISED_BY.items():
-        if start in index and end in index:
-            link = clip.values[:, index[start]] - clip.values[:, index[end]]
-            lengths = np.sqrt(np.einsum("ta,ta->t", link, link))
+        if start in place and end in place:
+            lengths = np.linalg.norm(place[start] - place[end], axis=1)
             lengths = lengths[np.isfinite(lengths)]
-            mean = lengths.sum() / max(len(lengths), 1)
-            if abs(mean / LENGTHS_MM[part] - 1) > _TOLERANCE:
-                return False
-            n_links += 1
-    return n_links >= 3
+            ratios.append(lengths.sum() / max(len(lengths), 1) / LENGTHS_MM[part])
+    return len(ratios) >= 3 and bool((np.abs(np.array(ratios) - 1) <= _TOLERANCE).all())
 
 
 def body_frame(place: Mapping[str, np.ndarray], part: Literal["pelvis", "trunk"]) -> np.ndarray:

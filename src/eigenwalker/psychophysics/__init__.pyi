@@ -1,7 +1,3 @@
-from .choice_prediction import (
-    compare_by_choices as compare_by_choices,
-    left_out_differences as left_out_differences,
-)
 from .conditional_logit import (
     ChoiceFit as ChoiceFit,
     bootstrap_choices as bootstrap_choices,
@@ -9,9 +5,11 @@ from .conditional_logit import (
     fit_choices as fit_choices,
 )
 from .cross_validation import (
+    compare_by_choices as compare_by_choices,
     compare_metrics as compare_metrics,
     goodness as goodness,
     leave_walkers_out as leave_walkers_out,
+    left_out_differences as left_out_differences,
 )
 from .dissimilarity_structure import (
     cluster_memberships as cluster_memberships,

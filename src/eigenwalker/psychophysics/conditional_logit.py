@@ -141,10 +141,8 @@ def bootstrap_choices(
     ----------
     X, trials
         As for `fit_choices`; two observers or more.
-    n_samples : int
-        Number of samples.
-    random_state : int
-        Seed of the random numbers.
+    n_samples, random_state : int
+        Number of samples, and seed of the random numbers.
     progress : callable, optional
         Called with the number of samples that are done, and of all.
 

@@ -15,13 +15,17 @@ from eigenwalker.core.progress import Progress
 from eigenwalker.metric.clips import Clip
 from eigenwalker.metric.group_tables import group_table
 from eigenwalker.metric.pairwise import distances_by_metric
-from eigenwalker.psychophysics.choice_prediction import compare_by_choices, left_out_differences
 from eigenwalker.psychophysics.conditional_logit import (
     bootstrap_choices,
     expected_differences,
     fit_choices,
 )
-from eigenwalker.psychophysics.cross_validation import compare_metrics, leave_walkers_out
+from eigenwalker.psychophysics.cross_validation import (
+    compare_by_choices,
+    compare_metrics,
+    leave_walkers_out,
+    left_out_differences,
+)
 from eigenwalker.psychophysics.perceptual_metric import PerceptualMetric, relative_weights
 from eigenwalker.psychophysics.reliability import (
     Bootstrap,

@@ -136,7 +136,7 @@ def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
 
 
 class Weights(NamedTuple):
-    """Weights of the columns, and the constant."""
+    """Weights of the columns, of shape (group,) and per unit of X, and the constant."""
 
     weights: np.ndarray
     constant: float

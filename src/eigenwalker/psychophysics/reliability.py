@@ -20,7 +20,7 @@ _MAX_ROUNDS = 50
 
 
 class Bootstrap(NamedTuple):
-    """Weights and constants fitted to resampled observers, one row a sample."""
+    """Weights (sample, group) and constants (sample,), fitted to resampled observers."""
 
     weights: np.ndarray
     constants: np.ndarray
@@ -71,10 +71,8 @@ def bootstrap_weights(
         How often each observer chose a pair as the most similar, and was shown it.
     pairs : sequence of pairs, optional
         The two walkers of each pair; left out, only observers are drawn.
-    n_samples : int
-        Number of samples.
-    random_state : int
-        Seed of the random numbers.
+    n_samples, random_state : int
+        Number of samples, and seed of the random numbers.
 
     Returns
     -------
@@ -138,7 +136,7 @@ def _counts_of_pairs(
 
 
 class Reliability(NamedTuple):
-    """How well halves of the observers agree, all of them, and the best that a fit can reach."""
+    """Correlations of halves of the observers, of all, and the ceiling that a fit can reach."""
 
     halves: float
     whole: float
@@ -163,10 +161,8 @@ def split_half(
     ----------
     chosen, shown : array of shape (observer, pair)
         How often each observer chose a pair as the most similar, and was shown it.
-    n_splits : int
-        Number of random splits.
-    random_state : int
-        Seed of the random numbers.
+    n_splits, random_state : int
+        Number of random splits, and seed of the random numbers.
 
     Returns
     -------

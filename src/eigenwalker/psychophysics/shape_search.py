@@ -16,7 +16,14 @@ from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fi
 class ShapeFit(NamedTuple):
     """The best parameter of a shape, the weights there, and the errors of all values tried.
 
-    A parameter at a bound is not determined by the data.
+    Attributes
+    ----------
+    parameter : float
+        The power, or the scale in the unit of d; at a bound it is not determined by the data.
+    weights, constant : array of shape (group,), float
+        As of `PerceptualMetric`; ``rss`` is their sum of squared errors.
+    tried, tried_rss : array of shape (n_grid,)
+        The parameters on the grid, and the sum of squared errors of each.
     """
 
     parameter: float
@@ -95,7 +102,10 @@ def _fit(X: np.ndarray, y: np.ndarray) -> tuple[Weights, float]:
 
 
 class RandomStarts(NamedTuple):
-    """The best weights that descent reached, and the sum of squared errors from each start."""
+    """The best weights that descent reached, of shape (group,), and their constant.
+
+    ``rss``, of shape (start,), is the sum of squared errors that each start ended at.
+    """
 
     weights: np.ndarray
     constant: float
@@ -113,10 +123,8 @@ def fit_from_random_starts(
     ----------
     X, y
         As `PerceptualMetric` takes them.
-    n_starts : int
-        Number of starts.
-    random_state : int
-        Seed of the random numbers.
+    n_starts, random_state : int
+        Number of starts, and seed of the random numbers.
 
     Returns
     -------

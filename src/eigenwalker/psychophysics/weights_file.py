@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -28,6 +29,10 @@ def save_weights(weights: pd.DataFrame, path: str | Path, *, metric: str) -> Pat
     Returns
     -------
     Path
+
+    See Also
+    --------
+    fit_to_answers, load_metric
 
     Examples
     --------
@@ -91,11 +96,5 @@ def load_metric(name_or_path: str | Path) -> GroupMetric:
         )
     published = PUBLISHED[names.pop()]
     weights = pd.to_numeric(table.weight, errors="coerce").to_numpy(dtype=float)
-    return GroupMetric(
-        Path(name).stem,
-        published.by,
-        published.shape,
-        dict(zip(map(str, table.group), weights.tolist(), strict=True)),
-        scale=published.scale,
-        exponent=published.exponent,
-    )
+    fitted = dict(zip(map(str, table.group), weights.tolist(), strict=True))
+    return replace(published, name=Path(name).stem, group_weights=fitted)
