@@ -27,7 +27,7 @@ function drawnState(seed: number): State {
   const setting = (field: Field): number | string =>
     "choices" in field ? one(field.choices) : tidy(between([field.low, field.high], field.step));
   const transforms = TRANSFORM_NAMES.filter(() => u() < 0.4).map((name) => {
-    const fields = Object.entries(TRANSFORMS[name] as Readonly<Record<string, Field>>);
+    const fields = Object.entries<Field>(TRANSFORMS[name].fields);
     return [name, Object.fromEntries(fields.map(([field, kind]) => [field, setting(kind)]))];
   });
   return {
@@ -119,7 +119,7 @@ describe("an address", () => {
     expect(state.walkers.every((number) => model.walkers[number])).toBe(true);
     expect(Object.keys(state.traits).every((name) => model.traits.some((trait) => trait.name === name))).toBe(true);
     for (const [name, settings] of Object.entries(state.transforms)) {
-      expect(Object.keys(settings)).toEqual(Object.keys(TRANSFORMS[name as "mask"]));
+      expect(Object.keys(settings)).toEqual(Object.keys(TRANSFORMS[name as "mask"].fields));
     }
     expect(mixedVector(model, state).every(Number.isFinite)).toBe(true);
   });

@@ -1,7 +1,7 @@
 /** Controls of the view and of the transforms. */
 
 import {
-  fieldsOf, initialSettings, initialState, RANGES, TRANSFORM_NAMES,
+  fieldsOf, initialSettings, initialState, RANGES, TRANSFORM_NAMES, TRANSFORMS,
   type Field, type TransformName, type Transforms,
 } from "../model/state";
 import { make } from "../page/elements";
@@ -32,28 +32,6 @@ export function viewControls(store: Store): Part {
       angle("Turns by itself", "turning_deg_s", 5, " a second")));
 }
 
-const NAMES: Readonly<Record<TransformName, readonly [string, string]>> = {
-  arm_swing: ["Arm swing", "Larger or smaller swing of the arms"],
-  conflict: ["Widths and sway", "Shoulders and hips set against how they sway"],
-  ellipses: ["Ellipses", "Shoulders and hips go round, as in synthetic walkers"],
-  reverse: ["Backwards", "Time runs the other way"],
-  delay: ["Lag", "Some joints follow later in the stride"],
-  phase_scramble: ["Phases", "Each point at its own moment of the stride"],
-  mirror: ["Mirror", "Left and right exchanged"],
-  invert: ["Upside down", "Inverted about the middle"],
-  occlude: ["Hide parts", "Some points are not drawn"],
-  scramble: ["Scramble", "Points keep their motion and lose their place"],
-  limb_dots: ["Limb dots", "Points anywhere on the limbs, for a short life"],
-  blur: ["Blur", "Soft blobs in place of points"],
-  mask: ["Mask", "Other points that move as well"],
-};
-const FIELDS: Readonly<Record<string, string>> = {
-  factor: "Times", spread: "Spread", seed: "Seed", part: "Which", keep: "Keep", directions: "Directions",
-  shoulder_width: "Shoulder width", hip_width: "Hip width", shoulder_sway: "Shoulder sway", hip_sway: "Hip sway",
-  shoulder_forward_mm: "Shoulders forward, mm", shoulder_up_mm: "Shoulders up, mm",
-  hip_forward_mm: "Hips forward, mm", hip_up_mm: "Hips up, mm", phase_deg: "By, degrees",
-  number: "How many", lifetime_s: "Life, s", places: "On", sd_mm: "Width, mm", kind: "Kind", speed_mm_s: "Speed, mm/s",
-};
 /** Seeds can be any whole number; the slider gives the first few. */
 const MAX_SEED = 99;
 
@@ -62,7 +40,7 @@ export const transformControls = (store: Store): Part =>
   group({ class: "transforms" }, ...TRANSFORM_NAMES.map((name) => transformControl(store, name)));
 
 function transformControl(store: Store, name: TransformName): Part {
-  const [label, hint] = NAMES[name];
+  const { label, hint } = TRANSFORMS[name];
   const change = (settings: unknown): void => {
     const { [name]: _, ...others } = store.state.transforms;
     const next = settings === undefined ? others : { ...others, [name]: settings };
@@ -71,9 +49,7 @@ function transformControl(store: Store, name: TransformName): Part {
   const on = toggle(label, (is) => change(is ? initialSettings(name) : undefined), hint);
   const fields = Object.entries(fieldsOf(name)).map(([field, of]) => ({
     field,
-    ...fieldControl(label, FIELDS[field] ?? field, of, (value) =>
-      change({ ...store.state.transforms[name], [field]: value }),
-    ),
+    ...fieldControl(label, of, (value) => change({ ...store.state.transforms[name], [field]: value })),
   }));
   const settings = make("div", { class: "settings" }, ...fields.map(({ element }) => element));
   return {
@@ -87,12 +63,8 @@ function transformControl(store: Store, name: TransformName): Part {
   };
 }
 
-function fieldControl(
-  transform: string,
-  label: string,
-  field: Field,
-  onChange: (value: unknown) => void,
-): Control<unknown> {
+function fieldControl(transform: string, field: Field, onChange: (value: unknown) => void): Control<unknown> {
+  const { label } = field;
   if ("choices" in field) {
     const options = field.choices.map((value) => ({ value, label: value.replaceAll("_", " ") }));
     const { element, show } = pick(label, options, onChange);

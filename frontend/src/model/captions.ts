@@ -4,31 +4,15 @@ import { endLabels } from "./labels";
 import { AVERAGE, comparedTrait, nameOf } from "./figures";
 import { traitOf } from "./mixing";
 import type { Model, OwnWalker } from "./model";
-import { MAX_IN_CROWD, MAX_SIDE_BY_SIDE, TRANSFORM_NAMES, type State, type TransformName } from "./state";
+import { MAX_IN_CROWD, MAX_SIDE_BY_SIDE, TRANSFORM_NAMES, TRANSFORMS, type State } from "./state";
 
 /** Moler's names of the components. */
 const COMPONENTS = ["stride", "sway", "hop", "bounce"];
 
 export const componentName = (number: number): string => COMPONENTS[number] ?? `component ${number + 1}`;
 
-const TRANSFORMED: Readonly<Record<TransformName, string>> = {
-  arm_swing: "with another arm swing",
-  conflict: "with widths against sway",
-  ellipses: "with shoulders and hips on ellipses",
-  reverse: "backwards in time",
-  delay: "with joints that lag",
-  phase_scramble: "with each dot on its own clock",
-  mirror: "as its mirror image",
-  invert: "upside down",
-  occlude: "in part",
-  scramble: "with dots out of place",
-  limb_dots: "in dots that live for a moment",
-  blur: "as a blob",
-  mask: "among noise",
-};
-
 export function captionOf(model: Model, state: State, own: OwnWalker | null = null): string {
-  const transformed = TRANSFORM_NAMES.filter((name) => name in state.transforms).map((name) => TRANSFORMED[name]);
+  const transformed = TRANSFORM_NAMES.filter((name) => name in state.transforms).map((name) => TRANSFORMS[name].caption);
   const parts = [figuresCaption(model, state, own), ...changes(model, state), viewpoint(state), ...transformed];
   return `${parts.join(", ")}.`;
 }

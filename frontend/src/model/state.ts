@@ -5,6 +5,7 @@
  */
 
 import { MAX_WALKERS, type Kind, type Model } from "./model";
+import table from "./transforms.json";
 
 /** One walker; the means of two classes and both tripled; four at one tempo; up to a hundred. */
 export type SceneName = "one" | "four" | "side" | "crowd";
@@ -69,65 +70,24 @@ export const MAX_SIDE_BY_SIDE = 4;
 export const MAX_IN_CROWD = MAX_WALKERS;
 
 /** A parameter of a transform that a visitor can set. */
-export type Field =
+export type Field = { readonly label: string } & (
   | { readonly initial: number; readonly low: number; readonly high: number; readonly step: number }
-  | { readonly initial: string; readonly choices: readonly string[] };
+  | { readonly initial: string; readonly choices: readonly string[] }
+);
 
-const SEED = { initial: 1, low: 0, high: 4294967295, step: 1 } as const;
-const PARTS = ["upper_body", "lower_body", "arms", "legs", "trunk", "head"] as const;
-
-const TIMES = { initial: 1, low: 0, high: 3, step: 0.1 } as const;
-const RADIUS = { low: 0, high: 150, step: 1 } as const;
-
-/** The transforms of the page, in the order of the chain, and their parameters. */
-export const TRANSFORMS = {
-  arm_swing: { factor: { initial: 2, low: 0, high: 4, step: 0.1 } },
-  conflict: { shoulder_width: TIMES, hip_width: TIMES, shoulder_sway: TIMES, hip_sway: { ...TIMES, initial: 2 } },
-  ellipses: {
-    shoulder_forward_mm: { ...RADIUS, initial: 35 },
-    shoulder_up_mm: { ...RADIUS, initial: 12 },
-    hip_forward_mm: { ...RADIUS, initial: 15 },
-    hip_up_mm: { ...RADIUS, initial: 20 },
-  },
-  reverse: {},
-  delay: { part: { initial: "arms", choices: PARTS }, phase_deg: { initial: 90, low: -180, high: 180, step: 5 } },
-  phase_scramble: { spread: { initial: 1, low: 0, high: 1, step: 0.05 }, seed: SEED },
-  mirror: {},
-  invert: {},
-  occlude: { part: { initial: "lower_body", choices: PARTS } },
-  scramble: {
-    keep: { initial: "nothing", choices: ["nothing", "structure"] },
-    directions: { initial: "both", choices: ["both", "horizontal", "vertical"] },
-    seed: SEED,
-  },
-  limb_dots: {
-    number: { initial: 8, low: 1, high: 60, step: 1 },
-    lifetime_s: { initial: 0.1, low: 0.02, high: 2, step: 0.02 },
-    places: { initial: "limbs", choices: ["limbs", "joints"] },
-    seed: SEED,
-  },
-  blur: { sd_mm: { initial: 80, low: 10, high: 200, step: 5 } },
-  mask: {
-    kind: { initial: "scrambled", choices: ["scrambled", "linear", "random"] },
-    number: { initial: 60, low: 1, high: 400, step: 1 },
-    lifetime_s: { initial: 0.4, low: 0.05, high: 4, step: 0.05 },
-    speed_mm_s: { initial: 500, low: 0, high: 3000, step: 50 },
-    seed: SEED,
-  },
-} as const satisfies Record<string, Readonly<Record<string, Field>>>;
-
+/** The transforms of the page in the order of the chain: their names, words about them, and parameters. */
+export const TRANSFORMS = table;
 export type TransformName = keyof typeof TRANSFORMS;
 export const TRANSFORM_NAMES = Object.keys(TRANSFORMS) as TransformName[];
 
-type Setting<F> = F extends { readonly choices: readonly (infer Choice)[] } ? Choice : number;
+type Fields<Name extends TransformName> = (typeof TRANSFORMS)[Name]["fields"];
+type Initial<F> = F extends { readonly initial: infer Value } ? Value : never;
 
-export type Settings<Name extends TransformName> = {
-  readonly [F in keyof (typeof TRANSFORMS)[Name]]: Setting<(typeof TRANSFORMS)[Name][F]>;
-};
+export type Settings<Name extends TransformName> = { readonly [F in keyof Fields<Name>]: Initial<Fields<Name>[F]> };
 
 export type Transforms = { readonly [Name in TransformName]?: Settings<Name> };
 
-export const fieldsOf = (name: TransformName): Readonly<Record<string, Field>> => TRANSFORMS[name];
+export const fieldsOf = (name: TransformName): Readonly<Record<string, Field>> => TRANSFORMS[name].fields;
 
 /** The parameters of a transform when it is switched on. */
 export function initialSettings<Name extends TransformName>(name: Name): Settings<Name> {

@@ -1,8 +1,6 @@
 /** Films made in the browser: H.264 in MP4, or another codec that the browser has. */
 
-import {
-  BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat,
-} from "mediabunny";
+import { BufferTarget, CanvasSource, Mp4OutputFormat, Output, WebMOutputFormat } from "mediabunny";
 import { contextOf } from "../canvas/painter";
 
 /** This browser cannot make the film; the message names an alternative. */
@@ -36,84 +34,49 @@ const ENCODINGS = [
 /** Enough for dots with sharp edges. */
 const BITS_PER_PIXEL = 0.2;
 const KEY_FRAME_S = 1;
-/** Limit of the frames that wait for the encoder. */
-const MAX_QUEUE = 8;
 
 /** Make a film, frame by frame. */
 export async function encodeFilm(spec: FilmSpec): Promise<Film> {
-  const { codec, suffix, config } = await chooseEncoding(spec);
+  const { width, height, frames, rateHz, draw, progress, signal } = spec;
+  const { suffix, config } = await chooseEncoding(spec);
   const output = new Output({
     format: suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
     target: new BufferTarget(),
   });
-  const source = new EncodedVideoPacketSource(codec);
-  output.addVideoTrack(source, { frameRate: spec.rateHz });
-  await output.start();
-  await encodeFrames(spec, config, source);
-  await output.finalize();
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, { width, height });
+  const context = contextOf(canvas, { alpha: false, willReadFrequently: true });
+  const source = new CanvasSource(canvas, config);
+  output.addVideoTrack(source, { frameRate: rateHz });
+  try {
+    await output.start();
+    for (let number = 0; number < frames; number++) {
+      signal?.throwIfAborted();
+      draw(context, number);
+      await source.add(number / rateHz, 1 / rateHz);
+      await new Promise((done) => setTimeout(done)); // the page can react meanwhile
+      progress?.((number + 1) / frames);
+    }
+    await output.finalize();
+  } catch (error) {
+    await output.cancel();
+    if (signal?.aborted) throw error;
+    throw new FilmError(`The encoder of this browser failed: ${error instanceof Error ? error.message : String(error)}`);
+  }
   return { blob: new Blob([output.target.buffer!], { type: `video/${suffix}` }), suffix };
 }
 
 /** The first encoding that this browser supports. */
-async function chooseEncoding({ width, height, rateHz }: FilmSpec) {
+async function chooseEncoding({ width, height, rateHz }: Pick<FilmSpec, "width" | "height" | "rateHz">) {
   if (typeof VideoEncoder === "undefined") {
     throw new FilmError("This browser encodes no films; eigenwalker serve makes them, and so does eigenwalker stimulus of a saved stimulus file.");
   }
   const bitrate = Math.round(width * height * rateHz * BITS_PER_PIXEL);
   for (const [codec, name, suffix] of ENCODINGS) {
-    const config: VideoEncoderConfig = {
-      codec: name, width, height, framerate: rateHz, bitrate, latencyMode: "quality",
-    };
-    const support = await VideoEncoder.isConfigSupported(config).catch(() => null);
-    if (support?.supported) return { codec, suffix, config };
+    const asked = { codec: name, width, height, framerate: rateHz, bitrate, latencyMode: "quality" as const };
+    const { supported } = await VideoEncoder.isConfigSupported(asked).catch(() => ({ supported: false }));
+    const config = { codec, fullCodecString: name, bitrate, keyFrameInterval: KEY_FRAME_S, latencyMode: "quality" as const };
+    if (supported) return { suffix, config };
   }
   throw new FilmError(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
-}
-
-async function encodeFrames(
-  spec: FilmSpec,
-  config: VideoEncoderConfig,
-  source: EncodedVideoPacketSource,
-): Promise<void> {
-  const { width, height, frames, rateHz, progress, signal } = spec;
-  const canvas = document.createElement("canvas");
-  Object.assign(canvas, { width, height });
-  const context = contextOf(canvas, { alpha: false, willReadFrequently: true });
-  let fail = (_: Error): void => {};
-  const failed = new Promise<never>((_, reject) => (fail = reject));
-  failed.catch(() => {}); // handled below, or too late to matter
-  let written: Promise<unknown> = Promise.resolve();
-  const encoder = new VideoEncoder({
-    output: (chunk, meta) => {
-      written = written.then(() => source.add(EncodedPacket.fromEncodedChunk(chunk), meta));
-    },
-    error: (error) => fail(new FilmError(`The encoder of this browser failed: ${error.message}`)),
-  });
-  try {
-    encoder.configure(config);
-    for (let number = 0; number < frames; number++) {
-      signal?.throwIfAborted();
-      spec.draw(context, number);
-      const frame = new VideoFrame(canvas, {
-        timestamp: Math.round((1e6 * number) / rateHz),
-        duration: Math.round(1e6 / rateHz),
-      });
-      encoder.encode(frame, { keyFrame: number % Math.round(KEY_FRAME_S * rateHz) === 0 });
-      frame.close();
-      progress?.((number + 1) / frames);
-      await Promise.race([queueSpace(encoder), failed]);
-    }
-    await Promise.race([encoder.flush(), failed]);
-    await written;
-  } finally {
-    if (encoder.state !== "closed") encoder.close();
-  }
-}
-
-/** Wait until the encoder accepts frames again; the page can react meanwhile. */
-async function queueSpace(encoder: VideoEncoder): Promise<void> {
-  await new Promise((done) => setTimeout(done));
-  while (encoder.encodeQueueSize > MAX_QUEUE) {
-    await new Promise<void>((done) => encoder.addEventListener("dequeue", () => done(), { once: true }));
-  }
 }
