@@ -1,18 +1,14 @@
 /** Places of dots in the picture of a stimulus, in pixels, moment by moment. */
 
-import type { MovingDots } from "../core/movingDots";
+import type { Moment, MovingDots } from "../core/movingDots";
 import { inPicture, scene } from "../core/scene";
 import type { Stimulus } from "../core/stimulus";
 
 /** One figure, or the dots of one mask, at one moment. */
-export interface FigureFrame {
+export interface FigureFrame extends Moment {
   readonly moving: MovingDots;
   /** Pixels from the left and the upper edge of the picture, one dot after the other. */
   readonly places: Float64Array;
-  /** Millimetres in the scene. */
-  readonly positions: Float64Array;
-  /** 1 for each visible dot. */
-  readonly visible: Uint8Array;
 }
 
 /** The function that gives all figures of a stimulus at a time in seconds. */

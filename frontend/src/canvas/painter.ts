@@ -33,7 +33,7 @@ export function painterOn(
   canvas.style.height = `${height_px * scale}px`;
   const context = contextOf(canvas, { alpha: false });
   const draw = drawingOf(stimulus, mannequin);
-  const clear = (): void => drawBackground(context, stimulus, pixelRatio);
+  const clear = (): void => drawBackground(context, stimulus.display, pixelRatio);
   return { paint: (time) => draw(context, time, pixelRatio), clear };
 }
 
@@ -47,7 +47,7 @@ export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Dra
   const solid = stimulus.display.style === "mannequin";
   if (solid && !mannequin) throw new Error("The mannequin's module was not loaded.");
   return (context, time, pixelRatio) => {
-    drawBackground(context, stimulus, pixelRatio);
+    drawBackground(context, stimulus.display, pixelRatio);
     const frames = frameAt(time);
     if (solid) mannequin?.paint(context, frames, stimulus, pixelRatio);
     for (const frame of frames) {
@@ -58,10 +58,15 @@ export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Dra
   };
 }
 
-function drawBackground(context: CanvasRenderingContext2D, { display }: Stimulus, pixelRatio: number): void {
+/** Begin a frame: one unit is a pixel of the picture, `pixelRatio` canvas pixels. */
+export function drawBackground(
+  context: CanvasRenderingContext2D,
+  { background, width_px, height_px }: Pick<Display, "background" | "width_px" | "height_px">,
+  pixelRatio: number,
+): void {
   context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
-  context.fillStyle = display.background;
-  context.fillRect(0, 0, display.width_px, display.height_px);
+  context.fillStyle = background;
+  context.fillRect(0, 0, width_px, height_px);
 }
 
 export function setResolution(canvas: HTMLCanvasElement, width: number, height: number, pixelRatio: number): void {

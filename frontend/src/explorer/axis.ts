@@ -55,7 +55,6 @@ function eigenwalkerAxis({ cloud }: Model, number: number): Axis {
   };
 }
 
-/** The range of the population. */
 export function rangeOf({ points }: Axis): readonly [number, number] | undefined {
   return points.length > 0 ? [Math.min(...points), Math.max(...points)] : undefined;
 }

@@ -46,7 +46,6 @@ export function toggle(label: string, onChange: (on: boolean) => void, hint?: st
   return { element, show: (on) => void (input.checked = on) };
 }
 
-/** A list to select from. */
 export function pick<Value>(
   name: string,
   options: readonly Option<Value>[],
@@ -75,7 +74,6 @@ export interface SliderOptions {
   readonly step: number;
   /** The value after a double click. */
   readonly initial: number;
-  /** The range of the population. */
   readonly people?: readonly [number, number] | undefined;
   readonly format: (value: number) => string;
   readonly onInput: (value: number) => void;

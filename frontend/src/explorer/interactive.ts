@@ -16,7 +16,6 @@ import { toolbar } from "./toolbar";
 import { mainSlider } from "./traitSliders";
 import { viewerPanel } from "./viewerPanel";
 
-/** The present model, and the views of it. */
 interface Session {
   readonly source: ModelSource;
   readonly store: Store;

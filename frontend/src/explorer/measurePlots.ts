@@ -21,7 +21,6 @@ const N_ALONG = 9;
 /** Parts of the state that the line depends on, beside traits and eigenwalkers. */
 const LINE_PARTS = ["kind", "part", "from", "bias", "strengths"] as const;
 
-/** A walker in the plots. */
 interface Spot {
   readonly measures: Measures;
   /** Standard deviations along the main axis. */

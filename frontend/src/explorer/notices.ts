@@ -18,7 +18,6 @@ export class Notices {
     this.element.append(this.#alerts, this.#news);
   }
 
-  /** Errors, as sentences. */
   error(...sentences: string[]): void {
     this.#put(this.#alerts, this.#lasting("notice trouble", sentences));
   }
@@ -28,7 +27,6 @@ export class Notices {
     this.#put(this.#news, this.#lasting("notice", sentences));
   }
 
-  /** A message that passes. */
   news(sentence: string): void {
     const notice = make("div", { class: "notice" }, make("p", {}, sentence));
     this.#put(this.#news, notice);

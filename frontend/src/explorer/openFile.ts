@@ -20,7 +20,6 @@ export interface ModelSource {
   readonly population: string;
 }
 
-/** Limit of a text that the page reads itself. */
 const MAX_TEXT_BYTES = 64e6;
 const POPULATION = /\.nc$/i;
 const TEXT = /\.json$/i;
@@ -41,7 +40,6 @@ export function bundles(files: readonly File[]): File[][] {
   return [...alone.map((file) => [file]), ...(others.length > 0 ? [others] : [])];
 }
 
-/** A name for files that are opened together. */
 export function bundleName(files: readonly File[], folder = ""): string {
   const names = files.map(({ name }) => name);
   if (names.length > 1 && folder) return `${folder}/`;
@@ -136,7 +134,6 @@ export function takeFiles(take: (dropped: DroppedFiles) => void): () => void {
   return () => input.click();
 }
 
-/** The files of a drop, with those in folders. */
 async function filesOf({ items, files }: DataTransfer): Promise<DroppedFiles> {
   const plain = { files: [...files], folder: "" };
   const entries = [...items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);

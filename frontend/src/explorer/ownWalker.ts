@@ -13,7 +13,6 @@ export function ownWalkerOf(model: Model, { figures }: Stimulus, name: string): 
   return { name: name.replace(/\.json$/i, ""), vector: vectorOf(model, signed, name) };
 }
 
-/** The walker with its markers in the model's order. */
 function withMarkers({ markers, harmonics }: Model, walker: Walker, name: string): Walker {
   const order = markers.map((marker) => walker.markers.indexOf(marker));
   const missing = markers.find((_, i) => order[i]! < 0);

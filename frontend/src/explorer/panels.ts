@@ -4,14 +4,13 @@ import { warnings } from "../model/labels";
 import type { Model } from "../model/model";
 import { find, make } from "../page/elements";
 import { cloud } from "./cloud";
-import { biasControls, strengthControls } from "./componentControls";
 import { measurePlots } from "./measurePlots";
 import type { Notices } from "./notices";
 import { note, section } from "./parts";
 import { plausibility } from "./plausibility";
 import { share } from "./share";
 import type { Part, Store, View } from "./store";
-import { classifierControls, eigenwalkerSliders, otherTraits } from "./traitSliders";
+import { biasControls, classifierControls, eigenwalkerSliders, otherTraits, strengthControls } from "./traitSliders";
 import { transformControls, viewControls } from "./viewControls";
 import { sceneSelect, walkerSelect } from "./walkerSelect";
 

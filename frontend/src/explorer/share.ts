@@ -3,6 +3,7 @@
 import { addressOf } from "../model/address";
 import { pythonCode } from "../model/pythonCode";
 import { button, make } from "../page/elements";
+import { chooseEncoding } from "../viewer/filmEncoder";
 import {
   download, filmFile, pageFile, pictureFile, stimulusFile,
   type SavedFile, type Snapshot,
@@ -90,16 +91,10 @@ function filmButton(store: Store, notices: Notices): { button: HTMLButtonElement
 
 /** The browser makes the film, unless only the server can make an MP4. */
 async function makeFilmFile(snapshot: Snapshot, options: Parameters<typeof filmFile>[1]): Promise<SavedFile> {
-  if (!hasServer() || (await encodesMp4())) return filmFile(snapshot, options);
+  const encoding = await chooseEncoding({ width: 720, height: 720, rateHz: 60 }).catch(() => null);
+  if (!hasServer() || encoding?.suffix === "mp4") return filmFile(snapshot, options);
   const { name, blob } = stimulusFile(snapshot);
   return { name: name.replace(/json$/, "mp4"), blob: await makeFilm(await blob.text(), "mp4") };
-}
-
-async function encodesMp4(): Promise<boolean> {
-  if (typeof VideoEncoder === "undefined") return false;
-  const config = { codec: "avc1.42003e", width: 720, height: 720 };
-  const { supported } = await VideoEncoder.isConfigSupported(config).catch(() => ({ supported: false }));
-  return supported === true;
 }
 
 async function copy(text: string, what: string, notices: Notices): Promise<void> {

@@ -5,7 +5,7 @@ import { figuresOf, type Scene } from "../model/figures";
 import { measuresOf, type Measures } from "../model/measures";
 import { mixedVector } from "../model/mixing";
 import type { Model, OwnWalker } from "../model/model";
-import { initialState, WALKER_PARTS, type State } from "../model/state";
+import { initialState, type State } from "../model/state";
 import type { Viewer } from "../viewer/viewer";
 import { axesOf, type Axis } from "./axis";
 
@@ -112,12 +112,9 @@ export class Store {
 
   now(): Now {
     const { model, state, own } = this;
-    const last = this.#now;
-    if (last && last.own === own && WALKER_PARTS.every((part) => last.state[part] === state[part])) {
-      return (this.#now = { ...last, state });
-    }
-    const vector = mixedVector(model, state, own);
     const figures = figuresOf(model, state, own);
+    if (this.#now?.figures === figures) return (this.#now = { ...this.#now, own, state });
+    const vector = mixedVector(model, state, own);
     const measures = measuresOf(walkerOf(model, vector));
     return (this.#now = { model, state, own, figures, position: positionOf(model, vector), measures });
   }

@@ -1,10 +1,14 @@
-/** Sliders of the traits, the first one large with the density of people, and of the eigenwalkers. */
+/**
+ * Sliders of the traits, the first one large with the density of people, and of the eigenwalkers; Moler's controls:
+ * the strength of each component, each component alone, and the bias towards a class.
+ */
 
-import { capitalised, classOf } from "../model/labels";
+import { componentName } from "../model/captions";
+import { capitalised, classOf, endLabels } from "../model/labels";
 import { partsOf } from "../model/mixing";
 import type { Kind, Model } from "../model/model";
 import { clamped, RANGES, type State } from "../model/state";
-import { draw, make, signed } from "../page/elements";
+import { button, draw, make, signed } from "../page/elements";
 import { rangeOf, type Axis } from "./axis";
 import { choice, pick, slider, type Option, type Slider } from "./controls";
 import { bound, group, note } from "./parts";
@@ -64,7 +68,7 @@ const sliders = (store: Store, axes: readonly Axis[], labels: readonly string[] 
   group({ class: "sliders" }, ...axes.map((axis, i) => axisSlider(store, axis, labels[i])));
 
 /** Moving a slider leaves the mean walkers, which no slider changes. */
-export const leaveMeans = ({ state }: Store): Partial<State> => (state.scene === "four" ? { scene: "one" } : {});
+const leaveMeans = ({ state }: Store): Partial<State> => (state.scene === "four" ? { scene: "one" } : {});
 
 function axisSlider(store: Store, axis: Axis, label?: string): Part & Pick<Slider, "input"> {
   const [min, max] = RANGES.trait;
@@ -83,6 +87,56 @@ function axisSlider(store: Store, axis: Axis, label?: string): Part & Pick<Slide
       one.element.classList.toggle("idle", state.scene === "four");
     },
   };
+}
+
+export function strengthControls(store: Store): Part {
+  const [min, max] = RANGES.strength;
+  const strengths = (): readonly number[] => store.state.strengths;
+  const rows = store.model.harmonics.map((_, number) => {
+    const label = capitalised(componentName(number));
+    const one = slider({
+      label, min, max, step: 0.05, initial: 1,
+      format: (value) => `\u00d7 ${value.toFixed(2).replace("-", "\u2212")}`,
+      onInput: (value) => store.change({ strengths: strengths().with(number, value) }),
+    });
+    const alone = button("alone", () => {
+      const already = isAlone(strengths(), number);
+      store.change({ strengths: strengths().map((_, i) => Number(already || i === number)) });
+    }, { class: "small", "aria-label": `${label} alone` });
+    one.element.classList.add("solo");
+    one.element.querySelector("output")?.after(alone);
+    const show = (strengths: readonly number[]): void => {
+      one.show(strengths[number] ?? 1);
+      alone.setAttribute("aria-pressed", String(isAlone(strengths, number)));
+    };
+    return bound({ element: one.element, show }, (state) => state.strengths);
+  });
+  return group({ class: "sliders" }, ...rows);
+}
+
+const isAlone = (strengths: readonly number[], number: number): boolean =>
+  strengths.every((strength, i) => strength === Number(i === number));
+
+/** A slider of the bias for each trait of two classes. */
+export function biasControls(store: Store): Part {
+  const [min, max] = RANGES.bias;
+  const rows = store.model.traits.filter(({ means }) => means !== null).flatMap((trait) => {
+    const means = `the mean ${endLabels(trait).join(" and the mean ")}`;
+    const one = slider({
+      label: `Bias of ${trait.label}`,
+      ends: endLabels(trait),
+      min, max, step: 0.05, initial: 0,
+      people: [-1, 1],
+      format: (value) => signed(value),
+      onInput: (steps) =>
+        store.change({ bias: steps === 0 ? null : { trait: trait.name, steps }, ...leaveMeans(store) }),
+    });
+    return [
+      note(`Bias: 0 is as it is, \u00b11 half the way between ${means}.`),
+      bound(one, ({ bias }) => (bias?.trait === trait.name ? bias.steps : 0)),
+    ];
+  });
+  return group({ class: "sliders" }, ...rows);
 }
 
 const PARTS: Readonly<Record<string, Omit<Option<string>, "value">>> = {

@@ -63,7 +63,6 @@ export function viewerPanel(store: Store): View {
   };
 }
 
-/** Arrow keys turn the walker; Home shows it from the front. */
 function turnByKey(store: Store, event: KeyboardEvent): void {
   const { azimuth_deg, elevation_deg } = store.state;
   const arrow = ARROWS[event.key];

@@ -9,7 +9,7 @@
 
 import shape from "../../../src/eigenwalker/stimulus/mannequin.json";
 import { figureOf, type Body } from "../core/movingDots";
-import type { Stimulus, View } from "../core/stimulus";
+import type { Display, Stimulus, View } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 
 export const HULL = 9;
@@ -34,12 +34,8 @@ interface Ball {
 export type Mannequin = readonly { readonly balls: readonly [Ball, Ball]; readonly tone: number }[];
 
 /** The picture that hulls are drawn in. */
-export interface RenderSettings {
-  readonly width_px: number;
-  readonly height_px: number;
-  readonly px_per_mm: number;
+export interface RenderSettings extends Pick<Display, "width_px" | "height_px" | "px_per_mm" | "colour"> {
   readonly eye_distance_mm: number | null;
-  readonly colour: string;
   /** Canvas pixels for one pixel of the picture. */
   readonly pixelRatio: number;
 }

@@ -41,7 +41,6 @@ function findColumns(model: HasLayout, part: string): number[] {
   return [...new Set(columns)].sort((a, b) => a - b);
 }
 
-/** The walker that a feature vector describes. */
 export function walkerOf(model: Model, vector: ArrayLike<number>): Walker {
   const { markers, harmonics } = model;
   const block = (name: string): number[] => {

@@ -7,7 +7,6 @@ import { mixedVector, traitOf } from "./mixing";
 import type { Model, Numbers, OwnWalker, Trait } from "./model";
 import { MAX_IN_CROWD, MAX_SIDE_BY_SIDE, WALKER_PARTS, type SceneName, type State } from "./state";
 
-/** One figure of a scene. */
 export interface SceneFigure {
   readonly name: string;
   readonly vector: Float64Array;
@@ -50,7 +49,6 @@ function one(model: Model, state: State, own: OwnWalker | null): SceneFigure[] {
 
 export const AVERAGE = "average walker";
 
-/** The name of the walker that the changes start from. */
 export function nameOf(model: Model, { from }: State, own: OwnWalker | null): string {
   if (from === "own" && own) return own.name;
   return (typeof from === "number" ? model.walkers[from]?.name : undefined) ?? AVERAGE;

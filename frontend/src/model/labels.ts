@@ -5,7 +5,6 @@ import type { KnownWalker, Model, Trait } from "./model";
 const SEXES: Readonly<Record<string, string>> = { female: "woman", male: "man", f: "woman", m: "man" };
 const PLURALS: Readonly<Record<string, string>> = { woman: "women", man: "men" };
 
-/** The names of the two ends of a trait. */
 export function endLabels({ label, negative, positive }: Trait): readonly [string, string] {
   const names = /^(sex|gender)$/i.test(label) ? SEXES : {};
   const name = (pole: string): string => names[pole.toLowerCase()] ?? pole;
@@ -17,7 +16,6 @@ export const plural = (end: string): string => PLURALS[end] ?? `${end} walkers`;
 
 export const capitalised = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
-/** The legend of the two colours of a trait of two classes. */
 export function colourLegend(trait: Trait | null | undefined): string {
   if (!trait?.two_classes) return "";
   const [low, high] = endLabels(trait);
@@ -45,7 +43,6 @@ export function classOf(model: Model, walker: number): "negative" | "positive" |
   return value === trait?.negative ? "negative" : value === trait?.positive ? "positive" : "";
 }
 
-/** Populations below this number are small. */
 const FEW = 10;
 
 /** One line: the number of walkers, whether they are simulated, and their file. */

@@ -111,7 +111,6 @@ function gradient(path: Path, rateHz: number): Path {
   });
 }
 
-/** A quantile, by linear interpolation between neighbours. */
 function quantile(values: readonly number[], share: number): number {
   const sorted = values.toSorted((a, b) => a - b);
   const place = share * (sorted.length - 1);

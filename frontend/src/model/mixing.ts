@@ -32,7 +32,6 @@ export function partsOf(model: Model): string[] {
   return parts.filter((part) => others.every(({ steps }) => Object.hasOwn(steps.discriminant, part)));
 }
 
-/** The walker that the changes start from. */
 export function startVector(model: Model, { from }: State, own: OwnWalker | null): Numbers {
   if (from === "own" && own) return own.vector;
   return (typeof from === "number" ? model.walkers[from]?.vector : undefined) ?? model.average;

@@ -10,12 +10,11 @@ const MAX_MARKERS = 200;
 const MAX_POSTURES = 32;
 const MAX_POINTS = 5000;
 const MAX_POPULATION = 10_000_000;
-/** Limit of the walkers that a page holds. */
 export const MAX_WALKERS = 100;
 
-const number = (minimum = -1e9, maximum = 1e9): Schema<number> => ({ type: "number", minimum, maximum });
+export const number = (minimum = -1e9, maximum = 1e9): Schema<number> => ({ type: "number", minimum, maximum });
 const integer = (minimum: number, maximum: number): Schema<number> => ({ type: "integer", minimum, maximum });
-const list = <T>(items: Schema<T>, minItems: number, maxItems = minItems): Schema<readonly T[]> => ({
+export const list = <T>(items: Schema<T>, minItems: number, maxItems = minItems): Schema<readonly T[]> => ({
   type: "array", items, minItems, maxItems,
 });
 const pair = <T>(items: Schema<T>): Schema<readonly [T, T]> => ({ type: "array", items, minItems: 2, maxItems: 2 });
@@ -24,7 +23,7 @@ const map = <T>(additionalProperties: Schema<T>): Schema<Readonly<Record<string,
   type: "object", additionalProperties, maxProperties: 1000,
 });
 const orNull = <T>(schema: Schema<T>): Schema<T | null> => ({ anyOf: [schema, { type: "null" }], default: null });
-const record = <Fields extends Record<string, Schema>>(
+export const record = <Fields extends Record<string, Schema>>(
   properties: Fields,
 ): Schema<{ readonly [Name in keyof Fields]: Checked<Fields[Name]> }> => ({
   type: "object",

@@ -53,7 +53,6 @@ export const WALKER_PARTS = [
   "traits", "kind", "part", "from", "bias", "strengths", "eigenwalkers", "scene", "walkers",
 ] as const satisfies readonly (keyof State)[];
 
-/** Limits of the numbers of a state. */
 export const RANGES = {
   trait: [-6, 6],
   bias: [-3, 3],

@@ -35,14 +35,12 @@ export function setAttributes(element: Element, attributes: Attributes): void {
   }
 }
 
-/** The element of the page with a selector. */
 export function find<Kind extends Element>(selector: string, kind: new () => Kind): Kind {
   const element = document.querySelector(selector);
   if (!(element instanceof kind)) throw new Error(`The page lacks ${selector}.`);
   return element;
 }
 
-/** A button with a text or an icon. */
 export function button(content: Content, onClick: () => unknown, attributes: Attributes = {}): HTMLButtonElement {
   const element = make("button", { type: "button", ...attributes }, content);
   element.addEventListener("click", onClick);

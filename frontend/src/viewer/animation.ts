@@ -2,13 +2,13 @@
 
 import { framesOf } from "../canvas/figureFrames";
 import type { MannequinPainter } from "../canvas/mannequinLoader";
-import { drawDots, drawingOf, drawSticks, linksOf } from "../canvas/painter";
+import { drawBackground, drawDots, drawingOf, drawSticks, linksOf } from "../canvas/painter";
 import type { Step } from "../core/stimulus";
 import { observerAxes } from "../core/vector";
 import type { Scene } from "../model/figures";
 import type { State } from "../model/state";
 import type { Arrangement, Size } from "./arrangement";
-import { clear, drawGround, drawTrails, paletteOf, type Brush } from "./drawing";
+import { drawGround, drawTrails, paletteOf, type Brush } from "./drawing";
 import { isPlain } from "./transformChain";
 import { arrangedStimulus, DURATION_S } from "./viewedStimulus";
 import { WalkerBatch, type ViewPoint } from "./walkerBatch";
@@ -79,7 +79,7 @@ function plainAnimation(spec: AnimationSpec): ViewerAnimation {
       };
       const brush = brushOf(state, arrangement, context);
       const project = (at: number, into: Float64Array): void => batch.project(at, view, arrangement, size, into);
-      clear(brush, size, pixelRatio);
+      drawBackground(context, { ...size, background: brush.palette.background }, pixelRatio);
       if (few) drawGround(brush, arrangement, view, size);
       if (few && state.trails) drawTrails(brush, project, time, batch.places.length);
       project(time, batch.places);

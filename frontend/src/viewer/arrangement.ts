@@ -1,7 +1,7 @@
 /** The arrangement of walkers in a picture: each in the middle of its own cell, as large as possible. */
 
 import { coefficientsOf, posture } from "../core/posture";
-import type { Walker } from "../core/stimulus";
+import type { Display, Walker } from "../core/stimulus";
 import { radians } from "../core/vector";
 
 /** Share of a cell that a walker fills. */
@@ -23,10 +23,7 @@ export interface Extent {
   readonly height: number;
 }
 
-export interface Size {
-  readonly width_px: number;
-  readonly height_px: number;
-}
+export type Size = Pick<Display, "width_px" | "height_px">;
 
 /** The cell of a walker in the picture, in pixels. */
 export interface Box {

@@ -31,13 +31,6 @@ export interface Brush {
   readonly dotPx: number;
 }
 
-/** Begin a frame: one unit is a pixel of the picture, `pixelRatio` canvas pixels. */
-export function clear({ context, palette }: Brush, { width_px, height_px }: Size, pixelRatio: number): void {
-  context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
-  context.fillStyle = palette.background;
-  context.fillRect(0, 0, width_px, height_px);
-}
-
 /** The paths of the dots in the last moments, fading; `project` gives the places at a time. */
 export function drawTrails(
   { context, palette, dotPx }: Brush,

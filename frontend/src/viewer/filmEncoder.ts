@@ -1,6 +1,8 @@
 /** Films made in the browser: H.264 in MP4, or another codec that the browser has. */
 
-import { BufferTarget, CanvasSource, Mp4OutputFormat, Output, WebMOutputFormat } from "mediabunny";
+import {
+  BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat,
+} from "mediabunny";
 import { contextOf } from "../canvas/painter";
 
 /** This browser cannot make the film; the message names an alternative. */
@@ -34,49 +36,73 @@ const ENCODINGS = [
 /** Enough for dots with sharp edges. */
 const BITS_PER_PIXEL = 0.2;
 const KEY_FRAME_S = 1;
+/** Limit of the frames that wait for the encoder. */
+const MAX_QUEUE = 8;
 
-/** Make a film, frame by frame. */
 export async function encodeFilm(spec: FilmSpec): Promise<Film> {
-  const { width, height, frames, rateHz, draw, progress, signal } = spec;
-  const { suffix, config } = await chooseEncoding(spec);
+  const { codec, suffix, config } = await chooseEncoding(spec);
+  const packets = await encodeFrames(spec, config);
   const output = new Output({
     format: suffix === "mp4" ? new Mp4OutputFormat({ fastStart: "in-memory" }) : new WebMOutputFormat(),
     target: new BufferTarget(),
   });
-  const canvas = document.createElement("canvas");
-  Object.assign(canvas, { width, height });
-  const context = contextOf(canvas, { alpha: false, willReadFrequently: true });
-  const source = new CanvasSource(canvas, config);
-  output.addVideoTrack(source, { frameRate: rateHz });
-  try {
-    await output.start();
-    for (let number = 0; number < frames; number++) {
-      signal?.throwIfAborted();
-      draw(context, number);
-      await source.add(number / rateHz, 1 / rateHz);
-      await new Promise((done) => setTimeout(done)); // the page can react meanwhile
-      progress?.((number + 1) / frames);
-    }
-    await output.finalize();
-  } catch (error) {
-    await output.cancel();
-    if (signal?.aborted) throw error;
-    throw new FilmError(`The encoder of this browser failed: ${error instanceof Error ? error.message : String(error)}`);
-  }
+  const source = new EncodedVideoPacketSource(codec);
+  output.addVideoTrack(source, { frameRate: spec.rateHz });
+  await output.start();
+  for (const packet of packets) await source.add(...packet);
+  await output.finalize();
   return { blob: new Blob([output.target.buffer!], { type: `video/${suffix}` }), suffix };
 }
 
-/** The first encoding that this browser supports. */
-async function chooseEncoding({ width, height, rateHz }: Pick<FilmSpec, "width" | "height" | "rateHz">) {
+/** The first encoding that this browser has for a film of this size. */
+export async function chooseEncoding({ width, height, rateHz }: Pick<FilmSpec, "width" | "height" | "rateHz">) {
   if (typeof VideoEncoder === "undefined") {
     throw new FilmError("This browser encodes no films; eigenwalker serve makes them, and so does eigenwalker stimulus of a saved stimulus file.");
   }
   const bitrate = Math.round(width * height * rateHz * BITS_PER_PIXEL);
   for (const [codec, name, suffix] of ENCODINGS) {
-    const asked = { codec: name, width, height, framerate: rateHz, bitrate, latencyMode: "quality" as const };
-    const { supported } = await VideoEncoder.isConfigSupported(asked).catch(() => ({ supported: false }));
-    const config = { codec, fullCodecString: name, bitrate, keyFrameInterval: KEY_FRAME_S, latencyMode: "quality" as const };
-    if (supported) return { suffix, config };
+    const config: VideoEncoderConfig = {
+      codec: name, width, height, framerate: rateHz, bitrate, latencyMode: "quality",
+    };
+    const support = await VideoEncoder.isConfigSupported(config).catch(() => null);
+    if (support?.supported) return { codec, suffix, config };
   }
   throw new FilmError(`This browser encodes no film of ${width} x ${height} pixels, neither H.264 nor VP9 nor VP8; eigenwalker serve makes them.`);
+}
+
+type Packet = readonly [EncodedPacket, EncodedVideoChunkMetadata | undefined];
+
+async function encodeFrames(spec: FilmSpec, config: VideoEncoderConfig): Promise<Packet[]> {
+  const { width, height, frames, rateHz, progress, signal } = spec;
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, { width, height });
+  const context = contextOf(canvas, { alpha: false, willReadFrequently: true });
+  const packets: Packet[] = [];
+  let failure = null as Error | null;
+  const encoder = new VideoEncoder({
+    output: (chunk, meta) => packets.push([EncodedPacket.fromEncodedChunk(chunk), meta]),
+    error: (error) => (failure = error),
+  });
+  try {
+    encoder.configure(config);
+    for (let number = 0; number < frames; number++) {
+      signal?.throwIfAborted();
+      spec.draw(context, number);
+      const frame = new VideoFrame(canvas, {
+        timestamp: Math.round((1e6 * number) / rateHz),
+        duration: Math.round(1e6 / rateHz),
+      });
+      encoder.encode(frame, { keyFrame: number % Math.round(KEY_FRAME_S * rateHz) === 0 });
+      frame.close();
+      progress?.((number + 1) / frames);
+      do await new Promise((done) => setTimeout(done)); // the page can react meanwhile
+      while (encoder.encodeQueueSize > MAX_QUEUE);
+    }
+    await encoder.flush();
+  } catch (error) {
+    throw failure ? new FilmError(`The encoder of this browser failed: ${failure.message}`) : error;
+  } finally {
+    if (encoder.state !== "closed") encoder.close();
+  }
+  return packets;
 }

@@ -10,7 +10,6 @@ import type { Size } from "./arrangement";
 import { encodeFilm, type FilmSpec } from "./filmEncoder";
 import { arrangementFor, DURATION_S, MAX_FIGURES, stimulusOf } from "./viewedStimulus";
 
-/** The picture to save. */
 export interface Snapshot extends Scene {
   /** Phase of the first walker, for pictures. */
   readonly phase?: number;

@@ -89,7 +89,6 @@ export function withTransforms(stimulus: Stimulus, transforms: Transforms, group
 
 const hasTrunk = ({ markers }: Before): boolean => TRUNK.every((name) => markers.includes(name));
 
-/** Markers of a part of the body that the figure has. */
 function markersIn(part: string, { markers, groups }: Before): string[] {
   const members = Object.hasOwn(groups, part) ? groups[part]! : [];
   return markers.filter((name) => members.includes(name));

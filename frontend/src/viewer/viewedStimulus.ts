@@ -10,7 +10,6 @@ import { arrange, centreOf, sharedExtent, type Arrangement, type Extent, type Si
 import { paletteOf } from "./drawing";
 import { withTransforms } from "./transformChain";
 
-/** Limit of the figures in a file. */
 export const MAX_FIGURES = 64;
 /** Duration of a saved stimulus. */
 export const DURATION_S = 4;
@@ -26,7 +25,6 @@ export function stimulusOf(scene: Scene, size: Size = DEFAULT_SIZE): Stimulus {
 export const arrangementFor = (scene: Scene, size: Size): Arrangement =>
   arrange(scene.figures.length, extentFor(scene), size, scene.state.elevation_deg);
 
-/** The space for each of some figures. */
 export const extentFor = ({ model, figures }: Scene): Extent =>
   sharedExtent(walkerOf(model, model.average), figures.map(({ walker }) => walker));
 
