@@ -28,10 +28,8 @@ within 1e-8 of those by SVD."""
 class FoldComponents:
     """Components of the training walkers of a fold, and the scores of the walkers left out.
 
-    Singular values of the standardised training walkers, (component,), from the largest to the
-    smallest: their scores have the standard deviations ``singular_values / sqrt(n - 1)``. The
-    discriminant c of each trait, (component, trait), Troje (2002), eq. 10. Scores of the walkers
-    left out, (component, walker).
+    `singular_values` (component,) fall; `c` (component, trait) is the discriminant of each trait,
+    Troje (2002), eq. 10; `scores` (component, walker) are of the walkers left out.
     """
 
     singular_values: np.ndarray
@@ -51,11 +49,7 @@ class FoldComponents:
 def discriminant_sums(
     singular_values: np.ndarray, c: np.ndarray, scores: np.ndarray, order: Order
 ) -> np.ndarray:
-    """Return the sum of Troje (2002), eq. 11, over 1, 2, ... components.
-
-    Arguments are as in `FoldComponents`; shapes (component, ...) broadcast. A component of which
-    all three are 0 comes last and adds nothing.
-    """
+    """Return the sum of Troje (2002), eq. 11, over 1, 2, ... components; shapes broadcast."""
     ranked = order_of_components(c, singular_values, order)
     return np.take_along_axis(c * scores, ranked, axis=0).cumsum(axis=0)
 
@@ -64,11 +58,9 @@ def discriminant_sums(
 class LeaveOutSVD:
     """The singular value decomposition of walkers without a few of them, for many folds.
 
-    Y (walker, feature): walkers about their mean, divided by the scale of all, only features that
-    vary. R (walker, trait): targets of the discriminants. If rescaled, a fold is divided by the
-    standard deviations of its own training walkers; a feature whose range is below `rounding` does
-    not vary. Sums over all walkers: `squares` of Y^2, `cross_products` of Y'R, and `gram` of Y'Y
-    where folds have more walkers than features.
+    `Y` (walker, feature) are walkers about their mean over the scale of all, `R` (walker, trait)
+    targets; `squares`, `cross_products`, `gram` are sums of Y^2, Y'R, Y'Y over all walkers. A
+    feature whose range is below `rounding` does not vary.
     """
 
     Y: np.ndarray
@@ -108,10 +100,7 @@ class LeaveOutSVD:
     def leaving_out(
         self, folds: Iterable[np.ndarray]
     ) -> Iterator[tuple[np.ndarray, FoldComponents]]:
-        """Yield the rows of each fold, and its components.
-
-        Small folds are decomposed several at a time, since calls would cost more than arithmetic.
-        """
+        """Yield the rows of each fold, and its components; small folds are decomposed together."""
         at_once = max(1, _NUMBERS_AT_ONCE // self.Y.size)
         for outs in _of_equal_size(folds, at_once):
             yield from zip(outs, self._leaving_out(np.array(outs)), strict=True)

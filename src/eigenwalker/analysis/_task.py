@@ -8,9 +8,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from eigenwalker.analysis._leave_out import LeaveOutSVD
 from eigenwalker.analysis.discriminant import refuse_missing, two_classes
-from eigenwalker.analysis.walker_space import Scale, constant_features
+from eigenwalker.analysis.walker_space import constant_features
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +39,8 @@ class Task:
         return (training_mean + sums - r) ** 2 if self.is_number else r * sums <= 0
 
     def error(self, losses: np.ndarray, R: np.ndarray) -> np.ndarray:
-        """Return the error of losses summed over walkers, for each trait of R (walker, trait).
-
-        Misclassified walkers, or the root mean square error in standard deviations of the trait.
-        """
+        """Return misclassified walkers, or the RMSE in SDs of the trait, of losses summed up."""
         return np.sqrt(losses / len(R)) / R.std(axis=0) if self.is_number else losses
-
-    def leave_out_svd(self, R: np.ndarray, scale: Scale, scale_in_fold: bool) -> LeaveOutSVD:
-        """Return the walkers prepared for leaving out, with targets R of shape (walker, trait)."""
-        return LeaveOutSVD.of(self.X, R, scale=scale, scale_in_fold=scale_in_fold)
 
 
 def task_of(X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, *, least_folds: int = 3) -> Task:

@@ -293,7 +293,7 @@ def _predictions(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Predictions by 1, 2, ... components, of walkers trained on and left out: each (walker, n)."""
     with one_blas_thread():
-        svd = task.leave_out_svd(task.r[:, None], scale, scale_in_fold)
+        svd = LeaveOutSVD.of(task.X, task.r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         trained = svd.of_all_walkers().sums(order)
         held_out = _held_out_sums(svd, task.folds, order, progress)
     trained = trained[: len(held_out)]

@@ -153,12 +153,13 @@ def position_in_space(
         )
     scores = space.transform(vector[None])
     z_scores = scores[0] / np.sqrt(space.explained_variance_)
-    squared, percentile = _squared_distances(space, vector[None])[0], float("nan")
+    average, percentile = space.average_walker_, float("nan")
+    squared = _squared(space, vector[None] - average)[0]
     if walkers is not None:
-        nearer = _squared_distances(space, np.asarray(walkers, dtype=float)) < squared
+        nearer = _squared(space, np.asarray(walkers, dtype=float) - average) < squared
         percentile = 100 * float(nearer.mean())
     total_variance = space.explained_variance_[0] / space.explained_variance_ratio_[0]
-    residual = _squared_distances(space, vector - space.inverse_transform(scores), about_mean=False)
+    residual = _squared(space, vector - space.inverse_transform(scores))
     return SpacePosition(
         distance=float(np.sqrt(squared / total_variance)),
         mahalanobis=float(np.linalg.norm(z_scores)),
@@ -168,9 +169,6 @@ def position_in_space(
     )
 
 
-def _squared_distances(
-    space: WalkerSpace, walkers: np.ndarray, *, about_mean: bool = True
-) -> np.ndarray:
-    """Squared lengths in standardised features, of deviations from the average walker."""
-    deviations = walkers - space.average_walker_ if about_mean else walkers
+def _squared(space: WalkerSpace, deviations: np.ndarray) -> np.ndarray:
+    """Squared lengths of deviations (walker, feature) in standardised features."""
     return ((deviations / space.scale_) ** 2).sum(axis=1)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from sklearn.metrics import r2_score, root_mean_squared_error
 
+from eigenwalker.analysis._leave_out import LeaveOutSVD
 from eigenwalker.analysis._task import rows_of_groups, task_of
 from eigenwalker.analysis.discriminant import Order
 from eigenwalker.analysis.jackknife import correlation
@@ -118,7 +119,7 @@ def nested_leave_one_out(
     both = (np.concatenate([folds[first], folds[second]]) for first, second in pairs)
     predictions, chosen_n = np.zeros(len(task.y)), np.zeros(len(task.y), dtype=int)
     with one_blas_thread():
-        svd = task.leave_out_svd(task.r[:, None], scale, scale_in_fold)
+        svd = LeaveOutSVD.of(task.X, task.r[:, None], scale=scale, scale_in_fold=scale_in_fold)
         losses_of_others = np.zeros((len(folds), min(svd.Y.shape)))
         steps = ticked(svd.leaving_out(both), len(pairs), progress)
         for (first, second), (out, fold) in zip(pairs, steps, strict=True):
@@ -206,7 +207,7 @@ def permutation_test(
     task = task_of(X, y, groups)
     R = _permuted_labels(task.r, groups, n_permutations, random_state)
     with one_blas_thread():
-        svd = task.leave_out_svd(R, scale, scale_in_fold)
+        svd = LeaveOutSVD.of(task.X, R, scale=scale, scale_in_fold=scale_in_fold)
         total = np.zeros((min(svd.Y.shape), R.shape[1]))
         for out, fold in ticked(svd.leaving_out(task.folds), len(task.folds), progress):
             training_mean = svd.training_mean(out)

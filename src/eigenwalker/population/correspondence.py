@@ -260,10 +260,7 @@ def _n_harmonics(walker: Walker) -> int:
 
 
 def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray, np.ndarray]:
-    """Fourier coefficients on a clock that all share, and how far each clock was shifted.
-
-    Returns arrays of shape (walker, 2 * harmonic, feature) and (walker,), the latter in radians.
-    """
+    """Fourier coefficients on a clock that all share, and by which angle each was shifted."""
     coefficients: list[np.ndarray] = []
     clocks: list[float] = []
     for walker in walkers:
@@ -275,11 +272,7 @@ def _canonical(walkers: Sequence[Walker], n_harmonics: int) -> tuple[np.ndarray,
 
 
 def _movement(walker: Walker, n_harmonics: int) -> np.ndarray:
-    """Fourier coefficients of a walker on its own clock.
-
-    Of a walker as it was decomposed, those of the regression on its capture, which hold whole
-    planes even where components mix harmonics; of any other, those of what it plays.
-    """
+    """Fourier coefficients of a walker: of its capture if as decomposed, else as played."""
     fit = walker.fit
     as_decomposed = fit is not None and np.array_equal(walker.p, fit.eigenpostures)
     if fit is not None and as_decomposed and len(fit.fourier) == 2 * n_harmonics:
@@ -292,11 +285,7 @@ def _shift_origins(coefficients: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 
 def _average_axes(coefficients: np.ndarray, walker: Walker) -> ReferenceWalker:
-    """Principal axes of the average walker at each harmonic.
-
-    The second of each pair leads the first by a quarter cycle, as phi_2 and phi_4 - phi_3 do in
-    Troje (2002).
-    """
+    """Principal axes of the average walker at each harmonic, the second a quarter cycle ahead."""
     average = coefficients.mean(axis=0)
     axes: list[np.ndarray] = []
     for harmonic, pair in enumerate(average.reshape(-1, 2, average.shape[-1])):
@@ -327,11 +316,7 @@ def _align(coefficients: np.ndarray, reference: ReferenceWalker) -> tuple[_Align
 
 
 def _rotate_axes(coefficients: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Each walker's unit eigenpostures, rotated within their planes towards the average's.
-
-    Returns arrays of shape (walker, harmonic, 2, feature) and, the scores that go with them,
-    (walker, harmonic, 2 of sin and cos, 2).
-    """
+    """Each walker's unit eigenpostures, rotated towards the average's, and their scores."""
     pairs = coefficients.reshape(len(coefficients), -1, 2, coefficients.shape[-1])
     scores, amplitude, unit = np.linalg.svd(pairs, full_matrices=False)
     # Orthogonal Procrustes: the rotation of the axes that brings them nearest to the average's.

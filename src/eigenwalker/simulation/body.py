@@ -15,10 +15,9 @@ TOE_BEND = np.radians(28)
 
 @dataclass(frozen=True)
 class Body:
-    """Segment lengths in millimetres, and places of joints in the frame of pelvis and trunk.
+    """Segment lengths in millimetres, and places of joints seen from the centre of the pelvis.
 
-    The pelvis point, centre of the pelvis, lies above the middle between the hips; the trunk turns
-    about it, so that its distance to all joints of pelvis and trunk stays the same.
+    About that point pelvis and trunk turn, so its distance to all their joints stays the same.
     """
 
     height: float
@@ -55,8 +54,7 @@ class Foot:
     def ankle_over_print(self, pitch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the ankle of a planted foot from the print of its ball, and the slope by pitch.
 
-        The sole rolls without slipping: about the heel while toes are up, about the ball while
-        toes can bend, about the tip of the toes after that. Arrays of shape (frame, 2).
+        The sole rolls about heel, ball, then tip of the toes. Arrays of shape (frame, 2).
         """
         heel, heel_slope = _rotated(pitch, self.heel, self.height)
         ball, ball_slope = _rotated(pitch, -self.ball, self.height)

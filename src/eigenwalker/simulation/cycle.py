@@ -27,10 +27,9 @@ _LEAST_GAIN = 1.0
 class Cycle:
     """Fourier coefficients of one stride: angles in radians, the pelvis' path in millimetres.
 
-    `legs` (side, joint, coefficient) are thigh, knee and pitch of the foot over the side's own
-    phase, 0 at its heel strike (at phase `onsets` of the left side); `pelvis` (axis, coefficient)
-    is over the left side's phase. `legs_slope` and `pelvis_slope` are added for each unit by which
-    a step is longer than the person's own.
+    `legs` (side, joint, coefficient) are thigh, knee, foot pitch from the side's own heel strike,
+    at phase `onsets`; `pelvis` (axis, coefficient) is from the left one. Slopes are the change for
+    each unit by which a step is longer.
     """
 
     legs: np.ndarray
@@ -82,10 +81,7 @@ def _most_probable(problem: Ground) -> np.ndarray:
 
 
 def _change_with_stride(own: Ground, doubled: Ground, best: np.ndarray) -> np.ndarray:
-    """Return how the solution moves for each unit by which the stride is longer.
-
-    Residuals are linear in the stride length, so one solution of the linearised problem suffices.
-    """
+    """Return how the solution moves with the stride length, in which residuals are linear."""
     residual, jacobian = own.linearised(best)
     residual_doubled, _ = doubled.linearised(best)
     normal = jacobian.T @ jacobian + np.diag(own.precision)

@@ -49,9 +49,8 @@ _Residual = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray, float]
 class Ground:
     """What a person's stride should be, and by how much a stride misses it.
 
-    `prior` is what the person was drawn to do, `precision` one over its variance (unknown,);
-    `onsets` (side,) are the moments when the feet strike, in strides; `sway` (coefficient,) is the
-    pelvis' path to the side, which stays as drawn.
+    `prior` is what was drawn, `precision` one over its variance (unknown,), `onsets` (side,) the
+    heel strikes in strides; `sway` (coefficient,), the pelvis' path to the side, stays as drawn.
     """
 
     def __init__(self, person: Mapping[str, float], body: Body, gait: GaitParameters) -> None:

@@ -7,7 +7,8 @@ rotation are positive. Coefficients are in the order of `core.fourier.harmonic_b
 
 from __future__ import annotations
 
-from types import MappingProxyType
+import tomllib
+from importlib.resources import files
 
 import numpy as np
 
@@ -17,38 +18,17 @@ FREE_SPEED = 0.43
 """Speed over sqrt(g leg) of the group "Free" of Schwartz et al. (2008)."""
 
 
-def _series(mean: float, *pairs: tuple[float, float]) -> np.ndarray:
+def _series(mean: float, *pairs: list[float]) -> np.ndarray:
     """Return coefficients of a mean and, for each harmonic, the weights of cosine and sine."""
     return np.array([mean, *np.fliplr(pairs).ravel()])
 
 
-CURVES_DEG = MappingProxyType(
-    {
-        # Schwartz, Rozumalski & Trost 2008, J Biomech 41:1639, 82 walks at free speed: Fourier
-        # series of the printed group means. Pelvis against the room, hip on pelvis.
-        "pelvis_tilt": _series(11.6, (0, 0), (0.4, -0.7), (0, 0), (0.2, 0)),
-        "pelvis_obliquity": _series(0, (1.9, 2.1), (0, 0), (-1.2, 0.2)),
-        "pelvis_rotation": _series(0, (3.7, 2.1), (0, 0), (0.3, -0.4)),
-        "hip_flexion": _series(18.4, (20.9, -3.2), (-3.1, -1.5), (-0.1, 1.6), (-0.1, -0.1)),
-        "knee_flexion": _series(22.9, (-1.9, -18.7), (-13.6, 7.0), (-0.7, 4.3), (-0.9, 0.6)),
-        "ankle_dorsiflexion": _series(0.8, (-2.0, 7.1), (0.8, -7.2), (-4.6, 0.9), (2.2, 0.2)),
-        # The same source, trunk on pelvis.
-        "trunk_obliquity": _series(0, (-4.3, -3.3), (0, 0), (1.4, -0.2)),
-        "trunk_rotation": _series(0, (-4.0, 0.5), (0, 0), (-0.5, 0.2)),
-    }
+_PRINTED = tomllib.loads(
+    (files("eigenwalker.simulation") / "norms.toml").read_text(encoding="utf-8")
 )
-
-SPEED_SLOPES_DEG = MappingProxyType(
-    {
-        # Change for each +0.1 of dimensionless speed: line through the slow, free and fast
-        # groups of Schwartz et al. (2008).
-        "pelvis_tilt": _series(0.81, (0, 0), (-0.10, -0.31)),
-        "pelvis_obliquity": _series(0, (0.34, 0.70), (0, 0), (-0.12, -0.04)),
-        "pelvis_rotation": _series(0, (1.10, -0.18), (0, 0), (0.15, -0.20)),
-        "hip_flexion": _series(0.85, (2.45, 0), (-0.64, 0.57), (0, 0.08)),
-        "knee_flexion": _series(1.48, (0.94, -0.27), (-0.68, 1.69), (-0.26, -0.15)),
-        "ankle_dorsiflexion": _series(-0.97, (1.90, 1.25), (-1.09, -0.59), (0.05, 0.71)),
-    }
+CURVES_DEG, SPEED_SLOPES_DEG = (
+    {name: _series(*weights) for name, weights in _PRINTED[table].items()}
+    for table in ("curves", "speed_slopes")
 )
 
 

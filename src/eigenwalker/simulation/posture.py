@@ -50,12 +50,9 @@ def trunk_rotations(angles: Mapping[str, np.ndarray], part: str) -> Rotations:
 
 
 def segment_rotations(angles: Mapping[str, np.ndarray]) -> dict[str, Rotations]:
-    """Return how each segment stands in the room.
+    """Return how each segment stands in the room, from the angles of `walk_cycle_frames`.
 
-    Angles (frame,), in radians: ``pelvis_``, ``trunk_``, ``head_`` ``tilt``, ``obliquity``,
-    ``rotation`` against the room, and for each side ``thigh`` (against the vertical, in the plane
-    of the leg), ``knee_flexion``, ``splay`` (of that plane), ``foot_pitch``, ``foot_yaw``,
-    ``shoulder_flexion``, ``shoulder_abduction``, ``shoulder_rotation``, ``elbow_flexion``.
+    The thigh is against the vertical in the plane of the leg, of which ``splay`` is the slope.
     """
     rotations = {part: trunk_rotations(angles, part) for part in ("pelvis", "trunk", "head")}
     for name, side in SIDES.items():
@@ -80,10 +77,7 @@ def segment_rotations(angles: Mapping[str, np.ndarray]) -> dict[str, Rotations]:
 def joint_positions(
     body: Body, rotations: Mapping[str, Rotations], pelvis: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return where all joints are, and heel, ball and tip of the toes: arrays (frame, 3).
-
-    `pelvis` is the path of the pelvis point, of shape (frame, 3).
-    """
+    """Return joints, heels, balls and tips of the toes from the path of the pelvis, (frame, 3)."""
     places = {"pelvis": pelvis}
 
     def put(joint: str, parent: str, segment: str, offset: np.ndarray | tuple) -> None:

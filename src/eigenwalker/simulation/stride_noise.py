@@ -21,12 +21,10 @@ _PER_STRIDE = 200
 class Strides:
     """The course of a capture, frame by frame.
 
-    `phase` (frame,) counts cycles since the first left heel strike. By `lengthening` (side, frame)
-    the present step of a leg is longer than usual, constant while it stands; `body_lengthening`
-    (frame,) is the same for pelvis and trunk, handed over from leg to leg in double support.
-    `foot_shift` (side, frame) is how far to the left of its usual place a foot is, `wander`
-    (frame, 2) the forward and lateral place of the body on the belt, in millimetres. `noise`
-    (stream, frame) is smooth and of unit SD, one stream for each angle that varies.
+    `phase` (frame,) counts cycles from the first left heel strike; by `lengthening` (side, frame) a
+    leg's step is longer than usual, by `body_lengthening` (frame,) that of the leg that carries;
+    `foot_shift` (side, frame) and `wander` (frame, 2) are places on the belt in mm; `noise`
+    (stream, frame) is smooth and of unit SD.
     """
 
     phase: np.ndarray
@@ -46,13 +44,9 @@ def simulate_strides(
     variability: float,
     wander_mm: float,
 ) -> Strides:
-    """Return the strides of a walk on a belt of constant speed.
+    """Return the strides of a walk on a belt of constant speed, at times (frame,) in seconds.
 
-    The body keeps its place on the belt but for a slow wander, so longer steps take longer. A leg
-    changes the length of its step in swing only.
-
-    `time` (frame,) is in seconds; a `variability` of 1 is that of healthy adults; `wander_mm` is
-    the SD of the wander.
+    The body keeps its place but for a slow wander, so longer steps take longer.
     """
     n_strides = int(np.ceil(time[-1] * gait.frequency * 1.2)) + 3
     wander = wander_mm * slow_noise(rng, time, 4.0, 2).T * [1.0, 0.7]

@@ -8,60 +8,13 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from eigenwalker.simulation.person import PARAMETERS, check_parameters
+from eigenwalker.simulation.person import PARAMETERS, PEOPLE, check_parameters
 
 Effects = Mapping[str, Mapping[str, float]]
 
-EFFECTS: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {
-        # Men less women, in SDs within a sex, beside the means above.
-        "sex": {
-            "obliquity_factor": -0.58,  # Smith et al. 2002
-            "pelvis_rotation_factor": -0.4,  # Bruening 2015: direction; size chosen
-            "trunk_lean_factor": 0.6,  # Bruening 2015, Troje 2002: direction; size chosen
-            "arm_swing_deg": -0.5,  # Bruening 2015: direction; size chosen
-            "arm_out_deg": 0.6,  # Troje 2002, WDP2002: direction; size chosen
-            "lateral_mm": 0.5,  # WDP2002: direction; size chosen
-            "pelvis_tilt_deg": -0.4,  # Cho 2004: direction; size chosen
-        },
-        # For each SD of the trait.
-        "weight": {
-            "hip_share": 0.3,  # ANSUR: mass with bicristal 0.69, much of it through height
-            "step_width_mm": 0.3,
-            "arm_out_deg": 0.3,
-            "frequency_hz": -0.2,  # WDP2002: slightly lower
-            "vertical_mm": -0.3,  # WDP2002: light people move up and down more
-        },
-        "age": {"arm_swing_deg": -0.1},  # Mirelman 2015, over 30 to 77 years
-        "happy": {
-            "stride_share": 0.4,
-            "arm_swing_deg": 0.5,
-            "vertical_mm": 0.4,
-            "trunk_tilt_deg": -0.4,
-            "lateral_mm": -0.3,
-            "head_tilt_deg": -0.3,
-        },
-        "nervous": {
-            "frequency_hz": 0.4,
-            "stride_share": -0.4,
-            "arm_swing_deg": -0.5,
-            "elbow_mean_deg": 0.4,
-            "elbow_swing_deg": 0.2,
-        },
-    }
-)
+EFFECTS: Effects = MappingProxyType(PEOPLE["effects"])
 """What traits do to parameters, in standard deviations of the parameter."""
-
 TRAITS = ("sex", "age_years", "weight_kg", "height_mm", "happy", "nervous")
-
-
-_SCALES = {
-    "age": (26.0, 4.5, -1.3, 2.6),  # Troje 2002: 20 to 38, mean 26
-    "weight": (0.0, 1.0, -2.5, 2.5),
-    "happy": (3.5, 0.8, -2.5, 2.5),  # six-point scale, as in WDP2002
-    "nervous": (3.5, 0.8, -2.5, 2.5),
-}
-"""Mean, SD, lowest and highest score of each continuous trait on its own scale."""
 
 
 def draw_people(
@@ -116,7 +69,7 @@ def draw_people(
     rng = np.random.default_rng(seed)
     n_people = n_women + n_men
     scores, rated = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}, {}
-    for trait, (mean, sd, lowest, highest) in _SCALES.items():
+    for trait, (mean, sd, lowest, highest) in PEOPLE["scales"].items():
         scores[trait] = np.clip(rng.standard_normal(n_people), lowest, highest)
         rated[trait] = mean + sd * scores[trait]
     own = np.clip(rng.standard_normal((len(PARAMETERS), n_people)), -2.5, 2.5)
