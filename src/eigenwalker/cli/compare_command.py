@@ -18,6 +18,7 @@ from eigenwalker.cli.options import (
     TraitFromName,
     Unit,
     WithFlagged,
+    option,
     progress_bar,
 )
 
@@ -33,6 +34,14 @@ POPULATION = ".nc"
 MAX_WARNINGS = 3
 """Warnings of readers that are printed; those of many files are mostly the same."""
 MAX_REASONS = 3
+METRIC = (
+    "positions-, angles- or velocities- with sigmoid, absolute or squared; lee; kovar; or a file "
+    "of weights that a fit to answers wrote."
+)
+ANSWERS = (
+    "CSV of observers' answers (observer, a, b, c, d, chosen_1, chosen_2): fit the metric's "
+    "weights to them."
+)
 FILE_SUFFIXES = {".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".pdf", ".png", ".svg", ".txt"}
 
 
@@ -45,34 +54,18 @@ def compare(
         Path | None, typer.Argument(help="The capture to compare the first one with.")
     ] = None,
     output: ReportFolder = None,
-    metric: Annotated[
-        str,
-        typer.Option(
-            help="positions-, angles- or velocities- with sigmoid, absolute or squared; lee; "
-            "kovar; or a file of weights that a fit to answers wrote."
-        ),
-    ] = "positions-sigmoid",
+    metric: Annotated[str, option(METRIC)] = "positions-sigmoid",
     own_bodies: Annotated[
-        bool,
-        typer.Option("--own-bodies", help="Leave walks on their own bodies, not on a mannequin."),
+        bool, option("Leave walks on their own bodies, not on a mannequin.", "--own-bodies")
     ] = False,
     nearest: Annotated[
-        Path | None,
-        typer.Option(help="A capture: which walks of the folder or population are nearest to it?"),
+        Path | None, option("A capture: which walks of the folder or population are nearest to it?")
     ] = None,
-    answers: Annotated[
-        Path | None,
-        typer.Option(
-            help="CSV of observers' answers (observer, a, b, c, d, chosen_1, chosen_2): fit the "
-            "metric's weights to them."
-        ),
-    ] = None,
+    answers: Annotated[Path | None, option(ANSWERS)] = None,
     clusters: Annotated[
-        int | None, typer.Option(help="Clusters in the report on all pairs; left out, 2.")
+        int | None, option("Clusters in the report on all pairs; left out, 2.")
     ] = None,
-    trait: Annotated[
-        str | None, typer.Option(help="Trait of a population: are its classes apart?")
-    ] = None,
+    trait: Annotated[str | None, option("Trait of a population: are its classes apart?")] = None,
     trait_from_name: TraitFromName = None,
     with_flagged: WithFlagged = False,
     unit: Unit = None,
@@ -150,8 +143,8 @@ def _check_two(first: Path, second: Path) -> None:
 
 
 def _refuse(options: set[str], reason: str) -> None:
-    for option in sorted(options):
-        raise ValueError(f"{option} {reason}.")
+    if options:
+        raise ValueError(f"{min(options)} {reason}.")
 
 
 def _check_output(output: Path | None) -> None:

@@ -19,7 +19,7 @@ from eigenwalker.plotting.walker_films import Style, write_film
 from eigenwalker.plotting.walker_space_figure import figure_space
 from eigenwalker.plotting.walkers import figure_joints, figure_walkers
 from eigenwalker.report.blocks import Figure, Film
-from eigenwalker.report.words import WORDS
+from eigenwalker.report.words import figure
 
 
 def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, Figure]:
@@ -32,10 +32,11 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
         drawings["scores"] = figure_scores(example, decompose_pca(example))
     drawings["joints"] = figure_joints(study.average)
     drawings["eigenpostures"] = figure_eigenpostures(study.average)
-    curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
     if isinstance(result, Classification):
+        curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
         drawings["class curves"] = figure_curves(curves, n_walkers=len(contrast.rows))
     else:
+        curves = {each.input.title: each.curves for each in result.results[:N_PANELS]}
         drawings["regression curves"] = figure_regression_curves(curves)
     for kind, view in study.views.items():
         drawings[kind] = figure_walkers(view.walkers)
@@ -52,10 +53,7 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
     source = "one walk" if example is None else str(example.attrs.get("source", "one walk"))
     names = {"trait": contrast.trait, "negative": contrast.negative, "positive": contrast.positive}
     names["source"] = source[:1].upper() + source[1:].replace("_", " ")
-    return {
-        name: Figure(drawing, *(text.format(**names) for text in WORDS["figures"][name].values()))
-        for name, drawing in drawings.items()
-    }
+    return {name: figure(drawing, name, **names) for name, drawing in drawings.items()}
 
 
 def write_films(walkers: Mapping[str, Walker], stem: Path) -> list[Film]:

@@ -13,7 +13,7 @@ from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.report.blocks import Table
-from eigenwalker.report.words import WORDS
+from eigenwalker.report.words import TABLES, WORDS
 
 
 def results_table(study: TraitStudy) -> Table:
@@ -89,8 +89,7 @@ def plausibility_table(walkers: Mapping[str, Plausibility]) -> Table:
         for title, each in walkers.items()
     ]
     return Table(
-        "How plausible they are: distance from the average walker, 1 being usual, and how much "
-        "longer or shorter than the average walker's their limbs are",
+        TABLES["plausibility"],
         ["walker", "distance", *limbs],
         rows,
     )

@@ -13,7 +13,7 @@ from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, Metri
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.words import CITE, WORDS, plain_name
+from eigenwalker.report.words import CITE, TABLES, WORDS, figure, plain_name
 
 FEW_OBSERVERS = 10
 """With fewer, intervals from resampled observers contain the true weights much too rarely."""
@@ -128,12 +128,9 @@ def _weights_figure(fit: MetricFit) -> Figure:
     bars = {
         name: (each.relative, each.relative_low, each.relative_high) for name, each in fits.items()
     }
-    return Figure(
-        figure_weights([str(group) for group in fit.weights.index], bars),
-        "How much each joint group weighs, relative to the others; lines hold 95 of 100 samples, "
-        "of other observers for choices, of other observers and walkers for differences.",
-        "; ".join(f"{name}: {_shares(each)}" for name, each in fits.items()),
-    )
+    drawing = figure_weights([str(group) for group in fit.weights.index], bars)
+    shares = "; ".join(f"{name}: {_shares(each)}" for name, each in fits.items())
+    return figure(drawing, "weights", shares=shares)
 
 
 def _weights_table(caption: str, weights: pd.DataFrame) -> Table:
@@ -154,38 +151,20 @@ def _weights_table(caption: str, weights: pd.DataFrame) -> Table:
 def _predictions(fit: MetricFit) -> list[Figure]:
     predictions = {"choices": fit.pairs.expected_unseen, "differences": fit.pairs.unseen}
     return [
-        Figure(
+        figure(
             figure_predictions(fit.pairs.difference[known], predicted[known]),
-            f"Each pair as observers saw it, and as weights fitted to {target} predict it that "
-            "know neither of its two walkers.",
-            f"{int(known.sum())} points about a diagonal.",
+            "predictions",
+            target=target,
+            n=int(known.sum()),
         )
         for target, predicted in predictions.items()
         if (known := predicted.notna()).any()
     ]
 
 
-_COMPARISONS = {
-    "factor or weights that fit the choices best": {
-        "choices_n_weights": "weights",
-        "choices_bits": "bits above guessing",
-        "choices_pearson": "r",
-        "choices_cv_pearson": "r, unseen",
-    },
-    "constant and the factor or weights that fit the differences best": {
-        "n_weights": "weights",
-        "rss": "sum of squares",
-        "pearson": "r",
-        "cv_pearson": "r, unseen",
-        "cv_rms": "error, unseen",
-    },
-}
-"""What each metric was given, the columns that tell how well it did, and their headings."""
-
-
 def _comparisons(compared: pd.DataFrame) -> list[Table]:
     tables = []
-    for given, columns in _COMPARISONS.items():
+    for given, columns in WORDS["metric"]["compared"].items():
         best_first = next(column for column in columns if column.endswith("cv_pearson"))
         rows = [
             [str(name), int(row.iloc[0]), *map(float, row.iloc[1:])]
@@ -193,9 +172,6 @@ def _comparisons(compared: pd.DataFrame) -> list[Table]:
                 list(columns)
             ].iterrows()
         ]
-        caption = (
-            f"Metrics compared, each with the {given}; unseen are pairs neither of whose walkers "
-            "was fitted to"
-        )
+        caption = TABLES["compared"].format(given=given)
         tables.append(Table(caption, ["metric", *columns.values()], rows))
     return tables

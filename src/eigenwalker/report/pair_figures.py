@@ -14,6 +14,7 @@ from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.transitions import find_transitions
 from eigenwalker.plotting.difference_maps import MapPicture, figure_maps, picture_of_strides
 from eigenwalker.report.blocks import Block, Figure, Table, Text
+from eigenwalker.report.words import TABLES, figure
 
 SHOWN_S = 4.0
 """Seconds of either walk on a map: a few strides."""
@@ -52,12 +53,7 @@ def loop_and_pair_maps(comparison: Comparison, names: tuple[str, str]) -> Figure
         "the first walk and the second",
         names=names,
     )
-    return Figure(
-        figure_maps([self_map, pair_map]),
-        f"Dark where frames are alike. Left: the walk and itself; {blended}. Right: two strides of "
-        "either walk; a period (blue), and the moments that correspond (red).",
-        f"Motion map of {names[0]} with itself, and with {names[1]}.",
-    )
+    return figure(figure_maps([self_map, pair_map]), "two maps", names=names, blended=blended)
 
 
 def component_maps(comparison: Comparison, names: tuple[str, str]) -> Figure:
@@ -72,12 +68,7 @@ def component_maps(comparison: Comparison, names: tuple[str, str]) -> Figure:
         if by == "angles":
             cells = cells.copy(data=np.rad2deg(cells.values))
         pictures.append(_picture(cells, by, _UNITS[by], names))
-    return Figure(
-        figure_maps(pictures, n_columns=3),
-        "A stride of either walk, compared by positions, by velocities and by joint angles: each "
-        "has a pattern of its own.",
-        "Three motion maps: positions, velocities, angles.",
-    )
+    return figure(figure_maps(pictures, n_columns=3), "component maps")
 
 
 def transitions(comparison: Comparison, names: tuple[str, str]) -> list[Block]:
@@ -86,27 +77,26 @@ def transitions(comparison: Comparison, names: tuple[str, str]) -> list[Block]:
     found = find_transitions(a, b)
     best = found.head(MAX_TRANSITIONS)
     if not len(best):
-        caption = "Dark where one walk is like the other on the whole."
         sentence = "There is no moment at which one could pass into the other unseen."
-        return [_transitions_figure(a, b, best, caption, names), Text(sentence)]
+        return [_transitions_figure(a, b, best, "no transitions", names), Text(sentence)]
     which = f"the best {len(best)} of {len(found)} transitions"
     if len(best) == len(found):
         which = "one transition" if len(found) == 1 else f"all {len(found)} transitions"
-    caption = (
-        "Rings mark moments at which one walk can pass into the other and a viewer would hardly "
-        "see it: minima of the map that are no more than what moves in a tenth of a second. "
-        f"Drawn: {which}."
-    )
     table = Table(
-        f"In the seconds shown: {which}, and how the second walk is to be turned and moved",
+        TABLES["transitions"].format(which=which),
         ["from first (s)", "into second (s)", "apart (mm)", "turn (deg)", "x (mm)", "y (mm)"],
         [list(map(float, row)) for row in best.to_numpy()],
     )
-    return [_transitions_figure(a, b, best, caption, names), table]
+    return [_transitions_figure(a, b, best, "transitions", names, which), table]
 
 
 def _transitions_figure(
-    a: xr.DataArray, b: xr.DataArray, best: pd.DataFrame, caption: str, names: tuple[str, str]
+    a: xr.DataArray,
+    b: xr.DataArray,
+    best: pd.DataFrame,
+    name: str,
+    names: tuple[str, str],
+    which: str = "",
 ) -> Figure:
     picture = _picture(
         motion_map(a, b, align=True, window_s=WINDOW_S),
@@ -115,8 +105,7 @@ def _transitions_figure(
         names,
         marks=best[["time_a", "time_b"]].to_numpy() if len(best) else None,
     )
-    alt = f"Motion map of {names[0]} and {names[1]}, with {len(best)} rings."
-    return Figure(figure_maps([picture]), caption, alt)
+    return figure(figure_maps([picture]), name, names=names, which=which, n_rings=len(best))
 
 
 def _picture(

@@ -15,7 +15,15 @@ from eigenwalker.plotting.fitted_weights import figure_shares
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
 from eigenwalker.report.pair_figures import component_maps, loop_and_pair_maps, transitions
-from eigenwalker.report.words import CITE, WORDS, body_sentence, missing_points, plain_name
+from eigenwalker.report.words import (
+    CITE,
+    TABLES,
+    WORDS,
+    body_sentence,
+    figure,
+    missing_points,
+    plain_name,
+)
 from eigenwalker.study.reference_pairs import ReferenceComparison
 
 
@@ -132,11 +140,7 @@ def _how_different(result: ReferenceComparison, names: tuple[str, str]) -> list[
     if not differ:
         columns.remove("by joints alone")
     alone = " by joints alone, without hands and feet, which those have not" if differ else ""
-    caption = (
-        "The nine metrics of the paper's figure 5, and those of Lee and Kovar, each on a scale of "
-        f"its own; and the share of pairs of {result.n_people} simulated people that differ "
-        f"less{alone}"
-    )
+    caption = TABLES["metrics"].format(n_people=result.n_people, alone=alone)
     return [
         _bodies(result.comparison, names),
         Table(caption, columns, rows),
@@ -148,18 +152,13 @@ def _how_different(result: ReferenceComparison, names: tuple[str, str]) -> list[
 def _bodies(comparison: Comparison, names: tuple[str, str]) -> Figure:
     first, second = comparison.registration.on_common_clock()
     markers = [str(name) for name in first.marker.values]
-    return Figure(
-        figure_two_walks(first.values, second.values, markers, names=names),
-        "Both walks at corresponding moments of the stride, from the side and from the front; left "
-        "limbs are paler.",
-        f"Stick figures of {names[0]} in blue and {names[1]} in red over each other.",
-    )
+    drawing = figure_two_walks(first.values, second.values, markers, names=names)
+    return figure(drawing, "two walks", names=names)
 
 
 def _where(comparison: Comparison) -> list[Block]:
     table = Table(
-        "How far each joint group is apart, in the mean of the stride. By place and velocity a "
-        "bone is its upper joint: the forearm is the elbow",
+        TABLES["joint groups"],
         ["joint group", "place (mm)", "velocity (mm/s)", "joint angle (degrees)"],
         [[plain_name(group), *map(float, row)] for group, *row in comparison.groups.itertuples()],
     )
@@ -167,12 +166,7 @@ def _where(comparison: Comparison) -> list[Block]:
         return [table]
     shares = {str(group): float(share) for group, share in comparison.shares.items()}
     bars = ", ".join(f"{plain_name(g)} {100 * share:.0f} %" for g, share in shares.items())
-    figure = Figure(
-        figure_shares(shares),
-        "How much each joint group makes of the difference, as the metric weighs it.",
-        f"Bars: {bars}",
-    )
-    return [figure, table]
+    return [figure(figure_shares(shares), "shares", bars=bars), table]
 
 
 def _method(comparison: Comparison) -> list[str]:

@@ -22,7 +22,7 @@ from eigenwalker.psychophysics.dissimilarity_structure import (
 )
 from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
-from eigenwalker.report.words import CITE, WORDS, body_sentence, missing_points
+from eigenwalker.report.words import CITE, TABLES, WORDS, body_sentence, figure, missing_points
 from eigenwalker.study.walks import Walks
 
 MAX_ROWS = 60
@@ -128,12 +128,8 @@ def _items(reasons: dict[str, str]) -> Items:
 def _table_figure(
     table: pd.DataFrame, names: list[str], order: np.ndarray, clusters: np.ndarray
 ) -> Figure:
-    return Figure(
-        figure_difference_table(table, names, order=order, clusters=clusters),
-        "Differences of all pairs, dark where walks are alike, in the order of the first principal "
-        "component of the table's rows; dashed lines part neighbours of different clusters.",
-        f"A square grey picture of {len(names)} by {len(names)} differences.",
-    )
+    drawing = figure_difference_table(table, names, order=order, clusters=clusters)
+    return figure(drawing, "all pairs", n=len(names))
 
 
 def _map(
@@ -145,12 +141,9 @@ def _map(
         classes = [f"cluster {each + 1}" for each in clusters]
         colour = "cluster (k-means on the rows)"
         shown_names = names if len(names) <= MAX_NAMED_POINTS else None
-    return Figure(
-        figure_map_of_walks(map_of_walks(table), classes, names=shown_names),
-        "A map on which distances are as near to the differences as two dimensions allow "
-        f"(classical scaling), coloured by {colour}.",
-        f"{len(names)} points in clusters of {np.bincount(clusters).tolist()}.",
-    )
+    drawing = figure_map_of_walks(map_of_walks(table), classes, names=shown_names)
+    sizes = np.bincount(clusters).tolist()
+    return figure(drawing, "map of walks", colour=colour, n=len(names), sizes=sizes)
 
 
 def _each_walk(
@@ -180,13 +173,7 @@ def _each_walk(
         columns.remove("label")
         rows = [[name, *rest] for name, _, *rest in rows]
     shown = f" (the first {MAX_ROWS} of {len(order)})" if len(order) > MAX_ROWS else ""
-    return Table(
-        f"Walks in that order{shown}, and the walk nearest to each. A walk belongs to its cluster "
-        "the more, the nearer it is to the cluster's middle than to the other middles (fuzzy "
-        "c-means)",
-        columns,
-        rows,
-    )
+    return Table(TABLES["each walk"].format(shown=shown), columns, rows)
 
 
 def _labels(labels: pd.DataFrame) -> Table:
@@ -201,12 +188,8 @@ def _labels(labels: pd.DataFrame) -> Table:
         ]
         for label, row in labels.iterrows()
     ]
-    return Table(
-        "Mean difference from walks of the same label and of others, and how many have one of the "
-        "same label as the nearest; by chance: how many would if labels were dealt out at random",
-        ["label", "walks", "same label", "others", "nearest is of the label", "by chance"],
-        rows,
-    )
+    columns = ["label", "walks", "same label", "others", "nearest is of the label", "by chance"]
+    return Table(TABLES["labels"], columns, rows)
 
 
 def _method(walks: Walks, metric: GroupMetric) -> list[str]:

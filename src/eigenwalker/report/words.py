@@ -7,14 +7,21 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any
 
+import matplotlib.figure
 import xarray as xr
 
 from eigenwalker.metric.retargeting import is_mannequin
+from eigenwalker.report.blocks import Figure
 
 WORDS: dict[str, Any] = tomllib.loads(
     files("eigenwalker.report").joinpath("words.toml").read_text(encoding="utf-8")
 )
-CITE = WORDS["cite"]
+CITE, TABLES = WORDS["cite"], WORDS["tables"]
+
+
+def figure(drawing: matplotlib.figure.Figure, name: str, **values: object) -> Figure:
+    """Return a figure with its caption and its text for screen readers, in which values stand."""
+    return Figure(drawing, *(text.format(**values) for text in WORDS["figures"][name].values()))
 
 
 def plain_name(name: object) -> str:

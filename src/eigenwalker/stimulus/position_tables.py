@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -100,49 +101,14 @@ def write_mat(stimulus: Stimulus, path: Path) -> None:
         savemat(file, content, do_compression=True)
 
 
-SCRIPT = '''"""Shows {name} in PsychoPy; made by {program}. Needs {table} beside this file.
-
-Each refresh shows the frame that is due by the clock, so that a screen of any rate keeps the tempo.
-"""
-
-from pathlib import Path
-
-import numpy as np
-from psychopy import core, event, visual
-
-frames = np.load(Path(__file__).with_name({table!r}))
-xy = frames["px"] - np.array([{width}, {height}]) / 2
-xy[..., 1] *= -1  # PsychoPy counts upwards
-opacities = frames["visible"].astype(float)
-
-win = visual.Window(
-    size=({width}, {height}), units="pix", color={background!r}, colorSpace="hex", fullscr=False
-)
-dots = visual.ElementArrayStim(
-    win,
-    units="pix",
-    nElements=xy.shape[1],
-    elementTex=None,
-    elementMask="circle",
-    sizes={dot_px!r},
-    colors={colour!r},
-    colorSpace="hex",
-)
-clock = core.Clock()
-while clock.getTime() < {duration!r} and not event.getKeys():
-    frame = min(int(clock.getTime() * {rate!r}), len(xy) - 1)
-    dots.xys = np.nan_to_num(xy[frame])
-    dots.opacities = opacities[frame]
-    dots.draw()
-    win.flip()
-win.close()
-'''
-
-
 def psychopy_script(stimulus: Stimulus, table: Path) -> str:
-    """Return a script that shows a stimulus, whose positions are in an ``.npz`` beside it."""
+    """Return a script that shows a stimulus, whose positions are in an ``.npz`` beside it.
+
+    Names stand in it as literals of ASCII only, so that none can become code.
+    """
     display = stimulus.display
-    return SCRIPT.format(
+    script = files("eigenwalker.stimulus").joinpath("psychopy_script.txt").read_text("utf-8")
+    return script.format(
         name=table.stem,
         program=stimulus.provenance.get("program", "eigenwalker"),
         table=table.name,

@@ -39,20 +39,16 @@ def svg_drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
         f'height="{display.height_px}" viewBox="0 0 {display.width_px} {display.height_px}">',
         f'<rect width="100%" height="100%" fill="{display.background}"/>',
     ]
-    figures = stimulus.scene
     bodies = mannequins(stimulus)
     if bodies:
         look = look_of(stimulus, (display.height_px, display.width_px))
         look = look._replace(middle_px=(display.width_px / 2, display.height_px / 2))
         lines += _svg_hulls(hulls_of(stimulus, bodies, played, 0), look, display.colour)
-    first = 0
-    for number, figure in enumerate(figures):
+    for number, figure in enumerate(stimulus.scene):
         if number in bodies:
-            first += len(figure.dots)
             continue
-        shown = range(first, first + len(figure.dots))
-        seen = played.visible[0, first : first + len(figure.dots)]
-        spot = places[first : first + len(figure.dots)]
+        mine = np.flatnonzero(played.figures == number)
+        seen, spot = played.visible[0, mine], places[mine]
         if display.style == "sticks" and figure.blur_mm == 0:
             lines += _svg_sticks(figure.skeleton, spot, seen, display.dot_px, display.colour)
         radius, fill = display.dot_px / 2, display.colour
@@ -60,12 +56,11 @@ def svg_drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
             radius, fill = BLOB_REACH_SD * figure.blur_mm * display.px_per_mm, f"url(#blob{number})"
             lines.append(_svg_blob(number, display.colour))
         lines += [
-            f'<circle class="figure{number} {_name(played.dots[dot])}" '
-            f'cx="{places[dot, 0]:.4f}" cy="{places[dot, 1]:.4f}" r="{radius:.4f}" fill="{fill}"/>'
-            for dot in shown
-            if played.visible[0, dot]
+            f'<circle class="figure{number} {_name(dot)}" '
+            f'cx="{x:.4f}" cy="{y:.4f}" r="{radius:.4f}" fill="{fill}"/>'
+            for dot, (x, y), shown in zip(figure.dots, spot, seen, strict=True)
+            if shown
         ]
-        first += len(figure.dots)
     return "\n".join([*lines, "</svg>", ""])
 
 
