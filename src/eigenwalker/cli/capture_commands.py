@@ -22,14 +22,14 @@ def info(
     rate: Rate = None,
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
-    from eigenwalker.study.inspect import inspect_file
+    from eigenwalker.study.inspect import file_facts, inspect_file
     from eigenwalker.study.messages import inspection_in_words
 
-    facts = inspect_file(file, unit=unit, rate_hz=rate)
     if as_json:
+        facts = inspect_file(file, unit=unit, rate_hz=rate)
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    lines = inspection_in_words(facts)
+    lines = inspection_in_words(file_facts(file, unit=unit, rate_hz=rate))
     width = max(len(name) for name in lines) + 2
     for name, value in lines.items():
         print(f"{name:<{width}}{_laid_out(value, width)}")

@@ -30,7 +30,8 @@ def decompose_fourier(
     Parameters
     ----------
     walk : DataArray of shape (time, marker, axis)
-        Steady walking in place, such as `in_place` returns; millimetres, no missing samples.
+        Steady walking in place, such as `in_place` returns; millimetres, no missing samples. Its
+        coordinate ``speed_mm_s``, if it has one, is the speed of the walker.
     n_harmonics : int
         Number of harmonics.
     phase_ref : pair of str
@@ -81,10 +82,7 @@ def origin_angle(
     markers: Sequence[str],
     phase_ref: tuple[str, str] = PHASE_REFERENCE,
 ) -> float:
-    """Return the angle of the stride, in radians, at which the phase reference rises through zero.
-
-    From coefficients of sin 1, cos 1, ... of shape (2 * harmonic, marker, axis).
-    """
+    """Return the angle, in radians, at which the phase reference rises through zero."""
     if set(phase_ref) <= set(markers):
         first, second = (list(markers).index(name) for name in phase_ref)
         sine, cosine = coefficients[:2, first, 0] - coefficients[:2, second, 0]

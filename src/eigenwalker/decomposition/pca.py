@@ -30,7 +30,8 @@ def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
     Parameters
     ----------
     walk : DataArray of shape (time, marker, axis)
-        Steady walking in place, such as `in_place` returns; millimetres, no missing samples.
+        Steady walking in place, such as `in_place` returns; millimetres, no missing samples. Its
+        coordinate ``speed_mm_s``, if it has one, is the speed of the walker.
     n_harmonics : int
         Multiples of the stride frequency to allow; there are two eigenpostures for each.
 
@@ -81,11 +82,7 @@ def decompose_pca(walk: xr.DataArray, *, n_harmonics: int = 2) -> Walker:
 
 
 def is_negative(posture: np.ndarray, markers: Sequence[str]) -> bool:
-    """Return whether a first eigenposture has to change its sign.
-
-    It is positive where the left ankle is ahead of the right; where there are no ankles, where its
-    largest entry is positive.
-    """
+    """Return whether the right ankle is ahead, or else the largest entry is negative."""
     left, right = PHASE_REFERENCE
     if left in markers and right in markers:
         names = list(markers)
@@ -96,10 +93,7 @@ def is_negative(posture: np.ndarray, markers: Sequence[str]) -> bool:
 
 
 def _half_turn(phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Phases within [0, pi), and which eigenpostures change their sign for it.
-
-    The first phase, 0 by its making, keeps its sign whatever the rounding.
-    """
+    """Return phases within [0, pi), the first one 0, and which eigenpostures change their sign."""
     phases = (phases + _ROUNDING) % (2 * np.pi) - _ROUNDING
     phases[0] = 0.0
     sign_changed = phases >= np.pi - _ROUNDING

@@ -21,6 +21,7 @@ from eigenwalker.core.fourier import centred_harmonics, fit_harmonics, shift_ori
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.core.walker import CaptureFit, Form, Walker
 from eigenwalker.gait.frequency import frequency_of_scores
+from eigenwalker.gait.heading import known_speed
 
 PHASE_REFERENCE = ("left_ankle", "right_ankle")
 """The markers whose distance along x sets the time origin: first minus second rises through 0."""
@@ -120,11 +121,7 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
 
 
 def _mean_and_scatter(postures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean, and sums of squares and products about it (lower triangle).
-
-    Products about the origin are quicker. Where the postures are so far from it that subtracting
-    those of the mean would cost digits, products are taken about the first posture.
-    """
+    """Return the mean, and products about it; about the origin if that is near."""
     n = len(postures)
     mean = np.full(n, 1 / n) @ postures
     scatter = dsyrk(1.0, postures.T, lower=True)
@@ -150,10 +147,7 @@ def _largest_eigenpairs(scatter: np.ndarray, n: int) -> tuple[np.ndarray, np.nda
 def _fit_sines(
     products: np.ndarray, gram: np.ndarray, power: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fit each score's dominant harmonic, c_i(t) = a_i sin(h_i w t + psi_i) with a_i > 0.
-
-    From the products of the sines with the scores and with one another, and the scores' squares.
-    """
+    """Return harmonic, amplitude, phase and r2 of each score's dominant sine."""
     sine, cosine = slice(0, None, 2), slice(1, None, 2)
     ss, cc = gram.diagonal()[sine, None], gram.diagonal()[cosine, None]
     sc = gram.diagonal(1)[sine, None]
@@ -232,10 +226,7 @@ class WalkComponents:
         phases: np.ndarray,
         origin: float,
     ) -> Walker:
-        """Return a walker of this walk, with the figures of its fit.
-
-        Its clock starts at an angle of the stride, `origin`, past the middle of the walk.
-        """
+        """Return a walker of this walk, whose clock starts `origin` past the middle of the walk."""
         found, time = self.eigenpostures, self.walk.time.values
         period_s = 1 / found.frequency_hz
         middle_s = (time[0] + time[-1]) / 2
@@ -267,7 +258,7 @@ class WalkComponents:
             phases=phases,
             frequency_hz=found.frequency_hz,
             form=form,
-            speed_mm_s=self.walk.attrs.get("speed_mm_s", float("nan")),
+            speed_mm_s=known_speed(self.walk),
             time_origin_s=time[0] + after_start_s,
             fit=fit,
         )

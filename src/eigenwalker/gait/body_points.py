@@ -1,4 +1,4 @@
-"""Points of a body by the names of its joints: their paths, the pelvis, the direction it faces."""
+"""Points of a body by the names of its joints: paths, pelvis, facing, origin on the floor."""
 
 from __future__ import annotations
 
@@ -7,6 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 SIDES = ("left", "right")
+
+ANKLE_HEIGHT_OF_LEG = 0.084
+"""Height of a standing ankle as a share of thigh and shank (ANSUR II: 0.040 of 0.475 of height)."""
+
+_LOW_SHARE = 0.05
+"""Quantile of the heights of a foot that counts as its lowest level; lower ones may be noise."""
 
 
 def paths_of(
@@ -35,13 +41,29 @@ def legs_of(positions: np.ndarray, markers: Sequence[str]) -> list[np.ndarray]:
 
 
 def facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return the horizontal direction that a body faces in each frame, as complex numbers x + iy.
-
-    Square to the lines through both hips and both shoulders; None without these names.
-    """
+    """Return the direction x + iy square to hips and shoulders in each frame; None without them."""
     names = [[f"{side}_{part}" for side in SIDES] for part in ("hip", "shoulder")]
     pairs = [pair for each in names if (pair := paths_of(positions, markers, each)) is not None]
     if not pairs:
         return None
     x, y, _ = np.sum([pair[:, 0] - pair[:, 1] for pair in pairs], axis=0).T
     return y - 1j * x
+
+
+def find_origin(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray:
+    """Return the point on the floor under the mean pelvis.
+
+    The floor is `ANKLE_HEIGHT_OF_LEG` of the length of thigh and shank below the lowest standing
+    ankle; where legs are not known, at the level of the lowest marker.
+    """
+    x, y, _ = pelvis_path(positions, markers).mean(axis=0)
+    return np.array([x, y, _floor(positions, markers)])
+
+
+def _floor(positions: np.ndarray, markers: Sequence[str]) -> float:
+    legs = legs_of(positions, markers)
+    if not legs:
+        return float(np.quantile(positions[:, :, 2].min(axis=1), _LOW_SHARE))
+    bones = [np.linalg.norm(np.diff(leg, axis=1), axis=2).mean(axis=0).sum() for leg in legs]
+    lowest = min(np.quantile(leg[:, 2, 2], _LOW_SHARE) for leg in legs)
+    return float(lowest - ANKLE_HEIGHT_OF_LEG * np.mean(bones))

@@ -19,10 +19,7 @@ N_HARMONICS = 4
 
 
 def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
-    """Return the constant velocity of a movement that otherwise repeats with every stride.
-
-    In mm a stride, of shape (axis,), from a path (time, axis) and its times in strides.
-    """
+    """Return the velocity (axis,), in mm a stride, of a path that otherwise repeats."""
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         return _velocity_of_one_stride(path, cycles)
     basis = np.column_stack([cycles, harmonic_basis(cycles, N_HARMONICS)])
@@ -30,12 +27,10 @@ def mean_velocity(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
 
 
 def slow_drift(path: np.ndarray, cycles: np.ndarray) -> np.ndarray:
-    """Return the part of a movement that is slower than a stride.
+    """Return the part of a path (time, axis) that is slower than a stride; times are in strides.
 
-    A line and half-waves of less than `DRIFT_BELOW` cycles a stride are regressed together with
-    four harmonics of the stride, to which the drift therefore does not add.
-
-    Of shape (time, axis), like the path; its times are in strides, evenly spaced.
+    A line and half-waves of less than `DRIFT_BELOW` cycles a stride, regressed together with the
+    harmonics of the stride.
     """
     if cycles[-1] - cycles[0] < ONE_STRIDE:
         line = np.multiply.outer(cycles - cycles.mean(), _velocity_of_one_stride(path, cycles))

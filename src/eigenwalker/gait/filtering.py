@@ -16,14 +16,8 @@ _PASSES_CORRECTION = (np.sqrt(2) - 1) ** (1 / 4)
 def low_passed(positions: np.ndarray, rate_hz: float, cut_off_hz: float) -> np.ndarray:
     """Return low-pass filtered positions, with half the power left at the cut-off.
 
-    A Butterworth filter of second order, run forwards and backwards.
-
-    Positions of shape (time, marker, axis) are NaN where missing; each marker is filtered between
-    its gaps.
-
-    References
-    ----------
-    Winter (2009), Biomechanics and Motor Control of Human Movement, eq. 3.8.
+    A Butterworth filter of second order, run forwards and backwards, between the gaps of each
+    marker (Winter 2009, Biomechanics and Motor Control of Human Movement, eq. 3.8).
     """
     from scipy.signal import butter, sosfiltfilt  # takes 0.3 s; most captures need no filter
 

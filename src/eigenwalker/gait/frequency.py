@@ -157,10 +157,7 @@ _FEWEST_STRIDES = 0.9
 
 
 def _of_octaves(values: np.ndarray, angles: list[float]) -> float:
-    """Return which of some angles, octaves apart, is that of the stride.
-
-    The lower one explains its own first harmonic, which the higher one cannot.
-    """
+    """Return the angle of the stride: only it explains its own first harmonic."""
     chosen, *higher = sorted(angles)
     cycles = np.arange(len(values)) / (2 * np.pi)
     for angle in higher:
@@ -205,10 +202,7 @@ def _coarse_frequencies(
 
 
 def _explained(spectrum: np.ndarray, n: int, first: int, last: int) -> np.ndarray:
-    """Return the sum of squares over all columns that mean and two harmonics explain.
-
-    At each frequency of the grid from `first` to `last`, of `n` samples.
-    """
+    """Return the squares that mean and two harmonics explain, at the frequencies of a grid."""
     bins, turns, inverses = _normal_equations(n, 2 * (len(spectrum) - 1), first, last)
     turned = spectrum[bins] * turns[..., None]
     explained = np.zeros(turned.shape[1])
@@ -252,10 +246,7 @@ def _peak(values: np.ndarray, peak: int) -> tuple[float, float]:
 def _refined(
     scores: np.ndarray, angle: float, n_harmonics: int, trend: bool, max_steps: int = _MAX_STEPS
 ) -> float:
-    """Return the angle a frame at which harmonics leave the smallest residual.
-
-    By Gauss-Newton steps of the variable projection functional (Golub & Pereyra 1973).
-    """
+    """Return the angle a frame with the smallest residual, by Gauss-Newton steps."""
     reach = np.pi / len(scores)
     lowest, highest = angle - reach, angle + reach
     for _ in range(max_steps):
@@ -268,11 +259,7 @@ def _refined(
 
 
 def _gauss_newton_step(scores: np.ndarray, angle: float, n_harmonics: int, trend: bool) -> float:
-    """Return the Gauss-Newton step of the angle.
-
-    All sums over frames come from one product of the basis, and of its derivative by the angle,
-    with itself and with the data.
-    """
+    """Return the step of the angle, from products of the basis and its derivative with the data."""
     n = len(scores)
     frames = np.arange(n) - (n - 1) / 2
     harmonics = centred_harmonics(n, angle / (2 * np.pi), n_harmonics)[1:]

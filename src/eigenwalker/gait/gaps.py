@@ -38,12 +38,7 @@ def find_gaps(positions: np.ndarray) -> list[Gap]:
 def fill_short_gaps(
     positions: np.ndarray, rate_hz: float, max_gap_s: float = MAX_GAP_S
 ) -> tuple[np.ndarray, list[Gap]]:
-    """Return positions with short gaps filled by cubic splines, and the gaps that are left.
-
-    Gaps at the ends of the capture are never filled.
-
-    Positions have the shape (time, marker, axis), and are NaN where a marker was not seen.
-    """
+    """Return positions with short inner gaps filled by cubic splines, and other gaps."""
     n_frames = len(positions)
     longest = round(max_gap_s * rate_hz)
     filled, left = np.array(positions), []

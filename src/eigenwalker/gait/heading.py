@@ -99,10 +99,7 @@ def _angle(vector: np.ndarray) -> float:
 def ground_velocity(
     positions: np.ndarray, markers: Sequence[str], rate_hz: float
 ) -> np.ndarray | None:
-    """Return the horizontal velocity of the standing feet, in mm/s; None without both ankles.
-
-    The mean over both ankles of their velocity while they are low and move with the ground.
-    """
+    """Return the horizontal velocity of the low ankles, in mm/s; None without both ankles."""
     ankles = paths_of(positions, markers, [f"{side}_ankle" for side in SIDES])
     if ankles is None:
         return None
@@ -116,6 +113,11 @@ def _while_standing(path: np.ndarray, rate_hz: float) -> np.ndarray:
     along = velocity[low] @ mean / max(_length(mean), 1e-9)
     standing = along >= STANDING_BEYOND * np.median(along)
     return velocity[low][standing].mean(axis=0)
+
+
+def known_speed(walk: xr.DataArray) -> float:
+    """Return the speed in mm/s that `in_place` took out of a walk; NaN where it is not known."""
+    return float(walk.coords["speed_mm_s"]) if "speed_mm_s" in walk.coords else float("nan")
 
 
 def stance_speed(walk: xr.DataArray) -> float:
@@ -189,10 +191,7 @@ def sides_swapped(positions: np.ndarray, markers: Sequence[str]) -> bool:
 
 
 def _facing(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return the mean forward unit vector of the body; None without hips and shoulders.
-
-    Knees bend forwards, whatever is called left and right.
-    """
+    """Return the mean forward unit vector of the body, by its knees where sides are swapped."""
     facing = _facing_by_names(positions, markers)
     return -facing if facing is not None and sides_swapped(positions, markers) else facing
 

@@ -11,9 +11,9 @@ from eigenwalker.core.fourier import fit_basis
 from eigenwalker.core.kinematics import rotate_z
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
+from eigenwalker.gait.body_points import find_origin
 from eigenwalker.gait.drift import mean_velocity, slow_drift
 from eigenwalker.gait.filtering import low_passed
-from eigenwalker.gait.floor_origin import find_origin
 from eigenwalker.gait.gaps import MAX_GAP_S, fill_short_gaps
 from eigenwalker.gait.heading import find_heading
 from eigenwalker.gait.steady_strides import SteadyStrides, body_relative, find_steady_strides
@@ -75,8 +75,9 @@ def in_place(
     Returns
     -------
     DataArray of shape (time, marker, axis)
-        In millimetres, on the clock of the capture; a coordinate ``rotation`` is turned too. Beside
-        the ``attrs`` of the capture there are ``speed_mm_s`` (forward, NaN if unknown),
+        In millimetres, on the clock of the capture; a coordinate ``rotation`` is turned too. The
+        coordinate ``speed_mm_s`` is the forward speed, NaN if unknown, which later steps use. The
+        ``attrs`` record, beside those of the capture, this speed,
         ``treadmill``, ``heading_deg`` (direction of walking in the capture, from +x towards +y),
         ``feet_deg`` (direction of the standing feet beside it), ``steady_start_s``,
         ``steady_end_s``, ``n_strides``, ``frequency_hz``, ``straight_passes`` (from which the
@@ -143,14 +144,11 @@ def in_place(
     }
     if low_pass_hz is not None:
         facts["low_pass_hz"] = float(low_pass_hz)
-    return result.assign_attrs(facts)
+    return result.assign_coords(speed_mm_s=facts["speed_mm_s"]).assign_attrs(facts)
 
 
 def _without_still_points(walk: xr.DataArray) -> xr.DataArray:
-    """Return a capture without points that stay in the room while the others travel through it.
-
-    A joint that stays is not one of these: something is wrong with it, which `assess` has to find.
-    """
+    """Return a capture without points, other than joints, that stay in the room."""
     if walk.sizes["time"] < 2 or walk.sizes["marker"] < 2:
         return walk
     low, high = (np.where(np.isnan(walk), edge, walk).T for edge in (np.inf, -np.inf))

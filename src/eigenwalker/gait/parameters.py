@@ -11,7 +11,7 @@ from eigenwalker.core.walker import Walker
 from eigenwalker.gait.body_points import SIDES
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF, gait_events
 from eigenwalker.gait.frequency import fundamental_frequency
-from eigenwalker.gait.heading import stance_speed
+from eigenwalker.gait.heading import known_speed, stance_speed
 from eigenwalker.gait.in_place import in_place
 
 _STRIDES_PLAYED = 3
@@ -33,7 +33,7 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
         first (`in_place`); a walker is sampled over three strides.
     speed_mm_s : float, optional
         Speed of the walk. Otherwise it is that of the walker or of the capture that travels, the
-        ``attrs["speed_mm_s"]`` that `in_place` writes, or that of the standing feet
+        coordinate ``speed_mm_s`` that `in_place` gives a walk, or that of the standing feet
         (`stance_speed`).
 
     Returns
@@ -87,7 +87,7 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
             walk = in_place(walk)
         walk = check_trajectories(walk, complete=True)
         frequency_hz = fundamental_frequency(walk)
-        speed = walk.attrs.get("speed_mm_s", np.nan)
+        speed = known_speed(walk)
     events = gait_events(walk)
     speed = float(speed if speed_mm_s is None else speed_mm_s)
     if not np.isfinite(speed):

@@ -61,10 +61,7 @@ class SteadyStrides(NamedTuple):
 
 
 def body_relative(positions: np.ndarray) -> np.ndarray:
-    """Return the movement of shape (time, feature) relative to the body, without progress.
-
-    Relative to the middle of all markers; with fewer than three, to a straight path.
-    """
+    """Return the movement (time, feature) relative to the middle of all markers."""
     n_frames, n_markers, _ = positions.shape
     if n_markers >= 3:
         return (positions - positions.mean(axis=1, keepdims=True)).reshape(n_frames, -1)
@@ -107,10 +104,7 @@ def find_steady_strides(movement: np.ndarray, rate_hz: float) -> SteadyStrides:
 
 
 def _frequency(movement: np.ndarray, rate_hz: float) -> float:
-    """Return strides a second; of a recording that closes after one stride, that of its length.
-
-    The frequency of a single stride is estimated badly, unless its end leads to its beginning.
-    """
+    """Return strides a second; of a recording that closes after one stride, that of its length."""
     frequency_hz = frequency_of_scores(movement, rate_hz)
     once = abs(len(movement) * frequency_hz / rate_hz - 1) < ONE_STRIDE_WITHIN
     return rate_hz / len(movement) if once and closes(movement) else frequency_hz
@@ -148,10 +142,7 @@ def _settle(
 
 
 def _departure(movement: np.ndarray, rate_hz: float, window: Window) -> tuple[np.ndarray, float]:
-    """Return each frame's squared distance from the cycle of a window over its variance.
-
-    And the frames of one stride.
-    """
+    """Return each frame's departure from the cycle of a window, and the frames of one stride."""
     inside = movement[slice(*window)]
     stride = rate_hz / frequency_of_scores(inside, rate_hz)
     cycles = np.arange(len(movement)) / stride

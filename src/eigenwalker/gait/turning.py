@@ -30,13 +30,10 @@ _ROUNDS = 10
 
 
 def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) -> np.ndarray:
-    """Return the direction that the body faces, averaged over a stride around each frame.
+    """Return the direction (time,) that the body faces, in radians, averaged over a stride.
 
-    It is square to the lines through both hips and both shoulders; without these names, it is the
-    turn that brings the markers nearest to their mean posture.
-
-    In radians, of shape (time,), without jumps of a full turn; all 0 where it is unknown or hardly
-    changes.
+    Square to hips and shoulders, or, without these names, the turn that brings the markers nearest
+    to their mean posture; all 0 where it is unknown or hardly changes.
     """
     straight = np.zeros(len(positions))
     facing = _facing(positions, list(markers))
@@ -61,10 +58,7 @@ def slow_heading(positions: np.ndarray, markers: Sequence[str], rate_hz: float) 
 
 
 def unwound(positions: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """Return a walk made straight: in the direction of its first frame throughout.
-
-    The body is turned back by its slow heading, and so is each step of its path: progress along a
-    curve becomes progress along a line.
+    """Return a walk whose body and steps are turned back by its slow heading.
 
     Where a marker is missing in a frame, all are missing in the result.
     """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from eigenwalker.io.up_axis_and_unit import (
     turn_upright,
     up_axis,
 )
-from eigenwalker.markers.marker_sets import numbered, repeated
+from eigenwalker.markers.marker_sets import MEASURED, numbered, repeated
 
 _SPELLINGS = {
     "millimeter": "mm",
@@ -137,6 +137,17 @@ def trajectories_of(
 def with_coordinate(walk: Any, name: str, values: np.ndarray) -> xr.DataArray:
     """Return trajectories with a coordinate of shape (time, marker, axis), or fewer of these."""
     return walk.assign_coords({name: (DIMS[: values.ndim], values)})
+
+
+def with_scalars(walk: Any, known: Mapping[str, object]) -> xr.DataArray:
+    """Return trajectories with coordinates for what is known of a capture and used later.
+
+    Lengths that were measured on the person, and the speed of a walk that is in place.
+    """
+    used = [name for name in known if name.endswith(MEASURED)]
+    used += ["speed_mm_s"] if {"speed_mm_s", "heading_deg"} <= set(known) else []
+    numbers = {name: known[name] for name in used if isinstance(known[name], int | float)}
+    return walk.assign_coords(numbers)
 
 
 def _fits_a_body(positions: np.ndarray, names: Sequence[str], unit: Unit) -> bool:

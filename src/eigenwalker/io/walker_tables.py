@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_rows, to_rows
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker, fourier_coefficients
-from eigenwalker.gait.floor_origin import find_origin
+from eigenwalker.gait.body_points import find_origin
 from eigenwalker.gait.heading import ground_speed
 
 SIN_FIRST = ("mean", "sin1", "cos1", "sin2", "cos2")

@@ -33,14 +33,7 @@ def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
 
     A marker flickers if it leaves its path by a sudden step and returns by the opposite one within
     `LONGEST_S`; also if it reaches its path only after its first few frames, or leaves it before
-    its last. Any other sudden step is a jump.
-
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        Millimetres; NaN where a marker was not seen.
-    rate_hz : float
-        Frames a second.
+    its last. Any other sudden step is a jump. Positions (time, marker, axis) are in millimetres.
     """
     longest = max(1, round(LONGEST_S * rate_hz))
     off_path = np.zeros(positions.shape[:2], dtype=bool)
@@ -55,10 +48,7 @@ def find_flicker(positions: np.ndarray, rate_hz: float) -> Flicker:
 
 
 def _calm(positions: np.ndarray) -> np.ndarray:
-    """Return which markers, always seen, have steps too even for any to be sudden.
-
-    A step is no further from the median of those around it than these are from each other.
-    """
+    """Return which markers, always seen, have steps too even for any to be sudden."""
     if len(positions) <= _AROUND:
         return np.zeros(positions.shape[1], dtype=bool)
     steps = np.diff(positions, axis=0)

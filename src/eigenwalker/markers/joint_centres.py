@@ -34,10 +34,7 @@ class Pelvis:
 
 
 def pelvis_from_spines(left: np.ndarray, right: np.ndarray, back: np.ndarray) -> Pelvis:
-    """Return the pelvis from its front iliac spines and the midpoint of the back ones (or sacrum).
-
-    Arrays of shape (time, 3), in mm; NaN where missing.
-    """
+    """Return the pelvis from its front iliac spines and the middle of the back ones."""
     origin = (left + right) / 2
     leftward = unit(left - right)
     forward = unit(across(origin - back, leftward))
@@ -84,11 +81,9 @@ HIP_REGRESSIONS: dict[str, Callable[[Pelvis, float], tuple[float, float, float]]
 def chord(
     proximal: np.ndarray, marker: np.ndarray, outward: np.ndarray, offset_mm: float
 ) -> np.ndarray:
-    """Return a joint centre by the chord function.
+    """Return the joint centre of a hinge, `offset_mm` inwards of the marker on its skin.
 
-    It lies `offset_mm` from the marker on the skin, in the plane of the proximal joint, the marker
-    and the direction `outward`, inwards of the marker, so that the segment stands at a right angle
-    on the line from centre to marker.
+    In the plane of the joint above, the marker and `outward`; the segment is square to the offset.
     """
     segment = marker - proximal
     length = np.linalg.norm(segment, axis=1, keepdims=True)

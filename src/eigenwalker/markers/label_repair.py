@@ -38,6 +38,25 @@ class Repair(NamedTuple):
     partner: str = ""
 
 
+class Rebuilt(NamedTuple):
+    """What stands for markers that were never seen.
+
+    Parameters
+    ----------
+    point : str
+        The joint or landmark.
+    kind : {"from", "mirrored", "above neck"}
+        The midpoint of ``sources`` alone; their mirror image; a place above the neck.
+    sources, lacking : tuple of str
+        Markers from which it was made, and those that are absent.
+    """
+
+    point: str
+    kind: Literal["from", "mirrored", "above neck"]
+    sources: tuple[str, ...] = ()
+    lacking: tuple[str, ...] = ()
+
+
 def repair_labels(trajectories: xr.DataArray) -> xr.DataArray:
     """Return a capture in which left and right keep their places and no marker flickers.
 

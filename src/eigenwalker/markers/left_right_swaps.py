@@ -32,16 +32,8 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
     the other left markers. Where all pairs change places, most labels stay as they are, or, if the
     body moves through the room, it has to walk forwards.
 
-    Parameters
-    ----------
-    positions : array of shape (time, marker, axis)
-        NaN where a marker was not seen.
-    pairs : sequence of pairs of int
-        Index of each left marker and of its right counterpart.
-
-    Returns
-    -------
-    array of bool of shape (time, pair)
+    Positions (time, marker, axis) are NaN where a marker was not seen; each pair holds the index of
+    a left marker and of its right counterpart. The result has the shape (time, pair).
     """
     exchanged = np.zeros((len(positions), len(pairs)), dtype=bool)
     for number in np.flatnonzero(_within_reach(positions, np.array(pairs))).tolist():
@@ -62,11 +54,7 @@ def exchanged_sides(positions: np.ndarray, pairs: Sequence[tuple[int, int]]) -> 
 
 
 def _within_reach(positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Return which pairs may change places: those whose steps, added up, reach across.
-
-    By the triangle inequality, exchanging labels shortens the steps by more than `SWAP_MM` each
-    only if both steps add up to more than the distance of the two markers and `SWAP_MM`.
-    """
+    """Return which pairs may change places: their steps together exceed their distance."""
     steps = np.diff(positions, axis=0)
     farthest = np.sqrt(np.einsum("tma,tma->tm", steps, steps).max(axis=0))[pairs].sum(axis=1)
     across = positions[:, pairs[:, 0]] - positions[:, pairs[:, 1]]
@@ -75,10 +63,9 @@ def _within_reach(positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 
 def _decided(exchanged: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """Return where labels are exchanged, from the side on which each pair's left marker then is.
+    """Return where labels are exchanged, by the side of each pair's left marker.
 
-    Where that is unclear, as for heels, a pair follows those that change places at the same frames;
-    without such pairs most of its labels stay.
+    A pair with no clear side, such as heels, follows those that change places at the same frames.
     """
     clear = np.abs(sides) > CLEAR_SIDE_MM
     decided = exchanged ^ (clear & (sides < 0))

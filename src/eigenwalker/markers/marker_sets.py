@@ -12,6 +12,8 @@ from importlib.resources import files
 from typing import NamedTuple
 
 SIDES = ("left", "right")
+MEASURED = ("_width_mm", "_leg_length_mm", "_shoulder_offset_mm")
+"""Ends of the coordinates that hold what was measured on a person."""
 MIN_COMMON = 0.6
 """Share of the names that must begin alike for their prefix to be the name of a subject."""
 MAX_PREFIXES = 20
@@ -61,10 +63,7 @@ class MarkerSet:
 
 @cache
 def known_sets() -> tuple[MarkerSet, ...]:
-    """Return the marker sets of ``marker_sets.toml``, in the order in which they are tried.
-
-    The last is made of all sets on the skin, for captures that mix them.
-    """
+    """Return the marker sets of ``marker_sets.toml`` and one of all on the skin."""
     text = files("eigenwalker.markers").joinpath("marker_sets.toml").read_text(encoding="utf-8")
     sets = [
         MarkerSet(
@@ -106,10 +105,7 @@ def _both_sides(entries: Mapping[str, str]) -> dict[str, str]:
 
 
 class MarkerMatch(NamedTuple):
-    """Markers of a capture whose midpoint a point of a set is, and whether it is a stand-in.
-
-    `lacking` are the markers of a better alternative that the capture has only in part.
-    """
+    """Markers whose midpoint a point of a set is; those lacking of a better one."""
 
     markers: tuple[str, ...]
     stand_in: bool
@@ -195,10 +191,7 @@ def _side_pairs(names: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
 
 
 def numbered(names: Sequence[str]) -> list[str]:
-    """Return the names, numbered from the second of the same name on: ``hand``, ``hand_2``.
-
-    Names are cut to `MAX_LENGTH` letters, as arrays of names take for each the room of the longest.
-    """
+    """Return the names cut to `MAX_LENGTH`, the second of a name as ``hand_2``."""
     taken: dict[str, int] = {}
     different: list[str] = []
     for whole in names:

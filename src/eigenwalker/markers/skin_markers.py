@@ -19,6 +19,7 @@ from eigenwalker.markers.joint_centres import (
     pelvis_from_spines,
     unit,
 )
+from eigenwalker.markers.label_repair import Rebuilt
 from eigenwalker.markers.marker_sets import SIDES
 
 Points = dict[str, np.ndarray]
@@ -52,12 +53,11 @@ class Measures:
     lengths_mm: Mapping[str, float] = field(default_factory=dict)
 
 
-def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str], list[str]]:
+def joints_from_skin(skin: Points, measures: Measures) -> tuple[Points, set[str], list[Rebuilt]]:
     """Return the joints that markers on the skin give, which are approximate, and what is rebuilt.
 
     `skin` has landmarks by the names of ``marker_sets.toml``, and joints that are known otherwise
     (wrists). Approximate are joints that rest on a regression, an assumed width or a stand-in.
-    Rebuilt is what stands for markers that were never seen, in words.
     """
     body = _Body(dict(skin), measures)
     pelvis = body.pelvis()
@@ -78,7 +78,7 @@ class _Body:
         self.measures = measures
         self.joints: Points = {}
         self.approximate: set[str] = set()
-        self.rebuilt: list[str] = []
+        self.rebuilt: list[Rebuilt] = []
         self.leg_mm = _leg_length(skin, measures.lengths_mm)
 
     def trunk(self) -> None:
@@ -101,7 +101,7 @@ class _Body:
             return
         self.joints["head"] = neck + np.array([0, 0, HEAD_OF_LEG * self.leg_mm])
         self.approximate.add("head")
-        self.rebuilt.append("head: above the neck, without any marker on it")
+        self.rebuilt.append(Rebuilt("head", "above neck"))
 
     def pelvis(self) -> Pelvis | None:
         """The pelvis from its iliac spines; one may be missing, the back ones be one sacrum."""
@@ -160,10 +160,7 @@ class _Body:
         self._inwards_of_marker(elbow, self.joints[shoulder], outward)
 
     def _inwards_of_marker(self, name: str, above: np.ndarray, outward: np.ndarray) -> None:
-        """The centre of a hinge: midway between inner and outer marker, else by the chord function.
-
-        Where the joint above is missing, the centre stands to its marker as before and after.
-        """
+        """Find the centre of a hinge, midway between both markers, else by the chord function."""
         centre = self._midpoint(name, f"{name}_inner")
         if centre is None:
             width = self.measures.lengths_mm.get(f"{name}_width")
@@ -197,7 +194,7 @@ class _Body:
         gone = pair[1 - pair.index(present[0])]
         self.skin[gone] = point - 2 * across_it
         self.approximate.add("pelvis")
-        self.rebuilt.append(f"{gone}: mirrored from {present[0]}")
+        self.rebuilt.append(Rebuilt(gone, "mirrored", (present[0],)))
 
 
 _FRONT = ("left_front_waist", "right_front_waist")
@@ -223,11 +220,7 @@ def _plane_of_wand(
 def _axis_of_elbow(
     shoulder: np.ndarray, elbow: np.ndarray, wrist: np.ndarray, outward: np.ndarray
 ) -> np.ndarray:
-    """Return the outward direction at right angles to the lines from marker to shoulder and wrist.
-
-    This is Plug-in Gait's plane, through the marker and not yet through the elbow's centre.
-    A nearly straight arm shows none; there it is as before and after.
-    """
+    """Return the outward direction square to upper arm and forearm, where they bend."""
     axis = np.cross(unit(elbow - shoulder), unit(wrist - elbow))
     axis[np.linalg.norm(axis, axis=1) < CLEAR_BEND] = np.nan
     axis = bridged(axis)
@@ -251,11 +244,7 @@ def _leg_length(skin: Points, lengths_mm: Mapping[str, float]) -> float:
 
 
 def midpoint(points: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the midpoint of markers that move together, also where some of them are missing.
-
-    Of two, a missing one stands to the other as before and after; of more, it is put where the
-    others say.
-    """
+    """Return the midpoint of markers that move together; a missing one is put where others say."""
     if not any(np.isnan(point).any() for point in points):
         return sum(points[1:], points[0]) / len(points)
     if len(points) == 2:

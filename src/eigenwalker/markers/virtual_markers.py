@@ -12,8 +12,9 @@ import xarray as xr
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.markers.joint_centres import HIP_REGRESSIONS
-from eigenwalker.markers.label_repair import repair_labels
+from eigenwalker.markers.label_repair import Rebuilt, repair_labels
 from eigenwalker.markers.marker_sets import (
+    MEASURED,
     SIDES,
     MarkerNames,
     MarkerSet,
@@ -40,7 +41,7 @@ class _Joints(NamedTuple):
     joints: Points
     approximate: set[str]
     name: str
-    rebuilt: tuple[str, ...] = ()
+    rebuilt: tuple[Rebuilt, ...] = ()
     markers: frozenset[str] = frozenset()
     share: float = 1.0
     runner_up: str = ""
@@ -78,7 +79,8 @@ def virtual_markers(
         walkers agree with what laboratories see; Harrington's is nearer to images of hips.
     widths_mm : mapping of str to float, optional
         Widths ``"knee"``, ``"ankle"``, ``"elbow"`` as measured on the person, for sets without
-        inner markers. If left out, those in the file are used, or else shares of the leg.
+        inner markers. If left out, the coordinates such as ``left_knee_width_mm`` are used, which
+        `read_mocap` gives a capture whose file states them, or else shares of the leg.
 
     Returns
     -------
@@ -88,8 +90,7 @@ def virtual_markers(
         capture are added ``repairs`` (as `repair_labels` gives them), ``marker_set`` (name of the
         set), ``marker_set_share`` (share of its points for which there are markers),
         ``marker_set_runner_up`` (the next best set), ``approximate`` (joints that rest on a
-        regression, an assumed width or a stand-in), and ``rebuilt`` (what stands for markers that
-        were never seen).
+        regression, an assumed width or a stand-in), and ``rebuilt`` (a tuple of `Rebuilt`).
 
     Raises
     ------
@@ -136,12 +137,14 @@ def virtual_markers(
         order += [extra for extra in best.joints if extra not in order]
     values = np.stack([best.joints[joint] for joint in order], axis=1)
     result = trajectories_at(walk.time.values, values, order)
+    scalars = {name: value for name, value in walk.coords.items() if not value.dims}
+    result = result.assign_coords(scalars)
     result.attrs = walk.attrs | {
         "marker_set": best.name,
         "marker_set_share": best.share,
         "marker_set_runner_up": best.runner_up,
         "approximate": [joint for joint in order if joint in best.approximate],
-        "rebuilt": list(best.rebuilt),
+        "rebuilt": best.rebuilt,
     }
     if joints == "walker" and best.markers and "repairs" in walk.attrs:
         result.attrs["repairs"] = tuple(
@@ -191,11 +194,11 @@ def _mapped_joints(walk: xr.DataArray, mapping: Mapping[str, str | Sequence[str]
 
 
 def _lengths(walk: xr.DataArray, widths_mm: Mapping[str, float]) -> dict[str, float]:
-    """Return measured lengths by ``left_knee_width`` and so on: those given, else the file's."""
+    """Return measured lengths by ``left_knee_width`` and so on: those given, else the capture's."""
     lengths = {
-        str(key).removesuffix("_mm"): float(value)
-        for key, value in walk.attrs.items()
-        if str(key).endswith(("_width_mm", "_leg_length_mm", "_shoulder_offset_mm"))
+        str(name).removesuffix("_mm"): float(value)
+        for name, value in walk.coords.items()
+        if str(name).endswith(MEASURED)
     }
     for part, width in widths_mm.items():
         if part not in WIDTH_OF_LEG or not 0 < width < MAX_WIDTH_MM:
@@ -252,7 +255,7 @@ def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: M
     """Return the joints by one marker set: those captured as such, others from the skin."""
     direct: Points = {}
     stand_ins: set[str] = set()
-    rebuilt: list[str] = []
+    rebuilt: list[Rebuilt] = []
     used: set[str] = set()
     for joint, entry in (*known.joints.items(), *known.extras.items()):
         if hit := names.find(entry):
@@ -260,8 +263,7 @@ def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: M
             stand_ins |= {joint} if hit.stand_in else set()
             used |= set(hit.markers) if joint in known.joints else set()
             if hit.lacking:
-                present, absent = " and ".join(hit.markers), " and ".join(hit.lacking)
-                rebuilt.append(f"{joint}: from {present}, without {absent}")
+                rebuilt.append(Rebuilt(joint, "from", hit.markers, hit.lacking))
     hits = {
         landmark: hit.markers
         for landmark, entry in known.landmarks.items()

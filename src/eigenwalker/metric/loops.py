@@ -16,7 +16,7 @@ from eigenwalker.core.trajectories import (
     sampling_rate,
     trajectories_at,
 )
-from eigenwalker.gait.floor_origin import find_origin
+from eigenwalker.gait.body_points import find_origin
 from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import closes, closing_step

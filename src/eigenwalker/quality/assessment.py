@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
@@ -15,7 +15,7 @@ from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import body_relative
 from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
-from eigenwalker.markers.label_repair import repair_labels
+from eigenwalker.markers.label_repair import Rebuilt, Repair, repair_labels
 from eigenwalker.quality.quality import Quality
 
 LIMBS = tuple(
@@ -80,11 +80,35 @@ def assess(trajectories: xr.DataArray) -> Quality:
         walk, problem = in_place(repaired, repair=False), ""
     except ValueError as error:
         walk, problem = None, str(error)
-    return judge(capture, repaired, walk, problem)
+    return judge(capture, repaired, walk, CaptureRecord.of(repaired), problem)
+
+
+class CaptureRecord(NamedTuple):
+    """What reading and repairing a capture found, which its positions do not show.
+
+    Fields as in `Quality`.
+    """
+
+    repairs: tuple[Repair, ...] = ()
+    rebuilt: tuple[Rebuilt, ...] = ()
+    repeated: tuple[str, ...] = ()
+    unit: str = ""
+    unit_guessed: bool = False
+    n_frames_cut: int = 0
+
+    @classmethod
+    def of(cls, capture: xr.DataArray) -> Self:
+        """Return what the attributes of a capture record."""
+        known = {name: capture.attrs[name] for name in cls._fields if name in capture.attrs}
+        return cls(**{**known, "repeated": names_in(capture, "repeated")})
 
 
 def judge(
-    capture: xr.DataArray, repaired: xr.DataArray, walk: xr.DataArray | None, problem: str = ""
+    capture: xr.DataArray,
+    repaired: xr.DataArray,
+    walk: xr.DataArray | None,
+    record: CaptureRecord,
+    problem: str = "",
 ) -> Quality:
     """Return what is known of a capture and of the walk that was made of it.
 
@@ -107,16 +131,11 @@ def judge(
         missing_share={
             name: float(share) for name, share in zip(names, missing, strict=True) if share
         },
-        repairs=tuple(repaired.attrs.get("repairs", ())),
-        rebuilt=names_in(capture, "rebuilt"),
-        repeated=names_in(capture, "repeated"),
+        **record._asdict(),
         sides_swapped=walk is not None and sides_swapped(walk.values, names),
         bone_length_variation=bone_length_variation(strides),
         height_mm=height_mm,
         lean_deg=lean_deg,
-        unit=str(capture.attrs.get("unit", "")),
-        unit_guessed=bool(capture.attrs.get("unit_guessed", False)),
-        n_frames_cut=int(capture.attrs.get("n_frames_cut", 0)),
         problem=problem,
         **({} if walk is None else _steadiness(walk, strides, repaired.values, rate_hz)),
     )

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from eigenwalker.markers.label_repair import Repair
+from eigenwalker.markers.label_repair import Rebuilt, Repair
 
 Verdict = Literal["use", "use with care", "do not use"]
 
@@ -72,9 +72,10 @@ class Quality:
         Share of frames without the marker, for markers that miss any.
     repairs : tuple of Repair
         Labels that were repaired, and jumps.
-    rebuilt, repeated : tuple of str
-        Markers that were never seen, and what replaces them; names of several markers, of which the
-        first is taken.
+    rebuilt : tuple of Rebuilt
+        What stands for markers that were never seen.
+    repeated : tuple of str
+        Names of several markers, of which the first is taken.
     sides_swapped : bool
         Whether knees bend backwards throughout: left is called right, or the capture is mirrored.
     bone_length_variation : mapping of (str, str) to float
@@ -108,7 +109,7 @@ class Quality:
     n_frames: int
     missing_share: Mapping[str, float]
     repairs: tuple[Repair, ...]
-    rebuilt: tuple[str, ...]
+    rebuilt: tuple[Rebuilt, ...]
     repeated: tuple[str, ...]
     sides_swapped: bool
     bone_length_variation: Mapping[tuple[str, str], float]

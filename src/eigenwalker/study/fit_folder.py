@@ -21,7 +21,7 @@ from eigenwalker.io.read import companion_files
 from eigenwalker.population.population import FLAG, Population, flags_of, join_flags
 from eigenwalker.study.capture_table import FILE, capture_table, captures_in
 from eigenwalker.study.checkpoint import Checkpoint
-from eigenwalker.study.messages import flag_of, summarise
+from eigenwalker.study.messages import flag_of, rebuilt_in_words, summarise
 from eigenwalker.study.process_capture import CaptureResult, process_capture
 
 _Outcome = tuple[Walker | None, dict[str, Any]]
@@ -276,7 +276,7 @@ def _row(result: CaptureResult) -> dict[str, Any]:
         "wander_mm": quality.wander_mm,
         "bone_variation": max(quality.bone_length_variation.values(), default=float("nan")),
         "missing_share": float(np.isnan(capture.values).any(axis=2).mean()),
-        "rebuilt": "; ".join(quality.rebuilt),
+        "rebuilt": rebuilt_in_words(quality),
         "jumps": sum(quality.jumps.values()),
         "left_right_swaps": quality.left_right_swaps,
         "low_pass_hz": result.walk.attrs.get("low_pass_hz", float("nan")),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -13,17 +11,20 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.trajectories import sampling_rate
-from eigenwalker.io.errors import printable
 from eigenwalker.io.read import read_mocap
 from eigenwalker.population.population import Population, flags_of
 from eigenwalker.population.population_file import looks_like_population
-from eigenwalker.study.messages import reasons, repair_in_words
-from eigenwalker.study.process_capture import NoWalkError, process_capture, stated
-
-Fact = str | float | int | bool | None | list[str]
+from eigenwalker.study.messages import (
+    Fact,
+    plain_fact,
+    reasons,
+    rebuilt_in_words,
+    repair_in_words,
+)
+from eigenwalker.study.process_capture import NoWalkError, process_capture
 
 _MEASURED = (
-    *("missing_share", "rebuilt", "jumps", "removed_share", "left_right_swaps", "sides_swapped"),
+    *("missing_share", "jumps", "removed_share", "left_right_swaps", "sides_swapped"),
     *("bone_length_variation", "height_mm", "unit_guessed", "n_strides", "steady_share"),
     *("straight_passes", "unwound_deg", "frequency_hz", "speed_mm_s", "climb", "climb_mm"),
     *("wander_mm", "filled_share", "r2", "periodicity", "level", "treadmill"),
@@ -69,14 +70,16 @@ def inspect_file(
     >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
     ('C3D', 'use', 10, [])
     """
-    path = Path(path)
-    facts = None
+    facts = file_facts(Path(path), unit=unit, rate_hz=rate_hz)
+    return {name: plain_fact(value) for name, value in facts.items()}
+
+
+def file_facts(path: Path, *, unit: str | None, rate_hz: float | None) -> dict[str, object]:
+    """Return what `inspect_file` does, with mappings, tuples and NaN as they are."""
     with suppress(OSError):  # reading it gives the reason
         if path.is_file() and looks_like_population(path):
-            facts = _of_population(Population.load(path))
-    if facts is None:
-        facts = _of_capture(path, unit, rate_hz)
-    return {name: _plain(value) for name, value in facts.items()}
+            return _of_population(Population.load(path))
+    return _of_capture(path, unit, rate_hz)
 
 
 def _of_population(population: Population) -> dict[str, object]:
@@ -115,7 +118,7 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
     problems = [str(warning.message) for warning in caught]
     facts = _as_read(capture)
     try:
-        result = process_capture(capture, **stated(capture))
+        result = process_capture(capture)
         joints, quality = result.walk, result.quality
     except NoWalkError as error:
         joints, quality = error.joints, error.quality
@@ -131,6 +134,7 @@ def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str
         "verdict": quality.verdict,
         "problems": [*problems, *reasons(quality)],
         **{name: getattr(quality, name) for name in _MEASURED},
+        "rebuilt": [line for line in rebuilt_in_words(quality).split("; ") if line],
         "swaps": [repair_in_words(each) for each in quality.repairs if each.kind == "swap"],
         **facts,
         **{name: joints.attrs.get(name) for name in _MARKER_SET},
@@ -151,16 +155,3 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
         "missing_markers": capture.marker.values[missing.all(axis=0)].tolist(),
         "markers": capture.marker.values.tolist(),
     }
-
-
-def _plain(value: object) -> Fact:
-    """Return a value in types of JSON: NaN as None, each number of a mapping as a phrase."""
-    if isinstance(value, Mapping):
-        names = [key if isinstance(key, str) else " to ".join(key) for key in value]
-        value = [f"{name}: {n:.3g}" for name, n in zip(names, value.values(), strict=True)]
-    if isinstance(value, list | tuple):
-        return [printable(str(each)) for each in value]
-    value = value.item() if isinstance(value, np.generic) else value
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return value if value is None or isinstance(value, bool | int) else printable(str(value))

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any
 
+import numpy as np
 import pandas as pd
 
+from eigenwalker.io.errors import printable
 from eigenwalker.markers.label_repair import Repair
-from eigenwalker.quality.quality import (
-    BONE_VARIATION,
-    FLICKER_SHARE,
-    FREQUENCIES_HZ,
-    STEADY_R2,
-    Quality,
-)
+from eigenwalker.quality import quality as limit
+from eigenwalker.quality.quality import BONE_VARIATION, FLICKER_SHARE, Quality
 from eigenwalker.study.body_warnings import WIDE_HIPS, RetargetingWarnings
 from eigenwalker.study.process_capture import CaptureResult
+
+Fact = str | float | int | bool | None | list[str]
+
+
+@cache
+def _words() -> dict[str, dict[str, Any]]:
+    text = files("eigenwalker.study").joinpath("messages.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
 
 
 def reasons(quality: Quality) -> list[str]:
@@ -42,7 +51,7 @@ def reasons(quality: Quality) -> list[str]:
     'The head is not above the feet: the wrong axis points up.'
     """
     values = _values(quality)
-    return [_SENTENCES[finding].format(**values) for finding in quality.findings]
+    return [_words()["findings"][finding].format(**values) for finding in quality.findings]
 
 
 def flag_of(quality: Quality) -> str:
@@ -75,10 +84,18 @@ def capture_lines(result: CaptureResult) -> list[str]:
     if flag := flag_of(quality):
         lines.append(flag)
     if quality.rebuilt:
-        lines.append(f"Rebuilt: {'; '.join(quality.rebuilt)}.")
+        lines.append(f"Rebuilt: {rebuilt_in_words(quality)}.")
     if quality.unit_guessed:
         lines.append(f"The file names no unit; {quality.unit} was guessed from the height.")
     return lines
+
+
+def rebuilt_in_words(quality: Quality) -> str:
+    """Return what stands for markers that were never seen, in one line."""
+    return "; ".join(
+        _words()["rebuilt"][each.kind].format(each, *map(" and ".join, each[2:]))
+        for each in quality.rebuilt
+    )
 
 
 def repair_in_words(repair: Repair) -> str:
@@ -96,7 +113,7 @@ def _length(millimetres: float) -> str:
 
 
 def _values(quality: Quality) -> dict[str, object]:
-    """Return what `_SENTENCES` name."""
+    """Return what the sentences on findings name."""
     variation = quality.bone_length_variation
     limb = max(variation, key=lambda limb: variation[limb], default=("", ""))
     swaps = [repair_in_words(repair) for repair in quality.repairs if repair.kind == "swap"]
@@ -104,6 +121,7 @@ def _values(quality: Quality) -> dict[str, object]:
     often = [name for name, share in quality.removed_share.items() if share > FLICKER_SHARE]
     return {
         "q": quality,
+        "limit": limit,
         "height": _length(quality.height_mm),
         "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
         "rises": "rises" if quality.climb > 0 else "falls",
@@ -118,60 +136,12 @@ def _values(quality: Quality) -> dict[str, object]:
     }
 
 
-_NOT_PERIODIC = (
-    "This is no steady walk: two harmonics explain {q.r2:.2f} of the movement, where steady walks "
-    f"reach {STEADY_R2:.2f} or more."
-)
-_SENTENCES = {
-    "head_below_feet": "The head is not above the feet: the wrong axis points up.",
-    "leaning": "From feet to head the body leans by {q.lean_deg:.0f} degrees: the frame is tilted, "
-    "or head or feet are not where they are said to be.",
-    "impossible_height": "From feet to head the body measures {height}, which no walking person "
-    "does: {wrong_unit}. Read it with unit=...",
-    "small_body": "From feet to head the body measures {height}: if this is no small child, "
-    "{wrong_unit}.",
-    "no_steady_walk": "No steady walk was found. {q.problem}",
-    "not_level": "This is no level walk: the body {rises} by {rise:.0f} mm over {q.n_strides} "
-    "strides.",
-    "hardly_periodic": _NOT_PERIODIC,
-    "not_periodic": _NOT_PERIODIC,
-    "cadence": "{q.frequency_hz:.2f} strides a second is not the pace of a walk, which is between "
-    f"{FREQUENCIES_HZ[0]} and {FREQUENCIES_HZ[1]}; the frame rate may be wrong.",
-    "one_stride": "Only one stride is steady, so nothing tells how it varies.",
-    "unsteady": "This is no steady walk: {q.n_strides} strides hang together, {q.steady_share:.0%} "
-    "of the time spent walking.",
-    "filled_gaps": "Of the steady samples {q.filled_share:.0%} were missing and were filled.",
-    "elastic_limbs": "{n_elastic} of {n_limbs} limbs change length by more than "
-    f"{BONE_VARIATION:.0%}; worst from {{worst}}.",
-    "sides_swapped": "Knees bend backwards: left is called right, or the capture is mirrored.",
-    "repeated_names": "Several markers are called alike, and the first of them is taken: "
-    "{repeated}.",
-    "swapped_labels": "Left and right changed places and were put right: {swaps}.",
-    "flicker": "Markers flicker, and gaps were left: {often}.",
-    "jumps": "Markers jump: {jumping}.",
-    "cut_short": "The file lacks {q.n_frames_cut} of the frames that it declares.",
-}
-
-_SUMMARY = {
-    "rate_hz": ("rate", "{:.4g} Hz"),
-    "duration_s": ("duration", "{:.3g} s"),
-    "strides": ("strides found", "{:.0f}"),
-    "frequency_hz": ("stride frequency", "{:.3f} Hz"),
-    "r2": ("share explained", "{:.3f}"),
-    "periodicity": ("periodicity", "{:.3f}"),
-    "missing_share": ("missing samples", "{:.1%}"),
-    "bone_variation": ("limb length varies by", "{:.1%}"),
-    "wander_mm": ("drift", "{:.0f} mm"),
-}
-"""Columns of `Study.files`, their names in the summary, and how their values are written."""
-
-
 def summary_in_words(files: pd.DataFrame) -> dict[str, str]:
     """Return medians, ranges and counts of the captures of a study."""
     read = files[files["status"] != "refused"]
     lines = {}
     for column, values in summarise(files).iterrows():
-        name, form = _SUMMARY[str(column)]
+        name, form = _words()["summary"][str(column)]
         median, least, most = map(float, values)
         lines[name] = _range(median, least, most, form)
     for column, name in (("jumps", "jumps"), ("left_right_swaps", "left-right swaps")):
@@ -213,7 +183,7 @@ def summarise(files: pd.DataFrame) -> pd.DataFrame:
     rate_hz   100.0  100.0  120.0
     """
     read = files[files["status"] != "refused"]
-    columns = [name for name in _SUMMARY if name in read and read[name].notna().any()]
+    columns = [name for name in _words()["summary"] if name in read and read[name].notna().any()]
     table = read[columns].agg(["median", "min", "max"]).T
     return table.rename(columns={"min": "least", "max": "most"})
 
@@ -223,69 +193,48 @@ def _range(median: float, least: float, most: float, form: str) -> str:
     return form.format(median) + ("" if low == high else f" ({low} to {high})")
 
 
-_INSPECTION = {
-    "kind": ("kind", "{}"),
-    "verdict": ("verdict", "{}"),
-    "problems": ("problems", ""),
-    "format": ("format", "{}"),
-    "unit": ("unit", "{}"),
-    "rate_hz": ("rate", "{:.6g} Hz"),
-    "duration_s": ("duration", "{:.4g} s"),
-    "n_frames": ("frames", "{}"),
-    "n_strides": ("strides found", ""),
-    "frequency_hz": ("stride frequency", "{:.3f} Hz"),
-    "speed_mm_s": ("speed", "{:.0f} mm/s"),
-    "r2": ("share explained", "{:.3f} by two harmonics"),
-    "periodicity": ("periodicity", "{:.3f}"),
-    "wander_mm": ("drift", "{:.0f} mm about a straight line"),
-    "climb": ("climb", "{:.1%} of the way"),
-    "height_mm": ("height", "{:.0f} mm from feet to head"),
-    "marker_set": ("marker set", ""),
-    "missing_samples": ("missing samples", "{:.2%}"),
-    "missing_markers": ("never seen", ""),
-    "filled_share": ("filled samples", "{:.2%} of the steady part"),
-    "rebuilt": ("rebuilt markers", ""),
-    "approximate": ("approximate joints", ""),
-    "jumps": ("jumps", ""),
-    "swaps": ("left-right swaps", ""),
-    "bone_length_variation": ("limb length varies by", ""),
-    "markers": ("markers", ""),
-}
-"""Facts of `inspect_file`, their names for people, and how numbers are written; "" for lists."""
-
-
 def inspection_in_words(facts: Mapping[str, object]) -> dict[str, str | list[str]]:
-    """Return what `inspect_file` finds, in words and with units."""
+    """Return what `file_facts` finds, in words and with units."""
+    facts = {
+        name: plain_fact(value, "{:.1%}" if name == "bone_length_variation" else "{:.3g}")
+        for name, value in facts.items()
+    }
     if facts.get("kind") != "capture":
         return {
             name: _written(value, "{:.4g}" if isinstance(value, float) else "{}")
             for name, value in facts.items()
         }
+    inspection = _words()["inspection"]
     written = {
-        name: _written(facts[name], form)
-        for name, (_, form) in _INSPECTION.items()
-        if name in facts
+        name: _written(facts[name], form) for name, (_, form) in inspection.items() if name in facts
     }
-    if isinstance(limbs := written.get("bone_length_variation"), list):
-        written["bone_length_variation"] = [_as_percentage(entry) for entry in limbs]
     if "n_strides" in facts:
         written["n_strides"] = _strides(facts)
     if "marker_set" in facts:
         written["marker_set"] = _marker_set(facts)
     if facts.get("unit_guessed"):
         written["unit"] = f"{written.get('unit', 'unknown')}, guessed from the height of the body"
-    return {_INSPECTION[name][0]: value for name, value in written.items()}
+    return {inspection[name][0]: value for name, value in written.items()}
+
+
+def plain_fact(value: object, number: str = "{:.3g}") -> Fact:
+    """Return a value in types of JSON: NaN as None, each number of a mapping as a phrase."""
+    if isinstance(value, Mapping):
+        names = [key if isinstance(key, str) else " to ".join(key) for key in value]
+        entries = zip(names, map(number.format, value.values()), strict=True)
+        value = [f"{name}: {n}" for name, n in entries]
+    if isinstance(value, list | tuple):
+        return [printable(str(each)) for each in value]
+    value = value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
+    return value if value is None or isinstance(value, bool | int) else printable(str(value))
 
 
 def _written(value: object, form: str) -> str | list[str]:
     if isinstance(value, list) or not form:
         return [str(entry) for entry in value] if isinstance(value, list) and value else "none"
     return "unknown" if value is None else form.format(value)
-
-
-def _as_percentage(entry: str) -> str:
-    name, _, share = entry.rpartition(": ")
-    return f"{name}: {float(share):.1%}"
 
 
 def _strides(facts: Mapping[str, object]) -> str:

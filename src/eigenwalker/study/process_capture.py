@@ -17,11 +17,12 @@ from eigenwalker.core.walker import Form, Walker
 from eigenwalker.decomposition.fourier import decompose_fourier
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.gaps import find_gaps
+from eigenwalker.gait.heading import known_speed
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.label_repair import Repair
 from eigenwalker.markers.virtual_markers import virtual_markers
-from eigenwalker.quality.assessment import judge, names_in
+from eigenwalker.quality.assessment import CaptureRecord, judge, names_in
 from eigenwalker.quality.quality import Quality
 
 DECOMPOSE = {"eigenposture": decompose_pca, "fourier": decompose_fourier}
@@ -104,7 +105,7 @@ def process_capture(
         and the quality are those of the 15 joints.
     low_pass_hz, speed_mm_s, heading_deg : float, optional
         Cut-off of a low-pass filter, and speed and direction of a walk on a treadmill, as
-        `in_place` takes them. Left out, they are those that a file states of its walk in place.
+        `in_place` takes them. Left out, they are those of a walk that is in place already.
     **reading
         As `read_mocap` takes them, such as ``unit`` and ``rate_hz``.
 
@@ -143,9 +144,10 @@ def process_capture(
         capture = check_trajectories(path_or_capture)
     else:
         capture = read_mocap(path_or_capture, **reading)
-        known = stated(capture)
-        speed_mm_s = known.get("speed_mm_s") if speed_mm_s is None else speed_mm_s
-        heading_deg = known.get("heading_deg") if heading_deg is None else heading_deg
+    if "speed_mm_s" in capture.coords:  # it is in place already
+        speed = known_speed(capture)
+        speed_mm_s = speed if speed_mm_s is None and np.isfinite(speed) else speed_mm_s
+        heading_deg = 0.0 if heading_deg is None else heading_deg
     if joints == "full":
         from eigenwalker.metric.comparison_pipeline import full_joints
 
@@ -165,28 +167,17 @@ def process_capture(
         main_walk = walk.sel(marker=list(JOINTS.markers)) if joints == "full" else walk
         walker = DECOMPOSE[form](main_walk, n_harmonics=n_harmonics)
     except ValueError as error:
-        quality = judge(main, main, main_walk, str(error))
+        quality = judge(main, main, main_walk, CaptureRecord.of(main), str(error))
         raise NoWalkError(str(error), main, quality) from error
     return CaptureResult(
         walk=walk,
         walker=walker,
-        quality=judge(main, main, main_walk),
+        quality=judge(main, main, main_walk, CaptureRecord.of(main)),
         repairs=pd.DataFrame(points.attrs.get("repairs", ()), columns=Repair._fields),
         gaps=pd.DataFrame(_gaps(points, walk), columns=_WHERE),
         left_out=pd.DataFrame(_left_out(points, walk), columns=_WHERE),
         capture=capture,
     )
-
-
-def stated(capture: xr.DataArray) -> dict[str, Any]:
-    """Return the speed that a file states of its walk, and the heading of a walk in place."""
-    known: dict[str, Any] = {}
-    speed = capture.attrs.get("speed_mm_s")
-    if isinstance(speed, int | float | np.number) and np.isfinite(speed):
-        known["speed_mm_s"] = float(speed)
-    if "heading_deg" in capture.attrs:  # was in place when it was written
-        known["heading_deg"] = 0.0
-    return known
 
 
 def _frames(points: xr.DataArray, walk: xr.DataArray) -> tuple[int, int]:

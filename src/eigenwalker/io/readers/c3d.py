@@ -10,7 +10,13 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.readers.c3d_sections import MAGIC, Header, Parameters, c3d_sections
-from eigenwalker.io.to_trajectories import labelled_points, own_name, trajectories_of, unit_named
+from eigenwalker.io.to_trajectories import (
+    labelled_points,
+    own_name,
+    trajectories_of,
+    unit_named,
+    with_scalars,
+)
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
 _UNLABELLED = re.compile(
@@ -53,7 +59,8 @@ def read_c3d(file: CaptureFile) -> xr.DataArray:
         unit=_unit(parameters),
         up=_up(positions, names, parameters),
     )
-    return walk.assign_attrs(**attrs, **_measures(parameters), **cut)
+    measures = _measures(parameters)
+    return with_scalars(walk, measures).assign_attrs(**attrs, **measures, **cut)
 
 
 def _rate(file: CaptureFile, header: Header, parameters: Parameters) -> float:

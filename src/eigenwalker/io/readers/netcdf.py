@@ -7,6 +7,7 @@ import json
 import warnings
 from importlib import import_module
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import xarray as xr
@@ -15,11 +16,13 @@ from eigenwalker.core.trajectories import AXES, DIMS, sampling_rate, trajectorie
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import MAX_SIZE
-from eigenwalker.io.to_trajectories import with_coordinate
-from eigenwalker.markers.label_repair import Repair
+from eigenwalker.io.to_trajectories import with_coordinate, with_scalars
+from eigenwalker.markers.label_repair import Rebuilt, Repair
 
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
+TABLES = {"repairs": Repair, "rebuilt": Rebuilt}
+"""Attributes that hold a table, and the type of a row."""
 _xarray = import_module("xarray")  # whose reading and writing of files is not wholly typed
 _EXPECTED = "trajectories as write_mocap writes them"
 _OPEN = "open it with xarray and label it with label_trajectories()"
@@ -57,10 +60,12 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
         for name, value in dataset.attrs.items()
         if str(name).startswith("capture_")
     }
-    if repairs := _repairs(known.pop("repairs", "")):
-        known["repairs"] = repairs
+    for name, kind in TABLES.items():
+        if rows := _rows(known.pop(name, ""), kind):
+            known[name] = rows
     if "source" in known:
         known.setdefault("original_source", known["source"])
+    walk = with_scalars(walk, known)
     walk.attrs.update(
         known,
         source=file.name,
@@ -74,12 +79,17 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
     return walk
 
 
-def _repairs(text: object) -> tuple[Repair, ...]:
-    """Return the repairs that `write_netcdf` wrote; none of a damaged line."""
+def _rows(text: object, kind: type[Repair] | type[Rebuilt]) -> tuple[object, ...]:
+    """Return the rows of a table that `write_netcdf` wrote; none of a damaged line."""
     try:
-        return tuple(Repair(*entry) for entry in json.loads(str(text)))
+        entries = json.loads(str(text))
+        return tuple(kind(*map(_hashable, entry)) for entry in entries)
     except (TypeError, ValueError):
         return ()
+
+
+def _hashable(value: object) -> Any:
+    return tuple(map(str, cast("list[object]", value))) if isinstance(value, list) else value
 
 
 def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:

@@ -15,8 +15,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
-from eigenwalker.io.readers.netcdf import FORMAT, VERSION
-from eigenwalker.markers.label_repair import Repair
+from eigenwalker.io.readers.netcdf import FORMAT, TABLES, VERSION
 
 
 def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
@@ -38,7 +37,8 @@ def write_netcdf(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
 
 
 def _dataset(walk: Any) -> Any:
-    dataset = walk.drop_vars("rotation", errors="ignore").to_dataset(name="position")
+    scalars = [name for name, value in walk.coords.items() if not value.dims]
+    dataset = walk.drop_vars(["rotation", *scalars], errors="ignore").to_dataset(name="position")
     dataset["position"].attrs = {"units": "mm"}
     dataset["time"].attrs = {"units": "s"}
     if "rotation" in walk.coords:
@@ -57,6 +57,6 @@ def _storable(value: object) -> str | int | float | None:
     if not isinstance(value, list | tuple):
         return None
     entries = list(cast("Sequence[object]", value))
-    if entries and all(isinstance(entry, Repair) for entry in entries):
+    if entries and all(isinstance(entry, tuple(TABLES.values())) for entry in entries):
         return json.dumps(entries)
     return ", ".join(map(str, entries))
