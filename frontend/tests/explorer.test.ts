@@ -6,7 +6,10 @@ import { choice } from "../src/explorer/controls";
 import { make, signed } from "../src/page/elements";
 import { nearestPoint, nextPoint } from "../src/explorer/cloud";
 import { Notices } from "../src/explorer/notices";
-import { populationLabel, warnings } from "../src/model/labels";
+import { addressOf, stateOf } from "../src/model/address";
+import { classOf, endLabels, plural, populationLabel, walkerLabel, warnings } from "../src/model/labels";
+import { readModel } from "../src/model/readModel";
+import { controlsOf } from "../src/widget/widget";
 import { bundles, bundleName, openFiles } from "../src/explorer/openFile";
 import { ownWalkerOf } from "../src/explorer/ownWalker";
 import { axesOf } from "../src/explorer/axis";
@@ -17,6 +20,40 @@ import { goldenModel, posture, stimulusWith } from "./golden_model";
 import { mixedVector } from "../src/model/mixing";
 import { positionOf, walkerOf } from "../src/model/features";
 import { initialState } from "../src/model/state";
+
+describe("traits with names that every object has", () => {
+  const names = ["constructor", "__proto__", "toString", "hasOwnProperty"];
+  const golden = goldenModel();
+  const traits = golden.traits.map((trait, i) => ({ ...trait, name: names[i] ?? trait.name, column: names[i] ?? trait.column }));
+  const model = readModel(JSON.parse(JSON.stringify({ ...golden, traits })));
+
+  it("stand at 0, move, and go into an address and back", () => {
+    const axes = axesOf(model).slice(0, traits.length);
+    let state = initialState(model);
+    expect(axes.map((axis) => axis.value(state))).toEqual(axes.map(() => 0));
+    axes.forEach((axis, i) => (state = { ...state, ...axis.moved(state, i + 1) }));
+    const back = stateOf(addressOf(state, model), model);
+    expect(axes.map((axis) => axis.value(back))).toEqual(axes.map((_, i) => i + 1));
+    const plain = Object.fromEntries(axes.map(({ trait }, i) => [golden.traits[model.traits.indexOf(trait!)]!.name, i + 1]));
+    expect(mixedVector(model, back)).toEqual(mixedVector(golden, { ...initialState(golden), traits: plain }));
+    const position = positionOf(model, model.average);
+    expect(axes.map((axis) => Math.abs(axis.at(position)) < 1e-6)).not.toContain(false);
+  });
+
+  it("are names alone where a walker lacks them, or an end is called so", () => {
+    const [walker] = model.walkers;
+    expect(walkerLabel({ ...walker!, traits: {} }, model)).toBe(walker!.name);
+    expect(["positive", "negative"]).not.toContain(classOf({ ...model, walkers: [{ ...walker!, traits: {} }] }, 0));
+    expect(endLabels({ ...model.traits[0]!, label: "sex", negative: "constructor" })[0]).toBe("constructor");
+    expect(plural("toString")).toBe("toString walkers");
+  });
+
+  it("stand at 0 in a notebook", () => {
+    const { element, show } = controlsOf(model, () => {});
+    show(initialState(model));
+    expect([...element.querySelectorAll("output")].map(({ textContent }) => textContent)).toEqual(traits.map(() => "0"));
+  });
+});
 
 describe("a slider", () => {
   const made = (): { values: number[]; one: ReturnType<typeof slider> } => {

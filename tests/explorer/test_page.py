@@ -7,12 +7,14 @@ import json
 import shutil
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import av
 import numpy as np
+import pandas as pd
 import pytest
 import uvicorn
 from matplotlib.image import imread
@@ -142,6 +144,24 @@ def test_the_page_asks_for_nothing(visit):
     assert '<link rel="icon" href="data:,"' in page
     assert "default-src 'none'" in page
     assert len(gzip.compress(page.encode())) < 95_000
+
+
+def test_names_that_every_object_has_are_names_of_traits(visit, model):
+    there = visit("still")
+    people = ew.simulate_population(n_women=6, n_men=6, seed=5)
+    sex = people.traits["sex"].map({"female": "constructor", "male": "toString"})
+    odd = {"__proto__": sex, "constructor": people.traits["weight_kg"]}
+    people = replace(people, traits=pd.DataFrame(odd))
+    there.page.evaluate(DROP, ["model.json", json.dumps(page_model(people))])
+    there.page.get_by_text("12 simulated walkers").first.wait_for()
+    there.unfold()
+    slider = there.page.locator("#main-slider input")
+    assert slider.input_value() == "0"
+    slider.fill("2")
+    assert "+2.0 SD towards toString" in slider.get_attribute("aria-valuetext")
+    assert there.state()["t"] == "__proto__:2"
+    for place in ("#panel", "#insight", "#main-slider"):
+        assert "NaN" not in there.page.locator(place).inner_html()
 
 
 def test_the_large_slider_makes_the_walker_that_python_makes(visit):

@@ -31,6 +31,10 @@ export interface Schema<T = unknown> extends Readonly<Partial<Record<Limit, numb
   readonly oneOf?: readonly Schema[];
 }
 
+/** A value of an object by a name that others chose: "constructor" is in every object, and in none of its own. */
+export const entry = <T>(values: Readonly<Record<string, T>>, name: string): T | undefined =>
+  Object.hasOwn(values, name) ? values[name] : undefined;
+
 /** The type of the values of a schema. */
 export type Checked<S> = S extends Schema<infer T> ? T : never;
 
@@ -125,7 +129,7 @@ export function checked<T>(value: unknown, schema: Schema<T>, where: string): T 
     const result: [string, unknown][] = [];
     for (const name of names) {
       if (schema.propertyNames) check(name, schema.propertyNames, where);
-      const known: boolean | Schema = Object.hasOwn(properties, name) ? properties[name]! : others;
+      const known = entry(properties, name) ?? others;
       if (known === false) refuse(where, "no such name", name);
       if (typeof known === "object") result.push([name, check(value[name], known, `${where}.${name}`)]);
     }

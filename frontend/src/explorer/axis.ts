@@ -1,5 +1,6 @@
 /** Directions of sliders and axes of plots: traits, then eigenwalkers. */
 
+import { entry } from "../core/schema";
 import { capitalised, endLabels, mainTrait } from "../model/labels";
 import type { Model, Numbers, Trait } from "../model/model";
 import { cloudPositions, type Position } from "../model/features";
@@ -36,8 +37,8 @@ function traitAxis(model: Model, trait: Trait): Axis {
     ends: endLabels(trait),
     trait,
     points: cloudPositions(model, trait),
-    at: ({ traits }) => traits[name] ?? 0,
-    value: ({ traits }) => traits[name] ?? 0,
+    at: ({ traits }) => entry(traits, name) ?? 0,
+    value: ({ traits }) => entry(traits, name) ?? 0,
     moved: ({ traits }, value) => ({ traits: { ...traits, [name]: value } }),
   };
 }

@@ -3,6 +3,7 @@
  * the strength of each component, each component alone, and the bias towards a class.
  */
 
+import { entry } from "../core/schema";
 import { componentName } from "../model/captions";
 import { capitalised, classOf, endLabels } from "../model/labels";
 import { partsOf } from "../model/mixing";
@@ -160,7 +161,7 @@ const KINDS: readonly Option<Kind>[] = [
 /** The part of the features that traits change, and the kind of their direction. */
 export function classifierControls(store: Store): Part {
   const options = partsOf(store.model).map((value): Option<string> => {
-    return { value, ...(PARTS[value] ?? { label: capitalised(value) }) };
+    return { value, ...(entry(PARTS, value) ?? { label: capitalised(value) }) };
   });
   const [common, rest] = [true, false].map((is) => options.filter(({ value }) => COMMON.includes(value) === is));
   const choose = (part: string): void => store.change({ part: part || "all" });

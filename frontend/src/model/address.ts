@@ -5,6 +5,7 @@
  * invalid numbers are ignored, and numbers are brought within their ranges.
  */
 
+import { entry } from "../core/schema";
 import { partsOf } from "./mixing";
 import type { Model } from "./model";
 import {
@@ -201,7 +202,7 @@ function readTransform(text: string): [string, object][] {
   const fields = fieldsOf(name);
   const settings = parts.flatMap((part) => {
     const [field = "", value = ""] = part.split(":");
-    const known = Object.hasOwn(fields, field) ? fields[field] : undefined;
+    const known = entry(fields, field);
     return known ? readSetting(known, value).map((setting) => [field, setting] as const) : [];
   });
   return [[name, { ...initialSettings(name), ...Object.fromEntries(settings) }]];

@@ -1,5 +1,6 @@
 /** Feature vectors: their columns, the walker they make, and its position among those of the population. */
 
+import { entry } from "../core/schema";
 import type { Walker } from "../core/stimulus";
 import type { Vector } from "../core/vector";
 import type { Model, Trait } from "./model";
@@ -9,8 +10,7 @@ export const MIN_FREQUENCY_HZ = 0.05;
 
 type HasLayout = Pick<Model, "layout">;
 
-export const blockOf = ({ layout }: HasLayout, block: string): Model["layout"][string] | undefined =>
-  Object.hasOwn(layout, block) ? layout[block] : undefined;
+export const blockOf = ({ layout }: HasLayout, block: string) => entry(layout, block);
 
 const cache = new WeakMap<Model["layout"], Map<string, readonly number[]>>();
 
@@ -32,7 +32,7 @@ function findColumns(model: HasLayout, part: string): number[] {
     postures: blocks.filter((block) => /^p\d+$/.test(block)),
     timing: blocks.filter((block) => !/^p\d+$/.test(block)),
   };
-  const members = part.split("+").flatMap((name) => (Object.hasOwn(groups, name) ? groups[name]! : [name]));
+  const members = part.split("+").flatMap((name) => entry(groups, name) ?? [name]);
   const columns = members.flatMap((block) => {
     const span = blockOf(model, block);
     if (!span) throw new Error(`There is no part "${block}"; there are ${blocks.join(", ")}.`);

@@ -1,5 +1,6 @@
 /** Names of traits, of their two ends, of walkers and of populations, as users read them. */
 
+import { entry } from "../core/schema";
 import type { KnownWalker, Model, Trait } from "./model";
 
 const SEXES: Readonly<Record<string, string>> = { female: "woman", male: "man", f: "woman", m: "man" };
@@ -7,12 +8,12 @@ const PLURALS: Readonly<Record<string, string>> = { woman: "women", man: "men" }
 
 export function endLabels({ label, negative, positive }: Trait): readonly [string, string] {
   const names = /^(sex|gender)$/i.test(label) ? SEXES : {};
-  const name = (pole: string): string => names[pole.toLowerCase()] ?? pole;
+  const name = (pole: string): string => entry(names, pole.toLowerCase()) ?? pole;
   return [name(negative), name(positive)];
 }
 
 /** Those at one end of a trait: "women", "heavy walkers". */
-export const plural = (end: string): string => PLURALS[end] ?? `${end} walkers`;
+export const plural = (end: string): string => entry(PLURALS, end) ?? `${end} walkers`;
 
 export const capitalised = (words: string): string => words.charAt(0).toUpperCase() + words.slice(1);
 
@@ -29,7 +30,7 @@ export const mainTrait = (model: Model): Trait | undefined =>
 /** "woman 3, 27 years, 61 kg", as far as it is known. */
 export function walkerLabel(walker: KnownWalker, model: Model): string {
   const facts = model.traits.flatMap(({ column, unit }) => {
-    const value = walker.traits[column];
+    const value = entry(walker.traits, column);
     if (value === undefined || value === null || unit === "") return [];
     return [`${typeof value === "number" ? Math.round(value) : value} ${unit}`];
   });
@@ -39,7 +40,7 @@ export function walkerLabel(walker: KnownWalker, model: Model): string {
 /** The class of a walker of the population in the main trait, as a CSS class. */
 export function classOf(model: Model, walker: number): "negative" | "positive" | "" {
   const trait = mainTrait(model);
-  const value = trait?.two_classes ? String(model.walkers[walker]?.traits[trait.column]) : null;
+  const value = trait?.two_classes ? String(entry(model.walkers[walker]?.traits ?? {}, trait.column)) : null;
   return value === trait?.negative ? "negative" : value === trait?.positive ? "positive" : "";
 }
 

@@ -1,5 +1,6 @@
 /** From the state of a page to the feature vector of its walker, as in Python's `explorer/mixing.py`. */
 
+import { entry } from "../core/schema";
 import { blockOf, columnsOf } from "./features";
 import type { Model, Numbers, OwnWalker, Trait } from "./model";
 import type { State } from "./state";
@@ -44,9 +45,8 @@ function addTrait(
   trait: Trait | undefined,
   steps: number,
 ): void {
-  const parts = trait?.steps[kind];
-  if (!parts || !Object.hasOwn(parts, part) || steps === 0) return;
-  columnsOf(model, part).forEach((column, i) => (vector[column]! += steps * parts[part]![i]!));
+  const step = trait && entry(trait.steps[kind], part);
+  if (step && steps !== 0) columnsOf(model, part).forEach((column, i) => (vector[column]! += steps * step[i]!));
 }
 
 function addBias(vector: Float64Array, trait: Trait | undefined, steps: number): void {

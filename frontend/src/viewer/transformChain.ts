@@ -2,6 +2,7 @@
 
 import type { MovingDots } from "../core/movingDots";
 import { completeStep } from "../core/readStimulus";
+import { entry } from "../core/schema";
 import { scene } from "../core/scene";
 import type { Step, Stimulus } from "../core/stimulus";
 import { dot, observerAxes, type Vector } from "../core/vector";
@@ -90,7 +91,7 @@ export function withTransforms(stimulus: Stimulus, transforms: Transforms, group
 const hasTrunk = ({ markers }: Before): boolean => TRUNK.every((name) => markers.includes(name));
 
 function markersIn(part: string, { markers, groups }: Before): string[] {
-  const members = Object.hasOwn(groups, part) ? groups[part]! : [];
+  const members = entry(groups, part) ?? [];
   return markers.filter((name) => members.includes(name));
 }
 

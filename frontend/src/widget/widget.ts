@@ -4,6 +4,7 @@ import { playLoop } from "../canvas/frameClock";
 import { mannequinFrom, type MannequinPainter } from "../canvas/mannequinLoader";
 import { painterOn } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
+import { entry } from "../core/schema";
 import { figuresOf } from "../model/figures";
 import { endLabels } from "../model/labels";
 import type { Model, OwnWalker, Trait } from "../model/model";
@@ -216,7 +217,7 @@ function traitSlider(trait: Trait, onInput: (alpha: number) => void): Controls {
   return {
     element: make("label", {}, make("span", {}, left), input, make("span", {}, right), number),
     show({ traits }) {
-      const alpha = traits[name] ?? 0;
+      const alpha = entry(traits, name) ?? 0;
       if (Number(input.value) !== alpha) input.value = String(alpha);
       input.style.setProperty("--now", String((Number(input.value) - min) / (max - min)));
       input.classList.toggle("below", alpha < 0);

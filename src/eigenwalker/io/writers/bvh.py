@@ -8,6 +8,7 @@ of one rigid part would. There each bone has a joint of its own, of no length, c
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -79,9 +80,10 @@ def write_bvh(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     """Write a BVH file, which names neither its unit nor its upward axis."""
     del unit
     bones = fit_bones(walk, turn_upright(up))
-    angles = Rotation.from_quat(bones.rotations.reshape(-1, 4)).as_euler(
-        ORDER, degrees=True, suppress_warnings=True
-    )
+    turned = Rotation.from_quat(bones.rotations.reshape(-1, 4))
+    with warnings.catch_warnings():  # at a gimbal lock one of many equal triples is as good
+        warnings.filterwarnings("ignore", message="Gimbal lock")
+        angles = turned.as_euler(ORDER, degrees=True)
     angles = np.unwrap(angles.reshape(len(walk), -1), period=360, axis=0)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("HIERARCHY\n")
