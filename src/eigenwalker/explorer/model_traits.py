@@ -97,7 +97,9 @@ def _pole(population: Population, contrast: Contrast, pole: str) -> str:
 def _label_and_unit(trait: str) -> tuple[str, str]:
     """Return ``weight`` and ``kg`` of ``weight_kg``."""
     stem, _, unit = trait.rpartition("_")
-    return (stem, unit) if stem and unit in _UNITS else (trait.replace("_", " ").strip() or trait, "")
+    if stem and unit in _UNITS:
+        return stem, unit
+    return trait.replace("_", " ").strip() or trait, ""
 
 
 def _steps(axes: _Axes, contrast: Contrast) -> dict[str, dict[str, list]]:
