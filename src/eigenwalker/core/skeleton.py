@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from importlib.resources import files
 
 Segment = tuple[str, str]
 
@@ -90,61 +92,25 @@ class Skeleton:
         return Skeleton(names, among(self.segments), among(self.pairs), groups)
 
 
-def _both_sides(*parts: str) -> tuple[str, ...]:
-    return tuple(f"{side}_{part}" for side in ("left", "right") for part in parts)
+_TOML = files("eigenwalker.core").joinpath("skeleton.toml").read_text(encoding="utf-8")
+_TABLES = tomllib.loads(_TOML)
 
 
-def _links_of_sides(*links: Segment) -> tuple[Segment, ...]:
-    return tuple((f"{side}_{a}", f"{side}_{b}") for a, b in links for side in ("left", "right"))
+def _skeleton(*names: str) -> Skeleton:
+    """Return the skeleton of some tables of ``skeleton.toml`` together."""
+    tables = [_TABLES[name] for name in names]
+    segments, pairs = (
+        tuple((one, other) for table in tables for one, other in table[part])
+        for part in ("segments", "pairs")
+    )
+    groups = {name: tuple(members) for name, members in tables[-1].get("groups", {}).items()}
+    return Skeleton(tuple(n for table in tables for n in table["markers"]), segments, pairs, groups)
 
 
-JOINTS = Skeleton(
-    markers=(
-        "head",
-        "sternum",
-        *("left_shoulder", "left_elbow", "left_wrist"),
-        *("right_shoulder", "right_elbow", "right_wrist"),
-        "pelvis",
-        *("left_hip", "left_knee", "left_ankle"),
-        *("right_hip", "right_knee", "right_ankle"),
-    ),
-    segments=(
-        *(("head", "sternum"), ("sternum", "pelvis")),
-        *(("sternum", shoulder) for shoulder in _both_sides("shoulder")),
-        *_links_of_sides(("shoulder", "elbow"), ("elbow", "wrist")),
-        *(("pelvis", hip) for hip in _both_sides("hip")),
-        *_links_of_sides(("hip", "knee"), ("knee", "ankle")),
-    ),
-    pairs=tuple(
-        (f"left_{part}", f"right_{part}")
-        for part in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
-    ),
-    groups={
-        "head": ("head",),
-        "trunk": ("sternum", "pelvis"),
-        "arms": _both_sides("shoulder", "elbow", "wrist"),
-        "legs": _both_sides("hip", "knee", "ankle"),
-        "upper_body": ("head", "sternum", *_both_sides("shoulder", "elbow", "wrist")),
-        "lower_body": ("pelvis", *_both_sides("hip", "knee", "ankle")),
-    },
-)
+JOINTS = _skeleton("joints")
 """The 15 joints of Troje (2002, fig. 1), in the order of this package."""
 
-_DRAWN_PARTS = ("heel", "toe", "hand")
-LINKS = Skeleton(
-    markers=(*JOINTS.markers, *(name for part in _DRAWN_PARTS for name in _both_sides(part))),
-    segments=(
-        *JOINTS.segments,
-        *(
-            (f"{side}_{one}", f"{side}_{other}")
-            for side in ("left", "right")
-            for one, other in (
-                ("ankle", "heel"), ("ankle", "toe"), ("heel", "toe"), ("wrist", "hand")
-            )
-        ),
-    ),
-    pairs=(*JOINTS.pairs, *((f"left_{part}", f"right_{part}") for part in _DRAWN_PARTS)),
-)  # fmt: skip
+LINKS = _skeleton("joints", "feet_and_hands")
 """What pictures join: the 15 joints, and feet and hands where they are known.
 
 Restrict it to the markers at hand: ``LINKS.restricted_to(walker.markers)``.
