@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import eigenwalker as ew
 from eigenwalker.core.trajectories import sampling_rate
-from eigenwalker.io.capture_file import RateAssumed
+from eigenwalker.io.capture_file import CaptureFile, RateAssumed
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.acclaim_grammar import parse_amc, parse_asf
@@ -204,7 +204,8 @@ def _by_matrices(asf: str, amc: str, frame: int) -> dict[str, np.ndarray]:
         moved[:3, 3] = by
         return moved
 
-    skeleton, motion = parse_asf(asf, "a"), parse_amc(amc, "b")
+    skeleton = parse_asf(CaptureFile(Path("a"), asf.encode()))
+    motion = parse_amc(CaptureFile(Path("b"), amc.encode()))
     world: list[np.ndarray] = []
     ends = {}
     for bone in skeleton.bones:

@@ -170,7 +170,7 @@ def test_the_content_decides_who_reads(kind, files, tmp_path):
         ("STO/MOT", b"a\nendheader\r\ntime"),
         ("Vicon CSV", b"\r\n\r\nTrajectories\r\n50\r\n,,head,,\r\nFrame,Sub Frame,X,Y,Z\r\n"),
         ("Qualisys TSV", b"\xef\xbb\xbfNO_OF_FRAMES\t3"),
-        ("table", "time\tnose_x\n".encode("utf-16")),
+        ("table", b"time\tnose_x\n"),
     ],
 )
 def test_marks_blanks_and_ends_of_lines_before_the_first_word_do_not_matter(name, content):

@@ -1,13 +1,18 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from eigenwalker.io.capture_file import CaptureFile, is_text
 from eigenwalker.io.errors import UnreadableFile, printable
 from eigenwalker.io.file_types import file_type_of, with_article
-from eigenwalker.io.text_cells import cells, is_text, number, points_of, separator_of
+from eigenwalker.io.text_cells import cells, number, points_of, separator_of
 from eigenwalker.io.timestamps import on_even_clock, parse_rate
 from eigenwalker.io.to_trajectories import unit_named, without_subject
+
+FILE = CaptureFile(Path("a.csv"), b"")
 
 
 def test_cells_are_what_separators_and_quotation_marks_enclose():
@@ -17,12 +22,12 @@ def test_cells_are_what_separators_and_quotation_marks_enclose():
 
 
 def test_words_are_finite_numbers_or_refused():
-    assert number("-1.5e2", "frame 3", "a.amc") == -150
-    assert parse_rate("100,00", "DataRate", "a.trc") == 100
+    assert number("-1.5e2", "frame 3", FILE) == -150
+    assert parse_rate("100,00", "DataRate", FILE) == 100
     with pytest.raises(UnreadableFile, match=r"'1,5'; write numbers with a decimal point"):
-        number("1,5", "frame 3", "a.amc")
+        number("1,5", "frame 3", FILE)
     with pytest.raises(UnreadableFile, match=r"as DataRate, but got '0'; .*rate_hz="):
-        parse_rate("0", "DataRate", "a.trc")
+        parse_rate("0", "DataRate", FILE)
 
 
 def test_points_have_three_columns_each():
@@ -32,7 +37,7 @@ def test_points_have_three_columns_each():
 
 def test_a_frame_that_was_left_out_is_missing():
     walk = np.arange(4.0)[:, None, None] * np.ones(3)
-    even = on_even_clock(walk, np.array([0, 0.1, 0.2, 0.4]), "a.csv")
+    even = on_even_clock(FILE, walk, np.array([0, 0.1, 0.2, 0.4]))
     assert even.rate_hz == pytest.approx(10)
     np.testing.assert_array_equal(even.positions[:, 0, 0], [0, 1, 2, np.nan, 3])
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import codecs
+import re
 import warnings
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
@@ -43,6 +46,16 @@ class CaptureFile:
     def name(self) -> str:
         """Name of the file without its folder, for messages."""
         return self.path.name
+
+    @property
+    def text(self) -> str:
+        """The letters of the file, whatever else is in it."""
+        return self.content.decode("utf-8-sig", errors="replace")
+
+    @cached_property
+    def lines(self) -> list[str]:
+        """The lines of a text."""
+        return lines_of(self.content, self.name)
 
     def error(self, expected: str, got: str, advice: str = EXPORT_AGAIN) -> UnreadableFile:
         """Return the error to raise when the file does not hold what is expected."""
@@ -107,7 +120,27 @@ def read_bytes(path: Path, *, max_bytes: int = MAX_BYTES, expected: str = "a cap
     return content
 
 
-def file_beside(path: Path, suffix: str) -> Path | None:
-    """Return the file of the same name with another suffix (``.toml``), if there is one."""
-    other = path.with_suffix(suffix)
-    return other if other != path and other.is_file() else None
+def as_utf8(content: bytes) -> bytes:
+    """Return a text in UTF-16, by its mark, as UTF-8; other contents as they are."""
+    if not content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return content
+    try:
+        return codecs.getincrementaldecoder("utf-16")().decode(content).encode()
+    except UnicodeDecodeError:
+        return content
+
+
+def is_text(content: bytes) -> bool:
+    """Return whether a file holds text, by its first bytes."""
+    return not any(byte < 32 and byte not in b"\t\n\r\f\x1a" for byte in content[:1024])
+
+
+def lines_of(content: bytes, source: str) -> list[str]:
+    """Return the lines of a text in UTF-8 or Windows-1252, without empty ones at its end."""
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = content.decode("cp1252", errors="replace")
+    if "\0" in text:
+        raise UnreadableFile(source, "text", "bytes that are no letters")
+    return re.split(r"\r\n|\n|\r", text.rstrip("\n\r\x1a "))

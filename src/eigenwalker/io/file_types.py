@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import codecs
 import re
+
+from eigenwalker.io.capture_file import as_utf8
 
 _MAX_QUOTED = 32
 """Letters of a text that are quoted."""
@@ -28,26 +31,18 @@ _SIGNATURES = (
 
 def file_type_of(content: bytes) -> str:
     """Return what a file seems to be, as the end of a sentence."""
-    beginning = content[:1000]
+    beginning = as_utf8(content[:1000])
     for signature, kind in _SIGNATURES:
         if re.match(signature, beginning, re.DOTALL | re.IGNORECASE):
             return kind
-    words = " ".join(_text(beginning).split())
+    try:  # not to the end, where a letter may be cut
+        words = " ".join(codecs.getincrementaldecoder("utf-8-sig")().decode(beginning).split())
+    except UnicodeDecodeError:
+        words = ""
     if not words or not words.isprintable():
         return "a file of no kind that is known here"
     quoted = words if len(words) <= _MAX_QUOTED else f"{words[:_MAX_QUOTED].rstrip()} ..."
     return f'a text that begins with "{quoted}"'
-
-
-def _text(beginning: bytes) -> str:
-    """The letters of a beginning, or nothing where it is no text; its last letter may be cut."""
-    wide = beginning[:2] in (b"\xff\xfe", b"\xfe\xff")
-    for end in range(len(beginning), max(len(beginning) - 4, 0), -1):
-        try:
-            return beginning[:end].decode("utf-16" if wide else "utf-8-sig")
-        except UnicodeDecodeError:
-            continue
-    return ""
 
 
 def with_article(name: str) -> str:

@@ -12,7 +12,7 @@ from typing import Literal
 import xarray as xr
 
 from eigenwalker.core.trajectories import MILLIMETRES
-from eigenwalker.io.capture_file import CaptureFile, read_bytes
+from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
 from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
 from eigenwalker.io.file_types import file_type_of, with_article
 from eigenwalker.io.readers.asf_amc import looks_like_acclaim, read_asf_amc, skeleton_beside
@@ -48,14 +48,19 @@ class Reader:
 
     name: str
     suffixes: tuple[str, ...]
-    looks_like: Callable[[bytes], bool]
+    looks_like: Callable[[bytes], object]
     read: Callable[[CaptureFile], xr.DataArray]
-    is_meant: Callable[[bytes, Path], bool] | None = None
+    is_meant: Callable[[bytes, Path], object] | None = None
     companion: Callable[[Path], Path | None] | None = None
 
 
-def _by_content(looks_like: Callable[[bytes], bool]) -> Callable[[bytes, Path], bool]:
-    return lambda beginning, _path: looks_like(beginning)
+def _by_content(
+    name: str,
+    suffix: str,
+    looks_like: Callable[[bytes], object],
+    read: Callable[[CaptureFile], xr.DataArray],
+) -> Reader:
+    return Reader(name, (suffix,), looks_like, read, lambda beginning, _: looks_like(beginning))
 
 
 READERS = (
@@ -65,20 +70,8 @@ READERS = (
     Reader("NetCDF", (".nc",), looks_like_netcdf, read_netcdf, holds_trajectories),
     Reader("TRC", (".trc",), looks_like_trc, read_trc),
     Reader("STO/MOT", (".sto", ".mot"), looks_like_mot, read_mot),
-    Reader(
-        "Vicon CSV",
-        (".csv",),
-        looks_like_vicon_csv,
-        read_vicon_csv,
-        _by_content(looks_like_vicon_csv),
-    ),
-    Reader(
-        "Qualisys TSV",
-        (".tsv",),
-        looks_like_qualisys_tsv,
-        read_qualisys_tsv,
-        _by_content(looks_like_qualisys_tsv),
-    ),
+    _by_content("Vicon CSV", ".csv", looks_like_vicon_csv, read_vicon_csv),
+    _by_content("Qualisys TSV", ".tsv", looks_like_qualisys_tsv, read_qualisys_tsv),
     Reader("JSON", (".json",), looks_like_json, read_pose_json, holds_poses),
     Reader("table", (".csv", ".txt"), looks_like_table, read_table, holds_points, find_description),
 )
@@ -153,7 +146,7 @@ def read_mocap(
     that name in '.'; check the path.
     """
     path = Path(path)
-    content = read_bytes(path)
+    content = as_utf8(read_bytes(path))
     if partial not in ("refuse", "keep"):
         raise ValueError(f"partial={partial!r} is not known; give 'refuse' or 'keep'.")
     file = CaptureFile(
@@ -241,10 +234,10 @@ def is_capture(path: Path) -> bool:
         return False
     try:
         with path.open("rb") as file:
-            beginning = file.read(BEGINNING)
+            beginning = as_utf8(file.read(BEGINNING))
     except OSError:
         return True  # to be refused with the reason
-    return any(reader.is_meant is None or reader.is_meant(beginning, path) for reader in readers)
+    return any(r.is_meant is None or bool(r.is_meant(beginning, path)) for r in readers)
 
 
 def companion_files(path: Path) -> list[Path]:

@@ -1,4 +1,4 @@
-"""Text files: from bytes to lines, from lines to cells, from cells to numbers and points."""
+"""Text files: from lines to cells, from cells to numbers and points."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.errors import EXPORT_AGAIN
 
 MAX_SIZE = 1e9
 """No length, angle or time in a sound file is larger than this, whatever its unit."""
@@ -20,35 +21,12 @@ MISSING = frozenset(
 """What programs write in a cell where nothing was measured, in lower case."""
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
-_TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1a")
-_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 _UNIT = re.compile(r"[ _]*[\[(](mm|cm|m)[\])]$|_(mm|cm|m)$")
 _AXIS_AFTER = re.compile(
     r"(?P<name>.+?)(?:[ _.:\-\[(]{1,9}[tp]?(?P<after>[xyzXYZ])[\])]?|(?P<glued>[XYZ]))"
 )
 _AXIS_BEFORE = re.compile(r"(?P<axis>[xyzXYZ])[ _.](?P<name>.+)")
-
-
-def is_text(content: bytes) -> bool:
-    """Return whether a file holds text, by its first bytes."""
-    if content.startswith(_UTF16_MARKS):
-        return True
-    return not any(byte < 32 and byte not in _TEXT_CONTROLS for byte in content[:1024])
-
-
-def lines_of(content: bytes, source: str) -> list[str]:
-    """Return the lines of a text, without empty ones at its end.
-
-    UTF-8 with or without a mark, UTF-16 with one, and else Windows-1252 are read.
-    """
-    try:
-        text = content.decode("utf-16" if content.startswith(_UTF16_MARKS) else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", errors="replace")
-    if "\0" in text:
-        raise UnreadableFile(source, "text", "bytes that are no letters")
-    return re.split(r"\r\n|\n|\r", text.rstrip("\n\r\x1a "))
 
 
 def separator_of(line: str) -> str | None:
@@ -67,18 +45,13 @@ def cells(line: str, separator: str | None) -> list[str]:
     return [cell.strip().strip('"') for cell in line.split(separator)]
 
 
-def number(word: str, where: str, source: str) -> float:
+def number(word: str, where: str, file: CaptureFile) -> float:
     """Return the number that a word is; refuse words that are none, and absurd numbers."""
     value = float(word) if _NUMBER.fullmatch(word) else np.nan
     if not abs(value) < MAX_SIZE:
         advice = "write numbers with a decimal point" if "," in word else EXPORT_AGAIN
-        raise UnreadableFile(source, f"a finite number in {where}", repr(word[:40]), advice)
+        raise file.error(f"a finite number in {where}", repr(word[:40]), advice)
     return value
-
-
-def numbers(words: Sequence[str], where: str, source: str) -> np.ndarray:
-    """Return the numbers that some words are: array of shape (word,)."""
-    return np.array([number(word, where, source) for word in words])
 
 
 def plain_numbers(words: Sequence[str]) -> np.ndarray | None:
@@ -93,11 +66,11 @@ def plain_numbers(words: Sequence[str]) -> np.ndarray | None:
 
 
 def table_of(
+    file: CaptureFile,
     lines: Sequence[str],
     n_columns: int,
     *,
     separator: str | None,
-    source: str,
     first: int = 1,
     short_by: int = 0,
     columns: Sequence[int] | None = None,
@@ -110,7 +83,7 @@ def table_of(
     lines. `first` is the number of the first line in the file, for messages.
     """
     if not lines:
-        raise UnreadableFile(source, "a line of numbers or more", "none")
+        raise file.error("a line of numbers or more", "none")
     comma = separator != "," and any(re.search(r"\d,\d", line) for line in lines[:20])
     rows: list[np.ndarray] = []
     room = sum(map(len, lines)) + n_columns
@@ -125,33 +98,26 @@ def table_of(
             room -= lack
         if len(words) != n_columns:
             reason = ": the file is cut short" if lack > 0 and at == len(lines) - 1 else ""
-            raise UnreadableFile(
-                source, f"{n_columns} cells in line {first + at}", f"{len(words)}{reason}"
-            )
+            raise file.error(f"{n_columns} cells in line {first + at}", f"{len(words)}{reason}")
         if columns is not None:
             words = [words[column] for column in columns]
         row = plain_numbers(words)
-        rows.append(np.array([_cell(w, first + at, source) for w in words]) if row is None else row)
+        rows.append(np.array([_cell(w, first + at, file) for w in words]) if row is None else row)
     return np.array(rows).reshape(len(rows), n_columns if columns is None else len(columns))
 
 
-def _cell(word: str, line: int, source: str) -> float:
+def _cell(word: str, line: int, file: CaptureFile) -> float:
     word = word.strip()
-    if word.lower() in MISSING:
-        return np.nan
-    value = float(word) if _NUMBER.fullmatch(word) else np.inf
-    if not abs(value) < MAX_SIZE:
-        raise UnreadableFile(source, f"a finite number in line {line}", repr(word[:40]))
-    return value
+    return np.nan if word.lower() in MISSING else number(word, f"line {line}", file)
 
 
-def cut_number(content: bytes, lines: Sequence[str]) -> str:
+def cut_number(file: CaptureFile, lines: Sequence[str]) -> str:
     """Return the last number of a file that ends within it, as far as that can be seen.
 
     It can be seen where the file has no end of line at its end, and all earlier lines have the
     same number of decimals in their last cell. Empty where the file is whole.
     """
-    if len(lines) < 2 or content[-1:].isspace() or content[-2:] in (b"\n\0", b"\r\0"):
+    if len(lines) < 2 or file.content[-1:].isspace():
         return ""
     between = r"[\t;]" if re.search(r"[\t;]", lines[0]) else r"[\s,]"
     last = [re.split(between, line)[-1].strip() for line in lines[-20:]]
@@ -160,11 +126,11 @@ def cut_number(content: bytes, lines: Sequence[str]) -> str:
     return repr(last[-1]) if is_cut else ""
 
 
-def refuse_cut_number(content: bytes, lines: Sequence[str], source: str) -> None:
+def refuse_cut_number(file: CaptureFile, lines: Sequence[str]) -> None:
     """Refuse a file that ends within its last number."""
-    if number := cut_number(content, lines):
+    if number := cut_number(file, lines):
         expected = "as many decimals in the last number as in those above it"
-        raise UnreadableFile(source, expected, f"{number} at its end: the file is cut short")
+        raise file.error(expected, f"{number} at its end: the file is cut short")
 
 
 class Points(NamedTuple):

@@ -76,16 +76,16 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
     if table.time_column is not None:
         wanted.append(table.time_column)
     values = table_of(
+        file,
         rows,
         table.n_columns,
         separator=table.separator,
-        source=file.name,
         first=table.first_line,
         short_by=table.short_by,
         columns=wanted if table.only_these else None,
     )
     if table.ends_file and len(rows) == len(table.rows):
-        refuse_cut_number(file.content, rows, file.name)
+        refuse_cut_number(file, rows)
     if not table.only_these:
         values = values[:, wanted]
     n_points = len(table.names)
@@ -101,12 +101,12 @@ def _whole_rows(file: CaptureFile, table: TextTable) -> Sequence[str]:
     rows = table.rows
     if not file.keep_partial or table.n_frames is None or not rows:
         return rows
-    if file.content.rstrip(b"\0").endswith((b"\n", b"\r")):
+    if file.content.endswith((b"\n", b"\r")):
         return rows
     is_cut = (
         len(rows) < table.n_frames
         or len(cells(rows[-1], table.separator)) < table.n_columns
-        or cut_number(file.content, rows)
+        or cut_number(file, rows)
     )
     return rows[:-1] if is_cut else rows
 

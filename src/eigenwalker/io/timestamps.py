@@ -30,13 +30,12 @@ class Clocked(NamedTuple):
     start_s: float = 0.0
 
 
-def parse_rate(word: str, where: str, source: str) -> float:
+def parse_rate(word: str, where: str, file: CaptureFile) -> float:
     """Return the frames a second that a file declares."""
     word = word.replace(",", ".")
     rate = float(word) if _RATE.fullmatch(word) else 0.0
     if not RATES_HZ[0] <= rate <= RATES_HZ[1]:
-        raise UnreadableFile(
-            source,
+        raise file.error(
             f"frames a second between {RATES_HZ[0]:g} and {RATES_HZ[1]:g} as {where}",
             repr(word[:40]),
             "put it right, or name it: read_mocap(..., rate_hz=...)",
@@ -49,7 +48,7 @@ def declared_rate(file: CaptureFile, word: str, where: str) -> float:
     if file.rate_hz is not None:
         return file.rate_hz
     try:
-        return parse_rate(word, where, file.name)
+        return parse_rate(word, where, file)
     except UnreadableFile:
         if file.default_rate_hz is None:
             raise
@@ -67,7 +66,7 @@ def on_clock(
     if file.rate_hz is not None:
         return Clocked(positions, file.rate_hz)
     try:
-        return on_even_clock(positions, time, file.name, rate_hz)
+        return on_even_clock(file, positions, time, rate_hz)
     except UnreadableFile:
         if file.default_rate_hz is None:
             raise
@@ -75,7 +74,7 @@ def on_clock(
 
 
 def on_even_clock(
-    positions: np.ndarray, time: np.ndarray, source: str, rate_hz: float | None = None
+    file: CaptureFile, positions: np.ndarray, time: np.ndarray, rate_hz: float | None = None
 ) -> Clocked:
     """Return positions taken at the given times as frames of an even clock.
 
@@ -89,10 +88,10 @@ def on_even_clock(
         late = int(np.argmin(np.append(steps > 0, False))) + 2
         pair = time[max(late - 2, 0) : late]
         got = f"{', then '.join(f'{each:g}' for each in pair)} s at frame {late} of the table"
-        raise UnreadableFile(source, "times that go on", got)
+        raise file.error("times that go on", got)
     if len(time) < 2:
         if rate_hz is None:
-            raise UnreadableFile(source, "two frames or more", f"{len(time)}")
+            raise file.error("two frames or more", f"{len(time)}")
         return Clocked(positions, rate_hz, float(time[0]) if len(time) else 0.0)
     step = 1 / rate_hz if rate_hz else float(np.median(steps))
     frames = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / step), 1))])
@@ -100,8 +99,7 @@ def on_even_clock(
     written = frames[-1] / length
     agree = abs(length - frames[-1] * step) <= MAX_DISAGREEMENT * length + 0.5 * step
     if rate_hz and not (agree and np.median(steps) < 1.5 * step):
-        raise UnreadableFile(
-            source,
+        raise file.error(
             f"times of {rate_hz:g} frames a second, as it declares",
             f"{1 / float(np.median(steps)):.4g}",
             "put one of them right, or name the rate: read_mocap(..., rate_hz=...)",
@@ -109,7 +107,7 @@ def on_even_clock(
     rate = rate_hz or _without_rounding(written, length)
     if not RATES_HZ[0] <= rate <= RATES_HZ[1] or frames[-1] > MAX_GAPS * len(time):
         got = f"{written:.4g}, with {int(frames[-1]) + 1 - len(time)} frames left out"
-        raise UnreadableFile(source, "times of a capture", got, "are they seconds?")
+        raise file.error("times of a capture", got, "are they seconds?")
     n_frames = int(frames[-1]) + 1
     even = np.full((n_frames, *positions.shape[1:]), np.nan)
     even[frames.astype(int)] = positions

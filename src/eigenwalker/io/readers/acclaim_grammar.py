@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.text_cells import number, numbers
+from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.text_cells import number
 from eigenwalker.io.timestamps import parse_rate
 
 MAX_BONES = 2000
@@ -64,27 +64,27 @@ class Motion(NamedTuple):
 _Lines = list[list[str]]
 
 
-def parse_asf(text: str, source: str) -> Acclaim:
+def parse_asf(file: CaptureFile) -> Acclaim:
     """Return the skeleton that an ASF file describes."""
-    sections = _sections(text)
+    sections = _sections(file.text)
     for expected in ("root", "bonedata", "hierarchy"):
         if expected not in sections:
-            raise UnreadableFile(source, f"a section :{expected} in the skeleton", "none")
+            raise file.error(f"a section :{expected} in the skeleton", "none")
     units = {line[0].lower(): line[1] for line in sections.get("units", []) if len(line) > 1}
     entry = {line[0].lower(): line[1:] for line in sections["root"]}
-    described = {ROOT: _root(entry, source)}
-    for block in _blocks(sections["bonedata"], "bonedata", source):
-        bone = _bone(block, source)
+    described = {ROOT: _root(entry, file)}
+    for block in _blocks(sections["bonedata"], "bonedata", file):
+        bone = _bone(block, file)
         if bone.name.lower() in described:
-            raise UnreadableFile(source, "each bone once", f"{bone.name!r} twice")
+            raise file.error("each bone once", f"{bone.name!r} twice")
         described[bone.name.lower()] = bone
         if len(described) > MAX_BONES:
-            raise UnreadableFile(source, "a person's skeleton", f"more than {MAX_BONES} bones")
-    (links,) = [*_blocks(sections["hierarchy"], "hierarchy", source)][:1] or [[]]
-    length = number(units["length"], "the unit of length", source) if "length" in units else None
+            raise file.error("a person's skeleton", f"more than {MAX_BONES} bones")
+    (links,) = [*_blocks(sections["hierarchy"], "hierarchy", file)][:1] or [[]]
+    length = number(units["length"], "the unit of length", file) if "length" in units else None
     return Acclaim(
-        bones=_in_order(described, links, source),
-        position=_three(entry.get("position", ["0"] * 3), "the position of the root", source),
+        bones=_in_order(described, links, file),
+        position=_three(entry.get("position", ["0"] * 3), "the position of the root", file),
         length=length if length and length > 0 else None,
         degrees=not units.get("angle", "deg").lower().startswith("rad"),
     )
@@ -104,7 +104,7 @@ def _sections(text: str) -> dict[str, _Lines]:
     return sections
 
 
-def _blocks(lines: _Lines, section: str, source: str) -> list[_Lines]:
+def _blocks(lines: _Lines, section: str, file: CaptureFile) -> list[_Lines]:
     """Return what stands between each begin and its end."""
     blocks: list[_Lines] = []
     is_open = False
@@ -116,65 +116,66 @@ def _blocks(lines: _Lines, section: str, source: str) -> list[_Lines]:
             blocks[-1].append(line)
         elif word != "end" or not is_open:
             got = " ".join(line)[:40]
-            raise UnreadableFile(source, f"begin and end in turn in :{section}", repr(got))
+            raise file.error(f"begin and end in turn in :{section}", repr(got))
         is_open = word != "end"
     if is_open or not blocks:
-        raise UnreadableFile(source, f"blocks with an end in :{section}", "none: it is cut short")
+        raise file.error(f"blocks with an end in :{section}", "none: it is cut short")
     return blocks
 
 
-def _root(entry: dict[str, list[str]], source: str) -> Bone:
+def _root(entry: dict[str, list[str]], file: CaptureFile) -> Bone:
     return Bone(
         name=ROOT,
         parent=-1,
         reach=np.zeros(3),
-        axis=_three(entry.get("orientation", ["0"] * 3), "the orientation of the root", source),
-        axis_order=_order(entry.get("axis", ["xyz"]), ROOT, source),
-        channels=_channels(entry.get("order", []), _MOVES | _TURNS, ROOT, source),
+        axis=_three(entry.get("orientation", ["0"] * 3), "the orientation of the root", file),
+        axis_order=_order(entry.get("axis", ["xyz"]), ROOT, file),
+        channels=_channels(entry.get("order", []), _MOVES | _TURNS, ROOT, file),
     )
 
 
-def _bone(block: _Lines, source: str) -> Bone:
+def _bone(block: _Lines, file: CaptureFile) -> Bone:
     entry = {line[0].lower(): line[1:] for line in block}
     name = " ".join(entry.get("name", []))
     lacking = [key for key in ("name", "direction", "length", "axis") if not entry.get(key)]
     if lacking:
-        raise UnreadableFile(source, f"{lacking} of each bone", f"none for {name or 'one'!r}")
-    direction = _three(entry["direction"], f"the direction of {name}", source)
+        raise file.error(f"{lacking} of each bone", f"none for {name or 'one'!r}")
+    direction = _three(entry["direction"], f"the direction of {name}", file)
     norm = np.linalg.norm(direction)
-    length = number(entry["length"][0], f"the length of {name}", source)
+    length = number(entry["length"][0], f"the length of {name}", file)
     if length < 0 or (length > 0 and not 0.9 < norm < 1.1):
         got = f"{length:g} along a direction of length {norm:.3g}"
         expected = f"a length of {name} above 0, along a direction of length 1"
-        raise UnreadableFile(source, expected, got)
+        raise file.error(expected, got)
     return Bone(
         name=name,
         parent=-1,
         reach=direction / norm * length if length else np.zeros(3),
-        axis=_three(entry["axis"][:3], f"the axis of {name}", source),
-        axis_order=_order(entry["axis"][3:], name, source),
-        channels=_channels(entry.get("dof", []), _TURNS, name, source),
+        axis=_three(entry["axis"][:3], f"the axis of {name}", file),
+        axis_order=_order(entry["axis"][3:], name, file),
+        channels=_channels(entry.get("dof", []), _TURNS, name, file),
     )
 
 
-def _three(words: Sequence[str], where: str, source: str) -> np.ndarray:
+def _three(words: Sequence[str], where: str, file: CaptureFile) -> np.ndarray:
     if len(words) != 3:
-        raise UnreadableFile(source, f"3 numbers in {where}", f"{len(words)}")
-    return numbers(words, where, source)
+        raise file.error(f"3 numbers in {where}", f"{len(words)}")
+    return np.array([number(word, where, file) for word in words])
 
 
-def _order(words: Sequence[str], name: str, source: str) -> str:
+def _order(words: Sequence[str], name: str, file: CaptureFile) -> str:
     order = "".join(words).lower() or "xyz"
     if not _ORDER.fullmatch(order) or len(set(order)) < 3:
-        raise UnreadableFile(source, f"an order of axes such as XYZ for {name}", repr(order[:40]))
+        raise file.error(f"an order of axes such as XYZ for {name}", repr(order[:40]))
     return order
 
 
-def _channels(words: Sequence[str], known: set[str], name: str, source: str) -> tuple[str, ...]:
+def _channels(
+    words: Sequence[str], known: set[str], name: str, file: CaptureFile
+) -> tuple[str, ...]:
     channels = tuple(word.lower() for word in words)
     if not set(channels) <= known or len(set(channels)) < len(channels):
-        raise UnreadableFile(
-            source,
+        raise file.error(
             f"each of {sorted(known)} once at most for {name}",
             f"{' '.join(words)[:60]!r}",
             "export positions instead, as C3D",
@@ -182,16 +183,16 @@ def _channels(words: Sequence[str], known: set[str], name: str, source: str) -> 
     return channels
 
 
-def _in_order(described: dict[str, Bone], links: _Lines, source: str) -> list[Bone]:
+def _in_order(described: dict[str, Bone], links: _Lines, file: CaptureFile) -> list[Bone]:
     """Return the bones, each after the one it hangs on."""
     parents: dict[str, str] = {}
     for parent, *children in links:
         for name in children:
             if name.lower() in (*parents, ROOT):
-                raise UnreadableFile(source, "one parent a bone", f"several for {name!r}")
+                raise file.error("one parent a bone", f"several for {name!r}")
             parents[name.lower()] = parent.lower()
     if unknown := sorted({*parents, *parents.values()} - set(described)):
-        raise UnreadableFile(source, "bones of the section :bonedata", f"{unknown}")
+        raise file.error("bones of the section :bonedata", f"{unknown}")
     children_of: dict[str, list[str]] = {}
     for name, parent in parents.items():
         children_of.setdefault(parent, []).append(name)
@@ -199,47 +200,46 @@ def _in_order(described: dict[str, Bone], links: _Lines, source: str) -> list[Bo
     for name in order:
         order += children_of.get(name, [])
     if loose := sorted(set(described) - set(order)):
-        raise UnreadableFile(source, "each bone in the hierarchy", f"none for {loose}")
+        raise file.error("each bone in the hierarchy", f"none for {loose}")
     for name in order[1:]:
         described[name].parent = order.index(parents[name])
     return [described[name] for name in order]
 
 
-def parse_amc(text: str, source: str) -> Motion:
+def parse_amc(file: CaptureFile) -> Motion:
     """Return the channels of all bones in an AMC file."""
     keywords: dict[str, list[str]] = {}
     lines: _Lines = []
-    for line in text.splitlines():
+    for line in file.text.splitlines():
         words = line.split()
         if words and words[0].startswith(":"):
             keywords[words[0][1:].lower()] = words[1:]
         elif words and not words[0].startswith("#"):
             lines.append(words)
-    channels = _frames(lines, source)
-    if not text[-1].isspace():
-        _refuse_cut_number(lines, source)
+    channels = _frames(lines, file)
+    if not file.content[-1:].isspace():
+        _refuse_cut_number(lines, file)
     rate = keywords.get("samples-per-second")
     return Motion(
         channels=channels,
         degrees=True if "degrees" in keywords else False if "radians" in keywords else None,
-        rate_hz=parse_rate(rate[0], "samples-per-second", source) if rate else None,
+        rate_hz=parse_rate(rate[0], "samples-per-second", file) if rate else None,
     )
 
 
-def _frames(lines: _Lines, source: str) -> dict[str, np.ndarray]:
+def _frames(lines: _Lines, file: CaptureFile) -> dict[str, np.ndarray]:
     """Return for each bone its channels in all frames."""
     starts = [i for i, words in enumerate(lines) if len(words) == 1 and words[0].isdecimal()]
     if not starts or starts[0] != 0:
-        raise UnreadableFile(source, "the number of a frame at its beginning", "none")
+        raise file.error("the number of a frame at its beginning", "none")
     count = [int(lines[start][0][:9]) for start in starts]
     skipped = [frame for frame, later in pairwise(count) if later != frame + 1]
     if skipped:
-        raise UnreadableFile(source, f"frame {skipped[0] + 1} after {skipped[0]}", "another")
+        raise file.error(f"frame {skipped[0] + 1} after {skipped[0]}", "another")
     size = starts[1] - starts[0] if len(starts) > 1 else len(lines)
     for frame, start, end in zip(count, starts, [*starts[1:], len(lines)], strict=True):
         if end - start != size:
-            raise UnreadableFile(
-                source,
+            raise file.error(
                 f"{size - 1} bones in each frame",
                 f"{end - start - 1} in frame {frame}: the file is cut short or damaged",
             )
@@ -248,27 +248,28 @@ def _frames(lines: _Lines, source: str) -> dict[str, np.ndarray]:
         rows = [lines[start + line] for start in starts]
         name = rows[0][0]
         if name.lower() in channels or any(row[0] != name for row in rows):
-            raise UnreadableFile(
-                source, f"{name!r} once in each frame", "another bone in its place"
-            )
-        channels[name.lower()] = _table([row[1:] for row in rows], name, source)
+            raise file.error(f"{name!r} once in each frame", "another bone in its place")
+        channels[name.lower()] = _table([row[1:] for row in rows], name, file)
     return channels
 
 
-def _table(rows: _Lines, name: str, source: str) -> np.ndarray:
+def _table(rows: _Lines, name: str, file: CaptureFile) -> np.ndarray:
     size = len(rows[0])
     ragged = [frame for frame, row in enumerate(rows, 1) if len(row) != size]
     if ragged:
         got = f"{len(rows[ragged[0] - 1])} in its frame no. {ragged[0]}"
-        raise UnreadableFile(source, f"{size} numbers of {name} in each frame", got)
+        raise file.error(f"{size} numbers of {name} in each frame", got)
     return np.array(
-        [numbers(row, f"{name} in frame no. {frame}", source) for frame, row in enumerate(rows, 1)]
+        [
+            [number(word, f"{name} in frame no. {frame}", file) for word in row]
+            for frame, row in enumerate(rows, 1)
+        ]
     ).reshape(len(rows), size)
 
 
-def _refuse_cut_number(lines: _Lines, source: str) -> None:
+def _refuse_cut_number(lines: _Lines, file: CaptureFile) -> None:
     """Refuse a file whose last number is shorter than all others of its column: it ends within."""
     column = [len(words[-1]) for words in lines if words[0] == lines[-1][0]]
     if len(column) > 1 and column[-1] < min(column[:-1]):
         got = f"{lines[-1][-1]!r} as the last: the file is cut short"
-        raise UnreadableFile(source, "the last number as long as others", got)
+        raise file.error("the last number as long as others", got)

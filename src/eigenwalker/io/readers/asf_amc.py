@@ -18,7 +18,7 @@ import xarray as xr
 
 from eigenwalker.core.kinematics import forward_kinematics
 from eigenwalker.core.quaternions import Rotation
-from eigenwalker.io.capture_file import CaptureFile, read_bytes
+from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.acclaim_grammar import Acclaim, Bone, Motion, parse_amc, parse_asf
 from eigenwalker.io.to_trajectories import trajectories_of
@@ -37,21 +37,18 @@ INCH_MM = 25.4
 MAX_POSITIONS = 100_000_000
 """More bones times frames are no capture of a person but a damaged file."""
 
-_FIRST_WORDS = re.compile(rb"(?:\s*#[^\n]*\n)*\s*:([a-z-]+)", re.IGNORECASE)
+_FIRST_WORDS = rb"(?:\xef\xbb\xbf)?(?:\s*#[^\n]*\n)*\s*:"
+_OF_SKELETONS = rb"(version|name|units|documentation|root|bonedata|hierarchy)(?![a-z-])"
+_OF_MOTIONS = rb"(fully-specified|degrees|radians|samples-per-second)(?![a-z-])"
 
 
 def looks_like_acclaim(content: bytes) -> bool:
     """Return whether a file begins as motions (AMC) or skeletons (ASF) do."""
-    return _first_keyword(content) in _OF_MOTIONS | _OF_SKELETONS
+    return _begins_with(_OF_MOTIONS, content) or _begins_with(_OF_SKELETONS, content)
 
 
-_OF_MOTIONS = {"fully-specified", "degrees", "radians", "samples-per-second"}
-_OF_SKELETONS = {"version", "name", "units", "documentation", "root", "bonedata", "hierarchy"}
-
-
-def _first_keyword(content: bytes) -> str:
-    hit = _FIRST_WORDS.match(content[:4096].removeprefix(b"\xef\xbb\xbf"))
-    return hit[1].decode().lower() if hit else ""
+def _begins_with(keyword: bytes, content: bytes) -> bool:
+    return re.match(_FIRST_WORDS + keyword, content[:4096], re.IGNORECASE) is not None
 
 
 def read_asf_amc(file: CaptureFile) -> xr.DataArray:
@@ -62,12 +59,12 @@ def read_asf_amc(file: CaptureFile) -> xr.DataArray:
     (time, marker, axis) holds how each bone is turned in the room from where it is at rest, as
     rotation vectors in radians.
     """
-    if _first_keyword(file.content) in _OF_SKELETONS:
+    if _begins_with(_OF_SKELETONS, file.content):
         advice = "name the motion, which finds the skeleton beside it"
         raise file.error("a motion (.amc)", "the skeleton alone", advice)
-    motion = parse_amc(_text(file.content), file.name)
+    motion = parse_amc(file)
     beside = find_skeleton(file.path)
-    skeleton = parse_asf(_text(read_bytes(beside)), beside.name)
+    skeleton = parse_asf(CaptureFile(beside, as_utf8(read_bytes(beside))))
     ends, orientations = _pose(file, skeleton, motion, beside.name)
     names = numbered([bone.name for bone in skeleton.bones])
     up = up_axis(ends, names)
@@ -86,10 +83,6 @@ def read_asf_amc(file: CaptureFile) -> xr.DataArray:
         unit_source=beside.name,
     )
     return walk.assign_attrs({"skeleton": beside.name, "rate_assumed": False, **assumed})
-
-
-def _text(content: bytes) -> str:
-    return content.decode("utf-8-sig", errors="replace")
 
 
 def find_skeleton(motion: Path) -> Path:

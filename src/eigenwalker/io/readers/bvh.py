@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,13 +15,9 @@ from eigenwalker.io.readers.bvh_grammar import Joint, parse_bvh
 from eigenwalker.io.to_trajectories import trajectories_of
 from eigenwalker.markers.marker_sets import numbered
 
+looks_like_bvh = re.compile(rb"(\xef\xbb\xbf)?\s*HIERARCHY", re.IGNORECASE).match
 MAX_POSITIONS = 100_000_000
 """More joints times frames than this do not fit into memory."""
-
-
-def looks_like_bvh(content: bytes) -> bool:
-    """Return whether a file begins as BVH files do."""
-    return content.lstrip(b"\xef\xbb\xbf \t\r\n")[:9].upper() == b"HIERARCHY"
 
 
 def read_bvh(file: CaptureFile) -> xr.DataArray:

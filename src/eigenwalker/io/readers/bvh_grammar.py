@@ -50,7 +50,7 @@ class Motion(NamedTuple):
 
 def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, int]]:
     """Return the joints of a BVH file, parents before children, and their channels."""
-    head, table = _split(file, file.content.decode("utf-8-sig", errors="replace"))
+    head, table = _split(file, file.text)
     joints = _hierarchy(file, head)
     motion, attrs = _motion(file, table, sum(len(joint.channels) for joint in joints))
     return joints, motion, attrs
@@ -81,7 +81,7 @@ def _hierarchy(file: CaptureFile, text: str) -> list[Joint]:
                 joints.append(Joint(name, parent))
                 open_joints.append(len(joints) - 1)
             case "OFFSET" if open_joints:
-                x, y, z = (number(next(words, ""), "an OFFSET", file.name) for _ in range(3))
+                x, y, z = (number(next(words, ""), "an OFFSET", file) for _ in range(3))
                 joints[open_joints[-1]].offset = (x, y, z)
             case "CHANNELS" if open_joints:
                 joints[open_joints[-1]].channels = _channels(file, words)
@@ -121,7 +121,7 @@ def _motion(file: CaptureFile, text: str, n_channels: int) -> tuple[Motion, dict
     if not declared:
         raise file.error("the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip()))
     n_frames = int(declared[1])
-    step = number(declared[2], "the frame time", file.name)
+    step = number(declared[2], "the frame time", file)
     rows = [row for line in text[declared.end() :].splitlines() if (row := line.split())]
     cut = "" if text[-1].isspace() else _cut_number(rows)
     may_be_cut = file.keep_partial and len(rows) <= n_frames and not text.endswith("\n")
@@ -155,11 +155,7 @@ def _table(file: CaptureFile, rows: Sequence[Sequence[str]]) -> np.ndarray:
     table = plain_numbers([word for row in rows for word in row])
     if table is None or np.isnan(table).any():
         table = np.array(
-            [
-                number(word, f"frame {at}", file.name)
-                for at, row in enumerate(rows, 1)
-                for word in row
-            ]
+            [number(word, f"frame {at}", file) for at, row in enumerate(rows, 1) for word in row]
         )
     return table.reshape(len(rows), -1)
 

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import lines_of, refuse_cut_number, table_of
+from eigenwalker.io.text_cells import refuse_cut_number, table_of
 from eigenwalker.io.text_table import TableValues, table_trajectories
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 
@@ -33,9 +33,9 @@ def looks_like_data3d(lines: Sequence[str]) -> bool:
 
 def read_data3d(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the 13 points of a ``data3d`` text."""
-    lines = lines_of(file.content, file.name)
-    table = table_of(lines, len(POINTS), separator=None, source=file.name)
-    refuse_cut_number(file.content, lines, file.name)
+    lines = file.lines
+    table = table_of(file, lines, len(POINTS), separator=None)
+    refuse_cut_number(file, lines)
     positions = positions_of_rows(file, table)
     heights = dict(zip(POINTS, np.nanmedian(positions[..., 1], axis=0), strict=True))
     chain = ("head", "shoulder", "hip", "knee", "ankle")

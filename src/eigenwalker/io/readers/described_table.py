@@ -14,19 +14,17 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import MILLIMETRES
-from eigenwalker.io.capture_file import CaptureFile, read_bytes
-from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
+from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
 from eigenwalker.io.readers.data3d import positions_of_rows
 from eigenwalker.io.text_cells import (
     cells,
-    lines_of,
     points_of,
     refuse_cut_number,
     separator_of,
     table_of,
 )
 from eigenwalker.io.text_table import TableValues, table_trajectories
-from eigenwalker.io.timestamps import on_even_clock, parse_rate
+from eigenwalker.io.timestamps import parse_rate
 from eigenwalker.io.to_trajectories import unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 
@@ -53,12 +51,9 @@ _KEYS: dict[str, type] = dict.fromkeys(_WORDS, str) | {
 
 
 class _Description(dict[str, Any]):
-    """What a description holds, and the name of its file, for messages."""
+    """What a description holds, and its file."""
 
-    name: str
-
-    def error(self, expected: str, got: str, advice: str = EXPORT_AGAIN) -> UnreadableFile:
-        return UnreadableFile(self.name, expected, got, advice)
+    file: CaptureFile
 
 
 def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
@@ -72,30 +67,25 @@ def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
     positions = values.positions
     if described.get("zero_is_missing"):
         positions = without_zeros(positions)
-    rate_hz, start_s = file.rate_hz, 0.0
+    rate_hz = file.rate_hz
     if rate_hz is None and "rate_hz" in described:
-        rate_hz = parse_rate(f"{described['rate_hz']}", "rate_hz", described.name)
-    if values.time is not None:
-        try:
-            positions, rate_hz, start_s = on_even_clock(positions, values.time, file.name, rate_hz)
-        except UnreadableFile:
-            if file.rate_hz is None and file.default_rate_hz is None:
-                raise  # else the rate that the caller names replaces times that do not fit it
-    rate_hz = rate_hz or file.default_rate_hz
-    if rate_hz is None:
-        raise described.error("rate_hz or time_column", "neither", "add the frames a second")
+        rate_hz = parse_rate(f"{described['rate_hz']}", "rate_hz", described.file)
+    if rate_hz is None and values.time is None:
+        rate_hz = file.default_rate_hz
+        if rate_hz is None:
+            expected = "rate_hz or time_column"
+            raise described.file.error(expected, "neither", "add the frames a second")
     axes = _axes(described)
     walk = table_trajectories(
         file,
-        TableValues(positions if axes is None else positions @ axes.T),
+        TableValues(positions if axes is None else positions @ axes.T, values.time),
         names,
         format_name="described table",
         rate_hz=rate_hz,
-        start_s=start_s,
         unit=_unit(described),
         up=described.get("up") if axes is None else "z",
     )
-    walk.attrs.update(description=described.name)
+    walk.attrs.update(description=described.file.name)
     walk.attrs.update({key: str(described[key]) for key in _WORDS if key in described})
     if axes is not None:
         walk.attrs["up_axis"] = described["up"]
@@ -106,25 +96,22 @@ def _read_description(path: Path) -> _Description:
     """Return what a description holds: known keys, each of its type."""
     see = "see docs/formats.md"
     described = _Description()
-    described.name = path.name
+    described.file = CaptureFile(path, as_utf8(read_bytes(path, max_bytes=MAX_BYTES)))
     try:
-        text = read_bytes(path, max_bytes=MAX_BYTES).decode("utf-8-sig")
-        described.update(tomllib.loads(text))
+        described.update(tomllib.loads(described.file.content.decode("utf-8-sig")))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise described.error("a description in TOML", str(error)[:80], see) from error
-    except UnreadableFile:
-        raise
+        raise described.file.error("a description in TOML", str(error)[:80], see) from error
     except ValueError as error:
-        raise described.error("numbers of a usual size", "longer ones") from error
+        raise described.file.error("numbers of a usual size", "longer ones") from error
     if unknown := [key for key in described if key not in _KEYS]:
-        raise described.error(f"some of {sorted(_KEYS)}", f"{unknown[:3]}"[:80], see)
+        raise described.file.error(f"some of {sorted(_KEYS)}", f"{unknown[:3]}"[:80], see)
     for key, value in described.items():
         wanted = (int, float) if _KEYS[key] is float else _KEYS[key]
         if not isinstance(value, wanted) or (isinstance(value, bool) and _KEYS[key] is not bool):
-            raise described.error(f"{key} as {_KEYS[key].__name__}", f"{value!r}"[:80])
+            raise described.file.error(f"{key} as {_KEYS[key].__name__}", f"{value!r}"[:80])
     for key, choices in (("layout", LAYOUTS), ("separator", tuple(SEPARATORS))):
         if described.get(key, choices[0]) not in choices:
-            raise described.error(f"a {key} of {choices}", repr(described[key])[:80])
+            raise described.file.error(f"a {key} of {choices}", repr(described[key])[:80])
     return described
 
 
@@ -133,7 +120,7 @@ def _unit(described: _Description) -> Unit | None:
     if "unit_mm" in described:
         length = float(described["unit_mm"])
         if not 1e-9 < length < 1e9:
-            raise described.error("millimetres a unit above 0 as unit_mm", f"{length}")
+            raise described.file.error("millimetres a unit above 0 as unit_mm", f"{length}")
         return Unit(f"{length:g} mm", length)
     if "unit" not in described:
         return None
@@ -141,7 +128,7 @@ def _unit(described: _Description) -> Unit | None:
     name = described["unit"]
     unit = Unit(name, known[name]) if name in known else unit_named(name)
     if unit is None:
-        raise described.error(f"a unit of {sorted(known)}", repr(name)[:40])
+        raise described.file.error(f"a unit of {sorted(known)}", repr(name)[:40])
     return unit
 
 
@@ -155,7 +142,7 @@ def _axes(described: _Description) -> np.ndarray | None:
     for key in ("forward", "left", "up"):
         word = described.get(key, "")
         if key in described and word.lstrip("+-") not in ("x", "y", "z"):
-            raise described.error(f"{key} as x, -x, y, -y, z or -z", repr(word)[:40])
+            raise described.file.error(f"{key} as x, -x, y, -y, z or -z", repr(word)[:40])
         if word:
             sign = -1.0 if word.startswith("-") else 1.0
             given[key] = sign * np.eye(3)["xyz".index(word[-1])]
@@ -168,18 +155,18 @@ def _axes(described: _Description) -> np.ndarray | None:
     axes = np.array([given["forward"], given["left"], given["up"]])
     if abs(np.linalg.det(axes)) < 0.5:
         words = [described[key] for key in ("forward", "left", "up") if key in described]
-        raise described.error("three different axes", f"{words}")
+        raise described.file.error("three different axes", f"{words}")
     return axes
 
 
 def _table(file: CaptureFile, described: _Description) -> tuple[list[str], TableValues]:
     """Return names, positions and times of the points, in the layout of the description."""
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     n_above: int = described.get("header_lines", 0 if "names" in described else 1)
     skip: int = described.get("skip_columns", 0)
     if not 0 <= n_above < len(lines) or not 0 <= skip < 10_000:
         got = f"{n_above} and {skip}, with {len(lines)} lines in the table"
-        raise described.error("header_lines and skip_columns that leave a table", got)
+        raise described.file.error("header_lines and skip_columns that leave a table", got)
     rows = [line.strip(" ") for line in lines[n_above:] if line.strip()]
     separator = separator_of(rows[0]) if rows else None
     if "separator" in described:
@@ -195,19 +182,19 @@ def _table(file: CaptureFile, described: _Description) -> tuple[list[str], Table
         names, points, _ = points_of(head if n_above else [])
         columns = np.array(points, dtype=int).ravel()
     if not names:
-        raise described.error("names of the points, or a header with them", "neither")
+        raise described.file.error("names of the points, or a header with them", "neither")
     at = described.get("time_column", 0)
     if not 0 <= at <= len(head) or (at and layout == "rows"):
-        raise described.error(f"a time_column from 1 to {len(head)}", f"{at}")
+        raise described.file.error(f"a time_column from 1 to {len(head)}", f"{at}")
     values = table_of(
+        file,
         rows,
         len(head),
         separator=separator,
-        source=file.name,
         first=n_above + 1,
         columns=[*columns.tolist(), *([at - 1] if at else [])],
     )
-    refuse_cut_number(file.content, rows, file.name)
+    refuse_cut_number(file, rows)
     if layout == "rows":
         return names, TableValues(positions_of_rows(file, values))
     time = values[:, -1] if at else None
@@ -233,7 +220,7 @@ def _columns(
     if n_columns != wanted:
         for_what = f"{n_points} names" + (f" behind {skip} columns" if skip else "")
         raise file.error(
-            f"{wanted} columns for the {for_what} in {described.name} ({layout})",
+            f"{wanted} columns for the {for_what} in {described.file.name} ({layout})",
             f"{n_columns}",
             "put names, layout or skip_columns right",
         )

@@ -12,7 +12,7 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import cells, lines_of, points_of, separator_of
+from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TextTable, interleaved, table_trajectories, table_values
 from eigenwalker.io.to_trajectories import unit_named
 from eigenwalker.io.up_axis_and_unit import Unit
@@ -32,7 +32,7 @@ def looks_like_mot(content: bytes) -> bool:
 
 def read_mot(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the points in an OpenSim storage file."""
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     end = next((at for at, line in enumerate(lines) if line.strip().lower() == "endheader"), None)
     if end is None or end + 1 >= len(lines):
         raise file.error("a line of names after endheader", "none")

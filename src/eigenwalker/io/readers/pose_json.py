@@ -17,10 +17,10 @@ from typing import Any, TypeGuard
 import numpy as np
 import xarray as xr
 
-from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.capture_file import CaptureFile, is_text
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.skeleton_table import body_trajectories
-from eigenwalker.io.text_cells import MAX_SIZE, is_text, lines_of, points_of
+from eigenwalker.io.text_cells import MAX_SIZE, points_of
 from eigenwalker.io.text_table import TableValues
 
 MEDIAPIPE = (
@@ -73,7 +73,7 @@ def holds_poses(beginning: bytes, path: Path) -> bool:
 def read_pose_json(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the points in a JSON document, of one person."""
     try:
-        data: Any = json.loads("\n".join(lines_of(file.content, file.name)))
+        data: Any = json.loads("\n".join(file.lines))
     except UnreadableFile:
         raise
     except (ValueError, RecursionError) as error:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import cells, lines_of
+from eigenwalker.io.text_cells import cells
 from eigenwalker.io.text_table import (
     TextTable,
     declared_count,
@@ -27,18 +27,15 @@ from eigenwalker.io.up_axis_and_unit import Unit
 MAX_KEYS = 10_000
 """Lines above the table: a dozen keys and one line an event."""
 
-_BEGINNING = re.compile(rb"(?:\xef\xbb\xbf)?\s*NO_OF_(FRAMES|CAMERAS|MARKERS)\b", re.IGNORECASE)
+looks_like_qualisys_tsv = re.compile(
+    rb"(?:\xef\xbb\xbf)?\s*NO_OF_(FRAMES|CAMERAS|MARKERS)\b", re.IGNORECASE
+).match
 _KEY = re.compile(r"[A-Z][A-Z0-9_]+", re.ASCII)
-
-
-def looks_like_qualisys_tsv(content: bytes) -> bool:
-    """Return whether a file begins as Qualisys' tables do."""
-    return _BEGINNING.match(content[:200]) is not None
 
 
 def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the markers in a Qualisys table; NaN where one was not seen."""
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     keys, first = _keys(lines)
     first_of = {key: "".join(values[:1]) for key, values in keys.items()}
     kind = first_of.get("DATA_INCLUDED", "3D")

@@ -16,9 +16,9 @@ import xarray as xr
 from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.text_cells import cells, lines_of, points_of, separator_of
+from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
-from eigenwalker.io.timestamps import on_clock, parse_rate
+from eigenwalker.io.timestamps import parse_rate
 from eigenwalker.io.to_trajectories import unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
@@ -48,7 +48,7 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
     column of times are refused unless the caller names the rate, except Kinect's (30 Hz assumed).
     Points at 0, 0, 0 in some frames are missing there.
     """
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     above = next((at for at, line in enumerate(lines) if line.strip() and line[0] != "#"), 0)
     separator = separator_of(lines[above])
     header, first = header_of(lines, above, separator)
@@ -89,16 +89,15 @@ def body_trajectories(
     if not (file.unit or unit or file.default_unit or usual):
         _refuse_picture(file, values.positions, names)
     positions = without_zeros(values.positions, unless_always=kind != "Kinect")
-    rate_hz, start_s, assumed = file.rate_hz, 0.0, {}
+    time, rate_hz, assumed = values.time, file.rate_hz, {}
     if rate_hz is None and "rate_hz" in notes:
-        rate_hz = parse_rate(notes["rate_hz"], "rate_hz", file.name)
-    elif rate_hz is None and values.time is not None:
-        positions, rate_hz, start_s = on_clock(file, positions, values.time)
-    elif rate_hz is None and kind == "Kinect":
+        time, rate_hz = None, parse_rate(notes["rate_hz"], "rate_hz", file)
+    elif rate_hz is None and time is None and kind == "Kinect":
         reason = "at which Kinect nominally sees"
         rate_hz, assumed = file.frame_rate(None, usual_hz=KINECT_RATE_HZ, reason=reason)
-    rate_hz = rate_hz or file.default_rate_hz
-    if rate_hz is None:
+    elif time is None:
+        rate_hz = rate_hz or file.default_rate_hz
+    if time is None and rate_hz is None:
         raise file.error(
             "a column time_s",
             f"{list(names[:3])}"[:120] + " and others, but no time",
@@ -106,11 +105,10 @@ def body_trajectories(
         )
     return table_trajectories(
         file,
-        TableValues(positions, attrs={**values.attrs, **assumed}),
+        TableValues(positions, time, {**values.attrs, **assumed}),
         names,
         format_name=kind,
         rate_hz=rate_hz,
-        start_s=start_s,
         unit=unit,
         usual_unit=usual,
         up=notes.get("up") if re.fullmatch("-?[xyz]", notes.get("up", "")) else None,

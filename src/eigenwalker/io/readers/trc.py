@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import cells, lines_of, points_of
+from eigenwalker.io.text_cells import cells, points_of
 from eigenwalker.io.text_table import (
     TextTable,
     declared_count,
@@ -25,18 +25,14 @@ from eigenwalker.io.text_table import (
 from eigenwalker.io.timestamps import declared_rate
 from eigenwalker.io.to_trajectories import unit_named, without_zeros
 
+looks_like_trc = re.compile(rb"[\xef\xbb\xbf\s\"']*PathFileType", re.IGNORECASE).match
 _KEYS = ("numframes", "nummarkers")
 _N_FRONT = 2  # columns for the number of the frame and its time
 
 
-def looks_like_trc(content: bytes) -> bool:
-    """Return whether a file begins as TRC files do."""
-    return content.lstrip(b"\xef\xbb\xbf \t\r\n\"'")[:12].lower() == b"pathfiletype"
-
-
 def read_trc(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the markers in a TRC file; NaN where a marker was not seen."""
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     if len(lines) < 5:
         raise file.error("five lines above the first frame", f"{len(lines)} lines")
     separator = "\t" if "\t" in lines[3] else None

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from eigenwalker.io.capture_file import CaptureFile, file_beside
+from eigenwalker.io.capture_file import CaptureFile, is_text, lines_of
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.data3d import looks_like_data3d, read_data3d
 from eigenwalker.io.readers.described_table import read_described_table
 from eigenwalker.io.readers.skeleton_table import MIN_POINTS, header_of, read_skeleton_table
-from eigenwalker.io.text_cells import cells, is_text, lines_of, points_of, separator_of
+from eigenwalker.io.text_cells import cells, points_of, separator_of
 
 DESCRIPTION = ".toml"
 
@@ -48,14 +48,15 @@ def holds_points(beginning: bytes, path: Path) -> bool:
 
 def find_description(path: Path) -> Path | None:
     """Return the file of the same name that ends in ``.toml``, if there is one."""
-    return file_beside(path, DESCRIPTION)
+    description = path.with_suffix(DESCRIPTION)
+    return description if description != path and description.is_file() else None
 
 
 def read_table(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the points in a table."""
     if description := find_description(file.path):
         return read_described_table(file, description)
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     words = cells(lines[0], separator_of(lines[0]))
     if not _are_numbers(words):
         return read_skeleton_table(file)

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import cells, lines_of, separator_of
+from eigenwalker.io.text_cells import cells, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
 from eigenwalker.io.timestamps import declared_rate, on_even_clock
 from eigenwalker.io.to_trajectories import unit_named
@@ -51,7 +51,7 @@ def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
     Frame 1 of the capture is at 0 s. Of model outputs, those in units of length are taken, and
     origins of segments are called as in C3D files (``LFEO``).
     """
-    lines = lines_of(file.content, file.name)
+    lines = file.lines
     starts = [at for at, line in enumerate(lines) if line.strip(_EDGES).lower() in BLOCKS]
     blocks = [block for at in starts if (block := _block(file, lines, at))]
     if not blocks:
@@ -68,7 +68,7 @@ def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
     if len(whole.units) > 1:
         raise file.error("one unit of length", f"{sorted(whole.units)}")
     time = (whole.frames - 1) / whole.rate_hz
-    even = on_even_clock(whole.positions, time, file.name, whole.rate_hz)
+    even = on_even_clock(file, whole.positions, time, whole.rate_hz)
     return table_trajectories(
         file,
         TableValues(even.positions),
