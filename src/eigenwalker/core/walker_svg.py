@@ -42,7 +42,6 @@ def stride_svg(
 
 
 def _places_px(positions: np.ndarray, height_px: int) -> tuple[np.ndarray, float]:
-    """Places from the left and the upper edge, and the width that takes."""
     view = np.deg2rad(VIEW_DEG)
     right = positions[..., 0] * np.sin(view) + positions[..., 1] * np.cos(view)
     seen = np.stack([right, -positions[..., 2]], axis=-1)
@@ -59,7 +58,6 @@ def _path(frame: np.ndarray, segments: Sequence[tuple[int, int]]) -> str:
 
 
 def _moving(paths: list[str], period_s: float, *, width: float, opacity: float) -> str:
-    """One path that becomes the others one after the other, and the first again."""
     values = ";".join([*paths, paths[0]])
     return (
         f'<path d="{paths[0]}" stroke-width="{width}" stroke-opacity="{opacity}">'

@@ -258,7 +258,6 @@ def from_pyomeca(
 
 
 def _dim(position: xr.DataArray, names: tuple[str, ...]) -> Hashable:
-    """Return the dim that has one of the names that versions of movement gave it."""
     found = [name for name in names if name in position.dims]
     if not found:
         raise ValueError(f"Expected a dim called {names[0]!r}; got {position.dims}.")
@@ -275,7 +274,6 @@ def _one(poses: xr.Dataset, people: Hashable, individual: str | None) -> str:
 
 
 def _seconds(data: xr.Dataset | xr.DataArray, rate_hz: float | None) -> np.ndarray:
-    """Return the times of the frames: as they stand, or counted in frames at a known rate."""
     in_seconds = "time" in data.coords and data.attrs.get("time_unit", "seconds") == "seconds"
     if in_seconds and rate_hz is None:
         return np.asarray(data["time"].values, dtype=float)

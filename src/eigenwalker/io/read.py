@@ -196,7 +196,6 @@ def _checked_rate(argument: str, rate_hz: float | None) -> float | None:
 
 
 def _unknown_file(file: CaptureFile) -> UnreadableFile:
-    """Return the error about a file that no reader takes."""
     suffix = file.path.suffix.lower()
     if file.content.startswith(b"MATLAB") or suffix == ".mat":
         return file.error(

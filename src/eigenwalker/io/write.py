@@ -177,7 +177,6 @@ def _sampled_walk(
 
 
 def _with_progress(walk: xr.DataArray) -> xr.DataArray:
-    """Return trajectories in place as a walk forward with their ``attrs["speed_mm_s"]``."""
     speed = float(walk.attrs.get("speed_mm_s", np.nan))
     if not np.isfinite(speed):
         raise ValueError(

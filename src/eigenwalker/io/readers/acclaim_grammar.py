@@ -91,7 +91,6 @@ def parse_asf(file: CaptureFile) -> Acclaim:
 
 
 def _sections(text: str) -> dict[str, _Lines]:
-    """Return the lines below each keyword, as words, without comments."""
     sections: dict[str, _Lines] = {}
     lines: _Lines = []
     for line in text.splitlines():
@@ -105,7 +104,6 @@ def _sections(text: str) -> dict[str, _Lines]:
 
 
 def _blocks(lines: _Lines, section: str, file: CaptureFile) -> list[_Lines]:
-    """Return what stands between each begin and its end."""
     blocks: list[_Lines] = []
     is_open = False
     for line in lines:
@@ -184,7 +182,6 @@ def _channels(
 
 
 def _in_order(described: dict[str, Bone], links: _Lines, file: CaptureFile) -> list[Bone]:
-    """Return the bones, each after the one it hangs on."""
     parents: dict[str, str] = {}
     for parent, *children in links:
         for name in children:
@@ -228,7 +225,6 @@ def parse_amc(file: CaptureFile) -> Motion:
 
 
 def _frames(lines: _Lines, file: CaptureFile) -> dict[str, np.ndarray]:
-    """Return for each bone its channels in all frames."""
     starts = [i for i, words in enumerate(lines) if len(words) == 1 and words[0].isdecimal()]
     if not starts or starts[0] != 0:
         raise file.error("the number of a frame at its beginning", "none")

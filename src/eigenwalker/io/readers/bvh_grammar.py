@@ -57,7 +57,6 @@ def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, int]]:
 
 
 def _split(file: CaptureFile, text: str) -> tuple[str, str]:
-    """Return the HIERARCHY and what follows the word MOTION."""
     parts = re.split(r"(?im)^[^\S\n]*MOTION\b", text, maxsplit=1)
     if len(parts) < 2:
         raise file.error("a line MOTION after the skeleton", "none: the file is cut short")
@@ -65,7 +64,6 @@ def _split(file: CaptureFile, text: str) -> tuple[str, str]:
 
 
 def _hierarchy(file: CaptureFile, text: str) -> list[Joint]:
-    """Return the joints in the order of their channels, parents before children."""
     words = iter(re.sub(r"([{}])", r" \1 ", text).split())
     joints: list[Joint] = []
     open_joints: list[int] = []

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.readers.c3d_sections import MAGIC, Header, Parameters, c3d_sections
+from eigenwalker.io.readers.c3d_sections import Header, Parameters, c3d_sections
 from eigenwalker.io.to_trajectories import (
     labelled_points,
     own_name,
@@ -19,6 +19,7 @@ from eigenwalker.io.to_trajectories import (
 )
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
+looks_like_c3d = re.compile(rb"[^\0]\x50", re.DOTALL).match
 _UNLABELLED = re.compile(
     r"\*\d*|u_\d+|new[ _]?\d+|un(labell?ed|named|identified).*|no[ _]?name.*", re.IGNORECASE
 )
@@ -32,11 +33,6 @@ _MEASURES = {
     "WRISTWIDTH": "wrist_width",
     "SHOULDEROFFSET": "shoulder_offset",
 }
-
-
-def looks_like_c3d(content: bytes) -> bool:
-    """Return whether a file begins as C3D files do."""
-    return len(content) > 1 and content[1] == MAGIC and content[0] > 0
 
 
 def read_c3d(file: CaptureFile) -> xr.DataArray:
@@ -75,7 +71,6 @@ def _rate(file: CaptureFile, header: Header, parameters: Parameters) -> float:
 def _markers(
     file: CaptureFile, samples: np.ndarray, parameters: Parameters
 ) -> tuple[np.ndarray, list[str], dict[str, object]]:
-    """Return positions and names of the markers, and attributes about the other points."""
     n_points = samples.shape[1]
     labels = parameters.texts("POINT:LABELS")
     if not labels:
@@ -114,7 +109,6 @@ def _unit(parameters: Parameters) -> Unit | None:
 
 
 def _measures(parameters: Parameters) -> dict[str, float]:
-    """Return what a laboratory measured on the subject, in millimetres."""
     measures: dict[str, float] = {}
     for key, name in _MEASURES.items():
         for side in ("left", "right"):

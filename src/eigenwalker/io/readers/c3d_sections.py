@@ -18,7 +18,6 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import MAX_SIZE
 
 BLOCK = 512
-MAGIC = 0x50
 MAX_PARAMETER_BLOCKS = 255
 MAX_CONTINUED = 30
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}

@@ -116,7 +116,6 @@ def _read_description(path: Path) -> _Description:
 
 
 def _unit(described: _Description) -> Unit | None:
-    """Return the unit that a description names, by its name or its length."""
     if "unit_mm" in described:
         length = float(described["unit_mm"])
         if not 1e-9 < length < 1e9:
@@ -160,7 +159,6 @@ def _axes(described: _Description) -> np.ndarray | None:
 
 
 def _table(file: CaptureFile, described: _Description) -> tuple[list[str], TableValues]:
-    """Return names, positions and times of the points, in the layout of the description."""
     lines = file.lines
     n_above: int = described.get("header_lines", 0 if "names" in described else 1)
     skip: int = described.get("skip_columns", 0)
@@ -202,7 +200,6 @@ def _table(file: CaptureFile, described: _Description) -> tuple[list[str], Table
 
 
 def _without_last_empty(words: list[str]) -> list[str]:
-    """Return cells without the one behind a separator that ends the line."""
     return words[:-1] if len(words) > 1 and not words[-1] else words
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import warnings
 from importlib import import_module
 from pathlib import Path
@@ -19,6 +20,7 @@ from eigenwalker.io.text_cells import MAX_SIZE
 from eigenwalker.io.to_trajectories import with_coordinate, with_scalars
 from eigenwalker.markers.label_repair import Rebuilt, Repair
 
+looks_like_netcdf = re.compile(rb"CDF[\x01\x02]").match  # version 3
 FORMAT = "eigenwalker trajectories"
 VERSION = 1
 TABLES = {"repairs": Repair, "rebuilt": Rebuilt}
@@ -28,14 +30,9 @@ _EXPECTED = "trajectories as write_mocap writes them"
 _OPEN = "open it with xarray and label it with label_trajectories()"
 
 
-def looks_like_netcdf(content: bytes) -> bool:
-    """Return whether a file begins as NetCDF files of version 3 do."""
-    return content[:4] in (b"CDF\x01", b"CDF\x02")
-
-
 def holds_trajectories(beginning: bytes, _path: Path) -> bool:
     """Return whether a file is of ours, and no population."""
-    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
+    return looks_like_netcdf(beginning) is not None and FORMAT.encode() in beginning
 
 
 def read_netcdf(file: CaptureFile) -> xr.DataArray:

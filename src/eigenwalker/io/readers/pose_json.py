@@ -10,7 +10,9 @@ from __future__ import annotations
 import json
 import math
 import re
+import tomllib
 from collections.abc import Sequence
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -23,25 +25,8 @@ from eigenwalker.io.readers.skeleton_table import body_trajectories
 from eigenwalker.io.text_cells import MAX_SIZE, points_of
 from eigenwalker.io.text_table import TableValues
 
-MEDIAPIPE = (
-    *("nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye"),
-    *("right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right"),
-    *(
-        f"{side}_{part}"
-        for part in ("shoulder", "elbow", "wrist", "pinky", "index", "thumb")
-        for side in ("left", "right")
-    ),
-    *(
-        f"{side}_{part}"
-        for part in ("hip", "knee", "ankle", "heel", "foot_index")
-        for side in ("left", "right")
-    ),
-)
-BODY_25 = (
-    *("Nose", "Neck", "RShoulder", "RElbow", "RWrist", "LShoulder", "LElbow", "LWrist"),
-    *("MidHip", "RHip", "RKnee", "RAnkle", "LHip", "LKnee", "LAnkle", "REye", "LEye"),
-    *("REar", "LEar", "LBigToe", "LSmallToe", "LHeel", "RBigToe", "RSmallToe", "RHeel"),
-)
+_TOML = files("eigenwalker.io.readers").joinpath("point_names.toml").read_text(encoding="utf-8")
+MEDIAPIPE, BODY_25 = (tuple(map(str, names)) for names in tomllib.loads(_TOML).values())
 NAMES = {len(names): names for names in (MEDIAPIPE, BODY_25)}
 """Names of points that a file only counts."""
 
@@ -64,9 +49,8 @@ def looks_like_json(content: bytes) -> bool:
     return content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] in (b"{", b"[") and is_text(content)
 
 
-def holds_poses(beginning: bytes, path: Path) -> bool:
+def holds_poses(beginning: bytes, _path: Path) -> bool:
     """Return whether a JSON document is one of points, by the words in its beginning."""
-    del path
     return looks_like_json(beginning) and _WORDS.search(beginning) is not None
 
 
@@ -114,7 +98,6 @@ def _records(columns: dict[str, Any]) -> list[dict[str, Any]]:
 def _positions(
     file: CaptureFile, frames: Sequence[Any], top: dict[str, Any]
 ) -> tuple[list[str], np.ndarray]:
-    """Return names and positions of the points of all frames."""
     points_by_frame = [_points(file, frame) for frame in frames]
     first = next((points for points in points_by_frame if points), points_by_frame[0])
     names = next((top[key] for key in ("names", "keypoint_names", "markers") if key in top), None)
@@ -188,7 +171,6 @@ def _points_of_record(file: CaptureFile, record: dict[str, Any]) -> dict[str, np
 
 
 def _point(file: CaptureFile, point: Any) -> np.ndarray:
-    """Return x, y, z of a point; NaN where it is null."""
     if point is None:
         return np.full(3, np.nan)
     values = [point.get(axis, math.inf) for axis in "xyz"] if _is_dict(point) else point
@@ -207,7 +189,6 @@ def _number(file: CaptureFile, value: Any) -> float:
 
 
 def _times(frames: Sequence[Any]) -> np.ndarray | None:
-    """Return the times of the frames in seconds, if each has one."""
     for key, unit in _TIMES.items():
         times = [frame.get(key) if _is_dict(frame) else None for frame in frames]
         if all(isinstance(t, (int, float)) and abs(t) < MAX_SIZE * 1e6 for t in times):

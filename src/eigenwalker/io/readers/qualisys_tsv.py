@@ -71,7 +71,6 @@ def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
 
 
 def _keys(lines: Sequence[str]) -> tuple[dict[str, list[str]], int]:
-    """Return the keys with their values, and the line on which the table begins."""
     keys: dict[str, list[str]] = {}
     for at, line in enumerate(lines[:MAX_KEYS]):
         words = cells(line, "\t")

@@ -136,7 +136,6 @@ def header_of(lines: Sequence[str], at: int, separator: str | None) -> tuple[lis
 
 
 def _no_points(file: CaptureFile, header: Sequence[str]) -> UnreadableFile:
-    """Return the error about a table whose columns are no points in space."""
     flat = {cell[:-2].lower() for cell in header if cell[-2:].lower() in ("_x", "_y")}
     if len(flat) >= MIN_POINTS:
         got = f"{header[:2]} and so on, in two dimensions"
@@ -167,7 +166,6 @@ def _notes(lines: Sequence[str]) -> dict[str, str]:
 
 
 def _declared_frames(file: CaptureFile, notes: Mapping[str, str]) -> int | None:
-    """Return the number of frames that a note above the table gives (``frames: 120``)."""
     word = notes.get("frames")
     if word is None:
         return None
@@ -182,7 +180,6 @@ def _kind(names: Sequence[str]) -> str:
 
 
 def _refuse_picture(file: CaptureFile, positions: np.ndarray, names: Sequence[str]) -> None:
-    """Refuse landmarks in shares of a picture: between 0 and 1, with y downwards."""
     flat = positions[..., :2][~np.isnan(positions[..., :2])]
     low, high = np.quantile(flat, (0.01, 0.99)) if flat.size else (0.0, 0.0)
     if low > 0 and high < 1 and up_axis(positions, names) in ("-y", None):

@@ -68,7 +68,6 @@ def read_trc(file: CaptureFile) -> xr.DataArray:
 
 
 def _keys(file: CaptureFile, lines: Sequence[str], separator: str | None) -> dict[str, str]:
-    """Return the keys of the second line with the values of the third."""
     between_tabs = [cell for cell in cells(lines[2], "\t") if cell]  # where values may hold blanks
     values = between_tabs if len(between_tabs) > 3 else lines[2].split()
     keys = dict(zip(lines[1].lower().split(), values, strict=False))

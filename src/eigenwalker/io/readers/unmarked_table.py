@@ -70,7 +70,6 @@ def read_table(file: CaptureFile) -> xr.DataArray:
 
 
 def _are_numbers(words: Sequence[str]) -> bool:
-    """Return whether most words are numbers."""
     plain = [word.replace(",", ".", 1) for word in words if word]
     count = sum(word.lstrip("+-")[:1].isdigit() or word[:1] == "." for word in plain)
     return count > 0.8 * len(plain)

@@ -116,7 +116,6 @@ def _block(file: CaptureFile, lines: Sequence[str], at: int) -> _Block | None:
 def _points(
     names: Sequence[str], head: Sequence[str], units: Sequence[str]
 ) -> dict[str, tuple[tuple[int, int, int], str]]:
-    """Return for each point its three columns and their unit."""
     points: dict[str, tuple[tuple[int, int, int], str]] = {}
     name = ""
     for at in range(2, len(head) - 2):

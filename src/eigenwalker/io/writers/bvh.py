@@ -159,7 +159,6 @@ def _check(walk: xr.DataArray) -> None:
 
 
 def _joints(markers: Sequence[str]) -> list[_Joint]:
-    """Return the joints of the file, from the root outwards."""
     present = [name for name in BODY if name in markers]
     parent_of = {name: _nearest(name, markers) for name in present}
     joints = [_Joint(ROOT, ROOT, -1, UP)]
@@ -180,13 +179,11 @@ def _joints(markers: Sequence[str]) -> list[_Joint]:
 
 
 def _nearest(joint: str, markers: Sequence[str]) -> str:
-    """Return the nearest joint towards the root that is present."""
     parent = BODY[joint][0]
     return parent if parent in markers else _nearest(parent, markers)
 
 
 def _hierarchy(bones: Bones, joint: int) -> list[str]:
-    """Return the lines that describe a joint and all it carries."""
     children = [child for child, parent in enumerate(bones.parents) if parent == joint]
     offset = " ".join(f"{length:.6f}" for length in bones.rest[joint])
     turns = " ".join(f"{axis}rotation" for axis in ORDER)
