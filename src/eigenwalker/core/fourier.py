@@ -67,10 +67,7 @@ def unit_phasors(angle: float, n_frames: int) -> np.ndarray:
 
 
 def fit_basis(basis: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the weights with which the columns of a basis explain values best.
-
-    Through an orthogonal factorisation, so that nearly dependent columns do no harm.
-    """
+    """Return the weights with which the columns of a basis explain values best, by QR."""
     q, r = np.linalg.qr(basis)
     return np.linalg.solve(r, q.T @ values)
 

@@ -40,10 +40,8 @@ def bone_rotations(parents: Sequence[int], rest: np.ndarray, positions: np.ndarr
     """Return the rotations of a rigid body's joints that bring it nearest to seen positions.
 
     From the root outwards, each joint turns its bones towards where the next joints were seen from
-    its own new place. So a bone that is longer or shorter than the captured one causes one error
-    of that size; joints further out do not add to it. A joint that carries one bone turns
-    it the shortest way; one that carries several turns them together by least squares. About the
-    axis of a single bone nothing is known, and nothing turns.
+    its own new place, so errors of length do not add up. A joint that carries one bone turns it the
+    shortest way; one that carries several turns them together by least squares.
 
     `rest` (joint, 3) holds the offset of each joint in the frame of its parent. Where it is zero,
     the joint is at its parent's place, and its parent turns it with what it carries itself.
@@ -95,10 +93,7 @@ def _turn_bones(
 
 
 def shortest_turn(start: np.ndarray, end: np.ndarray) -> Rotation:
-    """Return the smallest rotations that bring one direction, (3,), into others, (time, 3).
-
-    Nothing turns where the other has no length.
-    """
+    """Return the smallest rotations that bring one direction, (3,), into others, (time, 3)."""
     start = start / np.linalg.norm(start)
     length = np.linalg.norm(end, axis=1, keepdims=True)
     end = np.divide(end, length, out=np.tile(start, (len(end), 1)), where=length > 0)

@@ -30,10 +30,7 @@ def quaternions_at(vectors: np.ndarray, moments: np.ndarray, *, wraps: bool = Fa
 
 
 def between(start: np.ndarray, stop: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Return quaternions of shape (time, marker, 4) a share of the shorter way from start to stop.
-
-    The share broadcasts to (time, marker).
-    """
+    """Return quaternions (time, marker, 4) a share of the shorter way from start to stop."""
     dot = np.einsum("tmq,tmq->tm", start, stop)
     stop = np.where(dot[..., None] < 0, -stop, stop)
     mixed = (1 - share[..., None]) * start + share[..., None] * stop

@@ -25,9 +25,7 @@ def stride_svg(
 ) -> str:
     """Return positions over one period as SVG that plays them for ever, dots over pale sticks.
 
-    Positions (time, marker, 3) are in millimetres, evenly over one period, whose end is left out;
-    segments are pairs of markers that are joined. It has the colour of the text around it, and no
-    background.
+    Positions (time, marker, 3) are in millimetres, evenly over one period, whose end is left out.
     """
     places, width = _places_px(np.asarray(positions, dtype=float), height_px)
     sticks = [_path(frame, segments) for frame in places]

@@ -210,12 +210,8 @@ def from_pyomeca(
     ----------
     markers : DataArray of shape (axis, channel, time)
         Positions, with or without a fourth row of ones.
-    unit : {"um", "mm", "cm", "dm", "m", "in", "ft"}, optional
-        Their unit, unless ``attrs["units"]`` names it.
-    up : {"x", "y", "z", "-x", "-y", "-z"}
-        Axis that points up.
-    rate_hz : float, optional
-        Frames a second, where neither time nor ``attrs["rate"]`` is known.
+    unit, up, rate_hz : optional
+        As `from_movement` takes them.
 
     Returns
     -------

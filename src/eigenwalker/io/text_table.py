@@ -16,8 +16,7 @@ import xarray as xr
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import cells, cut_number, refuse_cut_number, table_of
 from eigenwalker.io.timestamps import Clocked, on_clock
-from eigenwalker.io.to_trajectories import labelled_points, own_name, trajectories_of
-from eigenwalker.io.up_axis_and_unit import Unit
+from eigenwalker.io.to_trajectories import FileFrame, labelled_points, own_name, trajectories_of
 
 _COUNT = re.compile(r"\d{1,9}", re.ASCII)
 _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
@@ -119,15 +118,9 @@ def table_trajectories(
     format_name: str,
     rate_hz: float | None = None,
     start_s: float = 0.0,
-    unit: Unit | None = None,
-    usual_unit: Unit | None = None,
-    up: str | None = None,
-    usual_up: str = "z",
+    frame: FileFrame,
 ) -> xr.DataArray:
-    """Return the points of a table as trajectories.
-
-    Unlabelled points, and a subject's name before all names, are left out.
-    """
+    """Return the labelled points of a table as trajectories."""
     clocked = Clocked(values.positions, rate_hz or 0.0, start_s)
     if values.time is not None:
         clocked = on_clock(file, values.positions, values.time, rate_hz)
@@ -143,10 +136,7 @@ def table_trajectories(
         format_name=format_name,
         rate_hz=clocked.rate_hz,
         start_s=clocked.start_s,
-        unit=unit,
-        usual_unit=usual_unit,
-        up=up,
-        usual_up=usual_up,
+        frame=frame,
     )
     walk.attrs.update(attrs, **values.attrs)
     return walk

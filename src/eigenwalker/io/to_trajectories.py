@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -86,6 +86,15 @@ def own_name(name: str) -> str:
     return name.rpartition(":")[2].strip()
 
 
+class FileFrame(NamedTuple):
+    """Unit and upward axis as a file names them, and the usual ones of its format."""
+
+    unit: Unit | None = None
+    usual_unit: Unit | None = None
+    up: str | None = None
+    usual_up: str = "z"
+
+
 def trajectories_of(
     file: CaptureFile,
     positions: np.ndarray,
@@ -94,10 +103,7 @@ def trajectories_of(
     format_name: str,
     rate_hz: float,
     start_s: float = 0.0,
-    unit: Unit | None = None,
-    usual_unit: Unit | None = None,
-    up: str | None = None,
-    usual_up: str = "z",
+    frame: FileFrame,
     quaternions: np.ndarray | None = None,
     unit_source: str | None = None,
 ) -> xr.DataArray:
@@ -109,6 +115,7 @@ def trajectories_of(
     within a factor of 2. Otherwise it is guessed from the height of the body. Up is the axis that
     the file names, else it is seen in the posture, else the usual one of the format.
     """
+    unit, usual_unit, up, usual_up = frame
     known_up = up or up_axis(positions, names)
     turn = turn_upright(known_up or usual_up)
     positions = positions @ turn.T

@@ -21,7 +21,7 @@ from eigenwalker.core.quaternions import Rotation
 from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.acclaim_grammar import Acclaim, Bone, Motion, parse_amc, parse_asf
-from eigenwalker.io.to_trajectories import trajectories_of
+from eigenwalker.io.to_trajectories import FileFrame, trajectories_of
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
     Unit,
@@ -54,10 +54,7 @@ def _begins_with(keyword: bytes, content: bytes) -> bool:
 def read_asf_amc(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the ends of the bones in an Acclaim motion.
 
-    The skeleton is the one that `find_skeleton` finds beside the motion. A marker is the end of the
-    bone whose name it has, ``root`` where the body hangs. The coordinate ``rotation``
-    (time, marker, axis) holds how each bone is turned in the room from where it is at rest, as
-    rotation vectors in radians.
+    The coordinate ``rotation`` holds how each bone is turned in the room from where it is at rest.
     """
     if _begins_with(_OF_SKELETONS, file.content):
         advice = "name the motion, which finds the skeleton beside it"
@@ -70,15 +67,14 @@ def read_asf_amc(file: CaptureFile) -> xr.DataArray:
     up = up_axis(ends, names)
     reason = "as nearly all motions of this format have it"
     rate_hz, assumed = file.frame_rate(motion.rate_hz, usual_hz=CMU_RATE_HZ, reason=reason)
+    usual_unit = _usual_unit(skeleton, ends @ turn_upright(up or "y").T, names)
     walk = trajectories_of(
         file,
         ends,
         names,
         format_name="ASF/AMC",
         rate_hz=rate_hz,
-        usual_unit=_usual_unit(skeleton, ends @ turn_upright(up or "y").T, names),
-        up=up,
-        usual_up="y",
+        frame=FileFrame(None, usual_unit, up, "y"),
         quaternions=orientations,
         unit_source=beside.name,
     )
@@ -148,10 +144,7 @@ def _pose(
 
 
 def _turns(bone: Bone, values: np.ndarray, *, degrees: bool, axis_degrees: bool) -> np.ndarray:
-    """Return how a bone turns from its parent's turn: quaternions of shape (time, 4).
-
-    What the root's orientation is at rest comes before its motion.
-    """
+    """Return how a bone turns from its parent's turn: quaternions of shape (time, 4)."""
     own = Rotation.from_euler(bone.axis_order, bone.axis, degrees=axis_degrees)
     turning = [column for column, channel in enumerate(bone.channels) if channel.startswith("r")]
     moved = Rotation.identity(len(values))

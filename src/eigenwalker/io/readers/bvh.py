@@ -12,7 +12,7 @@ from eigenwalker.core.kinematics import forward_kinematics
 from eigenwalker.core.quaternions import from_euler
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.readers.bvh_grammar import Joint, parse_bvh
-from eigenwalker.io.to_trajectories import trajectories_of
+from eigenwalker.io.to_trajectories import FileFrame, trajectories_of
 from eigenwalker.markers.marker_sets import numbered
 
 looks_like_bvh = re.compile(rb"(\xef\xbb\xbf)?\s*HIERARCHY", re.IGNORECASE).match
@@ -23,8 +23,8 @@ MAX_POSITIONS = 100_000_000
 def read_bvh(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the joints and end sites of a BVH file.
 
-    End sites are called ``<joint>_end``. The coordinate ``rotation`` (time, marker, axis) holds how
-    each joint's own frame is turned in the room, as rotation vectors in radians.
+    End sites are called ``<joint>_end``. The coordinate ``rotation`` holds how each joint's own
+    frame is turned in the room.
     """
     joints, motion, attrs = parse_bvh(file)
     n_frames = len(motion.values)
@@ -38,7 +38,7 @@ def read_bvh(file: CaptureFile) -> xr.DataArray:
         _names(joints),
         format_name="BVH",
         rate_hz=file.rate_hz or motion.rate_hz,
-        usual_up="y",
+        frame=FileFrame(usual_up="y"),
         quaternions=orientations,
     )
     return walk.assign_attrs(attrs)

@@ -11,6 +11,7 @@ import xarray as xr
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.readers.c3d_sections import Header, Parameters, c3d_sections
 from eigenwalker.io.to_trajectories import (
+    FileFrame,
     labelled_points,
     own_name,
     trajectories_of,
@@ -52,8 +53,7 @@ def read_c3d(file: CaptureFile) -> xr.DataArray:
         format_name="C3D",
         rate_hz=file.rate_hz or rate_hz,
         start_s=0.0 if file.rate_hz else max(header.first_frame - 1, 0) / rate_hz,
-        unit=_unit(parameters),
-        up=_up(positions, names, parameters),
+        frame=FileFrame(_unit(parameters), up=_up(positions, names, parameters)),
     )
     measures = _measures(parameters)
     return with_scalars(walk, measures).assign_attrs(**attrs, **measures, **cut)

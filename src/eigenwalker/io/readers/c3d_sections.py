@@ -81,11 +81,7 @@ class Header(NamedTuple):
 
 
 def c3d_sections(file: CaptureFile) -> tuple[Header, Parameters, np.ndarray, dict[str, int]]:
-    """Return header, parameters, positions of shape (time, point, 3), and attributes.
-
-    Positions are in the unit of the file, NaN where missing. ``n_frames_cut`` is an attribute of a
-    partial file that is to be kept.
-    """
+    """Return header, parameters, positions (time, point, 3) in the file's unit, and attributes."""
     header = _header(file)
     parameters = _parameters(file, header)
     return header, parameters, *_samples(file, header, parameters)

@@ -16,6 +16,7 @@ import xarray as xr
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import refuse_cut_number, table_of
 from eigenwalker.io.text_table import TableValues, table_trajectories
+from eigenwalker.io.to_trajectories import FileFrame
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 
 RATE_HZ = 120.0
@@ -47,6 +48,7 @@ def read_data3d(file: CaptureFile) -> xr.DataArray:
                 f"{[round(float(height), 3) for height in body]}",
                 "if it is another table, put a description beside it (docs/formats.md)",
             )
+    unit = Unit("asf", UNITS["asf"], "the unit of the CMU skeletons")
     reason = "as the CMU collection was recorded"
     rate_hz, assumed = file.frame_rate(None, usual_hz=RATE_HZ, reason=reason)
     return table_trajectories(
@@ -55,8 +57,7 @@ def read_data3d(file: CaptureFile) -> xr.DataArray:
         POINTS,
         format_name="data3d",
         rate_hz=rate_hz,
-        usual_unit=Unit("asf", UNITS["asf"], "the unit of the CMU skeletons"),
-        up="y",
+        frame=FileFrame(None, unit, "y"),
     )
 
 

@@ -25,7 +25,7 @@ from eigenwalker.io.text_cells import (
 )
 from eigenwalker.io.text_table import TableValues, table_trajectories
 from eigenwalker.io.timestamps import parse_rate
-from eigenwalker.io.to_trajectories import unit_named, without_zeros
+from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 
 MAX_BYTES = 1_000_000
@@ -57,11 +57,7 @@ class _Description(dict[str, Any]):
 
 
 def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
-    """Return the trajectories of the points in a table of numbers, by its description.
-
-    x is forward and y left where the description gives the axes. Unit and rate that the caller
-    names replace those of the description.
-    """
+    """Return the trajectories of the points in a table of numbers, by its description."""
     described = _read_description(description)
     names, values = _table(file, described)
     positions = values.positions
@@ -82,8 +78,7 @@ def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
         names,
         format_name="described table",
         rate_hz=rate_hz,
-        unit=_unit(described),
-        up=described.get("up") if axes is None else "z",
+        frame=FileFrame(_unit(described), up=described.get("up") if axes is None else "z"),
     )
     walk.attrs.update(description=described.file.name)
     walk.attrs.update({key: str(described[key]) for key in _WORDS if key in described})

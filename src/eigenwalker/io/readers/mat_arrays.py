@@ -26,10 +26,7 @@ def mat_arrays_npz(path: str) -> bytes:
 
 
 def mat_arrays(path: str) -> dict[str, np.ndarray]:
-    """Return the arrays of real numbers in a MATLAB file, those in structs as ``struct.field``.
-
-    Dimensions are in MATLAB's order, those of one element included.
-    """
+    """Return the arrays of real numbers in a MATLAB file, those in structs as ``struct.field``."""
     with open(path, "rb") as file:
         start = file.read(128)
     if start.startswith((b"MATLAB 7.3", b"\x89HDF")):

@@ -14,9 +14,10 @@ from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TextTable, interleaved, table_trajectories, table_values
-from eigenwalker.io.to_trajectories import unit_named
+from eigenwalker.io.to_trajectories import FileFrame, unit_named
 from eigenwalker.io.up_axis_and_unit import Unit
 
+OPENSIM_UNIT = Unit("m", MILLIMETRES["m"], "OpenSim's unit")
 MIN_POINTS = 3
 """Fewer are no body: motions of joint angles hold one position, that of the pelvis."""
 
@@ -69,9 +70,7 @@ def read_mot(file: CaptureFile) -> xr.DataArray:
         table_values(file, table),
         table.names,
         format_name="STO",
-        unit=unit_named(keys.get("units", "")),
-        usual_unit=Unit("m", MILLIMETRES["m"], "OpenSim's unit"),
-        usual_up="y",
+        frame=FileFrame(unit_named(keys.get("units", "")), OPENSIM_UNIT, None, "y"),
     )
 
 

@@ -90,10 +90,7 @@ def _hashable(value: object) -> Any:
 
 
 def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
-    """Return what a NetCDF file of version 3 holds, by any program.
-
-    No C library is needed for it: a damaged file can raise, but not crash the program.
-    """
+    """Return what a NetCDF file of version 3 holds, by any program."""
     file = io.BytesIO(content)
     try:
         with warnings.catch_warnings():

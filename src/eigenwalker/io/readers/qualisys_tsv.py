@@ -21,7 +21,7 @@ from eigenwalker.io.text_table import (
     table_values,
 )
 from eigenwalker.io.timestamps import declared_rate
-from eigenwalker.io.to_trajectories import without_zeros
+from eigenwalker.io.to_trajectories import FileFrame, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit
 
 MAX_KEYS = 10_000
@@ -66,7 +66,7 @@ def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
         names,
         format_name="Qualisys TSV",
         rate_hz=declared_rate(file, first_of.get("FREQUENCY", ""), "FREQUENCY"),
-        usual_unit=Unit("mm", 1.0, "Qualisys writes millimetres"),
+        frame=FileFrame(None, Unit("mm", 1.0, "Qualisys writes millimetres")),
     )
 
 

@@ -19,7 +19,7 @@ from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
 from eigenwalker.io.timestamps import parse_rate
-from eigenwalker.io.to_trajectories import unit_named, without_zeros
+from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
 MIN_POINTS = 3
@@ -42,12 +42,7 @@ _NOTE = re.compile(r"(\w+)\s*[:=]\s*([^;,]+)")
 
 
 def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
-    """Return the trajectories of the points in a table with named columns.
-
-    The unit is the one that the file names, the metre for Kinect, or guessed. Tables without a
-    column of times are refused unless the caller names the rate, except Kinect's (30 Hz assumed).
-    Points at 0, 0, 0 in some frames are missing there.
-    """
+    """Return the trajectories of the points in a table with named columns."""
     lines = file.lines
     above = next((at for at, line in enumerate(lines) if line.strip() and line[0] != "#"), 0)
     separator = separator_of(lines[above])
@@ -97,6 +92,7 @@ def body_trajectories(
         rate_hz, assumed = file.frame_rate(None, usual_hz=KINECT_RATE_HZ, reason=reason)
     elif time is None:
         rate_hz = rate_hz or file.default_rate_hz
+    up = notes.get("up") if re.fullmatch("-?[xyz]", notes.get("up", "")) else None
     if time is None and rate_hz is None:
         raise file.error(
             "a column time_s",
@@ -109,18 +105,12 @@ def body_trajectories(
         names,
         format_name=kind,
         rate_hz=rate_hz,
-        unit=unit,
-        usual_unit=usual,
-        up=notes.get("up") if re.fullmatch("-?[xyz]", notes.get("up", "")) else None,
-        usual_up="y",
+        frame=FileFrame(unit, usual, up, "y"),
     )
 
 
 def header_of(lines: Sequence[str], at: int, separator: str | None) -> tuple[list[str], int]:
-    """Return the names of the columns and the line of the first frame.
-
-    Names may stand in one line and x, y, z in the next.
-    """
+    """Return the names of the columns, in a line or two, and the line of the first frame."""
     header = cells(lines[at], separator)
     while len(header) > 1 and not header[-1]:
         header.pop()

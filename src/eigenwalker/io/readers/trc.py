@@ -23,7 +23,7 @@ from eigenwalker.io.text_table import (
     table_values,
 )
 from eigenwalker.io.timestamps import declared_rate
-from eigenwalker.io.to_trajectories import unit_named, without_zeros
+from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 
 looks_like_trc = re.compile(rb"[\xef\xbb\xbf\s\"']*PathFileType", re.IGNORECASE).match
 _KEYS = ("numframes", "nummarkers")
@@ -62,8 +62,7 @@ def read_trc(file: CaptureFile) -> xr.DataArray:
         names,
         format_name="TRC",
         rate_hz=declared_rate(file, keys.get("datarate", ""), "DataRate"),
-        unit=unit_named(keys.get("units", "")),
-        usual_up="y",
+        frame=FileFrame(unit_named(keys.get("units", "")), usual_up="y"),
     )
 
 
@@ -80,10 +79,7 @@ def _keys(file: CaptureFile, lines: Sequence[str], separator: str | None) -> dic
 
 
 def _names(file: CaptureFile, words: list[str], n_markers: int) -> list[str]:
-    """Return as many names as declared: one a marker, with empty cells behind or not.
-
-    Some programs name each coordinate, and some leave markers without names.
-    """
+    """Return as many names as declared: one a marker, with empty cells behind or not."""
     named = [word for word in words if word]
     if len(named) == n_markers:
         return named

@@ -17,7 +17,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.text_cells import cells, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
 from eigenwalker.io.timestamps import declared_rate, on_even_clock
-from eigenwalker.io.to_trajectories import unit_named
+from eigenwalker.io.to_trajectories import FileFrame, unit_named
 
 BLOCKS = ("trajectories", "model outputs")
 """The blocks that hold positions; devices, events and joints are passed over."""
@@ -76,7 +76,7 @@ def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
         format_name="Vicon CSV",
         rate_hz=whole.rate_hz,
         start_s=even.start_s,
-        unit=unit_named(next(iter(whole.units))),
+        frame=FileFrame(unit_named(next(iter(whole.units)))),
     )
 
 
