@@ -106,6 +106,10 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     float
         R2: 1 where nothing is left; 0 where nothing moves.
 
+    See Also
+    --------
+    harmonic_basis
+
     Examples
     --------
     >>> cycles = np.linspace(0, 3, 300, endpoint=False)
@@ -137,6 +141,10 @@ def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
     Returns
     -------
     array of shape (2 * harmonic, ...)
+
+    See Also
+    --------
+    eigenwalker.core.fourier_coefficients : Of a walker.
 
     Examples
     --------

@@ -59,6 +59,10 @@ def label_trajectories(
     ValueError
         If shapes and names do not fit, a value is infinite, or rate or unit make no sense.
 
+    See Also
+    --------
+    eigenwalker.io.read_mocap : Reads them from files.
+
     Examples
     --------
     >>> walk = label_trajectories(np.zeros((3, 1, 3)), markers=["head"], rate_hz=100)

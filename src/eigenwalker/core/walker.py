@@ -277,6 +277,10 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
     array of shape (2 * harmonic, marker, axis)
         Millimetres.
 
+    References
+    ----------
+    Troje (2002), The little difference, eq. 1.
+
     Examples
     --------
     >>> walker = Walker(["foot"], [[0, 0, 50]], [[[200, 0, 0]]], [1], [np.pi / 2], 1.0)

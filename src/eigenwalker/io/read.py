@@ -227,6 +227,10 @@ def is_capture(path: Path) -> bool:
     Returns
     -------
     bool
+
+    See Also
+    --------
+    read_mocap
     """
     readers = [reader for reader in READERS if path.suffix.lower() in reader.suffixes]
     if not readers or not path.is_file():

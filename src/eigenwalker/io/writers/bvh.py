@@ -8,9 +8,11 @@ of one rigid part would. There each bone has a joint of its own, of no length, c
 
 from __future__ import annotations
 
+import tomllib
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,27 +27,12 @@ from eigenwalker.io.up_axis_and_unit import turn_upright
 
 Direction = tuple[float, float, float]
 
-UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
-AHEAD, BEHIND = (1.0, 0.0, 0.0), (-0.6, 0.0, -0.8)
+UP = (0.0, 0.0, 1.0)
+_TOML = files("eigenwalker.io.writers").joinpath("bvh_body.toml").read_text(encoding="utf-8")
 BODY: dict[str, tuple[str, Direction]] = {
-    "sternum": ("pelvis", UP),
-    "head": ("sternum", UP),
-    "head_top": ("head", UP),
+    joint: (parent, tuple(direction)) for joint, (parent, direction) in tomllib.loads(_TOML).items()
 }
 """For each joint but the pelvis its parent, and where it lies from there at rest (x forward)."""
-for _side, _out in (("left", (0.0, 1.0, 0.0)), ("right", (0.0, -1.0, 0.0))):
-    _chains: tuple[tuple[Direction, Sequence[str]], ...] = (
-        (_out, ("sternum", "clavicle", "shoulder", "elbow", "wrist", "hand")),
-        (_out, ("pelvis", "hip")),
-        (DOWN, ("hip", "knee", "ankle")),
-        (AHEAD, ("ankle", "toe")),
-        (BEHIND, ("ankle", "heel")),
-    )
-    for _direction, (_first, *_others) in _chains:
-        _parent = _first if _first in JOINTS.markers else f"{_side}_{_first}"
-        for _joint in _others:
-            BODY[f"{_side}_{_joint}"] = (_parent, _direction)
-            _parent = f"{_side}_{_joint}"
 ROOT = "pelvis"
 ORDER = "ZXY"
 """Order of the rotation channels, each about the axes as turned by those before it."""
@@ -114,6 +101,10 @@ def constant_bones(walk: xr.DataArray) -> xr.DataArray:
     ------
     ValueError
         If joints are missing, or unknown, or were not seen in some frames.
+
+    See Also
+    --------
+    write_mocap
 
     Examples
     --------
