@@ -90,7 +90,8 @@ def test_processes_and_progress_change_nothing(folder) -> None:
     [
         ({"traits": pd.DataFrame({"name": ["a"]})}, "needs a column 'file'"),
         ({"traits": pd.DataFrame({"file": ["a", "a"]})}, "more than once"),
-        ({"traits": pd.DataFrame({"file": ["a", None]})}, "Row 2 of the traits table"),
+        ({"traits": pd.DataFrame({"file": ["a", None], "x": [1, 2]})}, "Row 2 of the traits table"),
+        ({"traits": pd.DataFrame({"file": ["a"], "x": [1], "x ": [1]})}, r"columns \['x'\] more"),
         ({"traits": "nowhere.csv"}, r"nowhere\.csv could not be read"),
         ({"trait_from_name": "("}, "no regular expression"),
         ({"trait_from_name": "walk"}, "no named group"),

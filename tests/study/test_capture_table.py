@@ -1,0 +1,79 @@
+"""Traits tables as people have them: typed on other systems, by several people, in spreadsheets."""
+
+from __future__ import annotations
+
+import unicodedata
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from eigenwalker.study.capture_table import capture_table
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """Return a folder of captures by name only: the table looks at no content."""
+    for name in (unicodedata.normalize("NFD", "M\u00fcller_1.c3d"), "sub/B.c3d", "c.c3d", "d.c3d"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    return tmp_path
+
+
+@pytest.mark.parametrize("form", ["NFC", "NFD"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_names_are_found_however_they_are_typed(folder, form, end, encoding) -> None:
+    rows = [
+        "file;Who;",
+        "M\u00fcller_1.c3d;M\u00fcller;",
+        ";;",
+        " sub\\b.c3d ;x;",
+        "./c.c3d;  ;",
+        ";;",
+    ]
+    content = unicodedata.normalize(form, end.join(rows) + end)
+    (folder / "people.csv").write_bytes(content.encode(encoding))
+    table = capture_table(folder, folder / "people.csv")
+    assert list(table) == ["file", "Who"]
+    assert [(folder / name).is_file() for name in table["file"]] == [True] * 3
+    assert table["Who"].fillna("").tolist() == ["M\u00fcller", "x", ""]
+
+
+def test_spellings_of_one_class_are_one_class(folder) -> None:
+    files = [unicodedata.normalize("NFC", "M\u00fcller_1.c3d"), "sub/B.c3d", "c.c3d", "d.c3d"]
+    table = pd.DataFrame(
+        {
+            "file": files,
+            "sex": ["Female", "female ", "MALE", "Male"],
+            "person": ["P1", "p1", "p2", ""],
+        }
+    )
+    with pytest.warns(UserWarning, match="taken as one") as warned:
+        found = capture_table(folder, table)
+    assert found["sex"].tolist() == ["female", "female", "MALE", "MALE"]
+    assert found["person"].tolist() == ["p1", "p1", "p2", ""]
+    assert "sex: 'Female', 'female' are taken as one, 'female'." in [
+        str(each.message) for each in warned
+    ]
+
+
+def test_numbers_stay_numbers_beside_blank_cells(folder) -> None:
+    (folder / "people.csv").write_text("file,weight_kg\nc.c3d, 80 \n,\nd.c3d,  \n")
+    weights = capture_table(folder, folder / "people.csv")["weight_kg"]
+    assert weights.iloc[0] == 80
+    assert weights.isna().tolist() == [False, True]
+
+
+def test_names_that_differ_in_case_only_are_not_guessed(folder) -> None:
+    (folder / "C.c3d").touch()
+    if len(list(folder.glob("*.c3d"))) == 3:
+        pytest.skip("this file system has one name for both")
+    assert capture_table(folder, pd.DataFrame({"file": ["C.C3D"]}))["file"].tolist() == ["C.C3D"]
+    with pytest.raises(ValueError, match=r"\['c.c3d'\] more than once"):
+        capture_table(folder, pd.DataFrame({"file": ["c.c3d", "./c.c3d"]}))
+
+
+def test_a_pattern_of_composed_letters_fits_decomposed_names(folder) -> None:
+    table = capture_table(folder, trait_from_name="(?P<who>M\u00fcller)_")
+    assert table["who"].dropna().tolist() == ["M\u00fcller"]
