@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -13,6 +14,7 @@ import pytest
 
 from eigenwalker.analysis.classification import classify
 from eigenwalker.simulation.people import simulate_captures
+from eigenwalker.study.checkpoint import Checkpoint
 from eigenwalker.study.fit_folder import fit_folder
 from eigenwalker.study.process_capture import process_capture
 
@@ -180,19 +182,51 @@ def test_what_has_changed_is_read_again(folder, tmp_path) -> None:
     assert not np.array_equal(first.population.X, changed.population.X)
 
 
+@pytest.fixture(scope="module")
+def kept(folder, tmp_path_factory) -> Path:
+    """Return the checkpoint of one capture."""
+    checkpoint = tmp_path_factory.mktemp("kept") / "people.nc.part"
+    fit_folder(folder, traits=pd.DataFrame({"file": ["female_0.c3d"]}), checkpoint=checkpoint)
+    return checkpoint
+
+
 @pytest.mark.parametrize("damage", ["", "[]\n", "{}\n", "\x00\xff\n", '{"file": "female_0.c3d"}\n'])
-def test_a_damaged_checkpoint_costs_time_and_nothing_else(folder, tmp_path, damage) -> None:
+def test_a_damaged_checkpoint_costs_time_and_nothing_else(folder, kept, tmp_path, damage) -> None:
     checkpoint = tmp_path / "people.nc.part"
     checkpoint.write_text(damage, encoding="latin-1")
+    study = fit_folder(
+        folder, traits=pd.DataFrame({"file": ["female_0.c3d"]}), n_jobs=1, checkpoint=checkpoint
+    )
+    assert study.population is not None
+    assert study.n_resumed == 0
+    assert checkpoint.read_bytes() == kept.read_bytes()
+
+
+def test_what_does_not_hold_in_a_checkpoint_is_not_taken(folder, kept, tmp_path) -> None:
+    """Every bit of the head, the checksum and a sample of the rest; and every digit there."""
+    settings = json.loads(kept.read_bytes().splitlines()[0])["settings"]
+    state = fitting._state(folder, "female_0.c3d")
+    content, damaged = kept.read_bytes(), tmp_path / "damaged.part"
+    assert Checkpoint(kept, folder, settings).get("female_0.c3d", state)
+    begins = content.index(b"\n") + 80
+    for place in [*range(begins), *range(begins, len(content) - 1, 97)]:
+        changed = [content[place] ^ 1 << bit for bit in (place % 8, (place + 3) % 8)]
+        if 48 <= content[place] < 58:
+            changed.append(48 + (content[place] - 47) % 10)
+        for byte in changed:
+            damaged.write_bytes(content[:place] + bytes([byte]) + content[place + 1 :])
+            found = Checkpoint(damaged, folder, settings).get("female_0.c3d", state)
+            assert found is None, place
+    assert Checkpoint(kept, folder.parent, settings).get("female_0.c3d", state) is None
+    assert Checkpoint(kept, folder, settings | {"form": "x"}).get("female_0.c3d", state) is None
+
+
+def test_a_full_disk_ends_the_checkpoint_and_not_the_fit(folder, tmp_path) -> None:
     names = pd.DataFrame({"file": ["female_0.c3d"]})
-    kept = fit_folder(folder, traits=names, n_jobs=1, checkpoint=checkpoint)
-    lines = checkpoint.read_text(encoding="latin-1").splitlines()
-    entry = lines[-1].replace('"p0": [[', '"p0": [["no number", ')
-    checkpoint.write_text(entry + "\n")
-    again = fit_folder(folder, traits=names, n_jobs=1, checkpoint=checkpoint)
-    assert kept.population is not None
-    assert again.population is not None
-    np.testing.assert_array_equal(kept.population.X, again.population.X)
+    (tmp_path / "people.nc.part").mkdir()  # in whose place no file can be written
+    with pytest.warns(UserWarning, match="starts anew if it is interrupted"):
+        study = fit_folder(folder, traits=names, n_jobs=1, checkpoint=tmp_path / "people.nc.part")
+    assert study.population is not None
 
 
 def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:

@@ -65,6 +65,7 @@ def demo(
     from the disk, without a network.
     """
     from eigenwalker.analysis.trait_study import study_trait
+    from eigenwalker.core.atomic_write import atomic_write
     from eigenwalker.datasets.built_in import built_in_capture
     from eigenwalker.explorer.interactive_page import interactive_page
     from eigenwalker.explorer.model import page_model
@@ -82,7 +83,8 @@ def demo(
         )
     model = page_model(population, first=trait, **model_names(people))
     index = page.with_name(INDEX)
-    index.write_text(interactive_page(model, report=page.name), encoding="utf-8")
+    with atomic_write(index) as unfinished:
+        unfinished.write_text(interactive_page(model, report=page.name), encoding="utf-8")
     _print_result(result)
     print(f"Report: {page}\nPage to play with: {index}")
     if open_page:

@@ -3,20 +3,51 @@
 from __future__ import annotations
 
 import os
+import secrets
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""How a cell begins that a spreadsheet takes for a formula."""
 
 
 @contextmanager
 def atomic_write(path: Path) -> Generator[Path, None, None]:
-    """Yield a path in the same folder, of the same suffix, to write to.
+    """Yield a path in the same folder, of the same suffix, to write to; no other has it.
 
     The file then appears at `path`, in place of one that is there, or not at all after an error.
     """
-    unfinished = path.with_name(f".{os.getpid()}.part.{path.name}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path} is a folder; name a file to write.")
+    target = Path(os.path.realpath(path))
+    unfinished = target.with_name(f".{secrets.token_hex(8)}.part{path.suffix}")
     try:
         yield unfinished
-        os.replace(unfinished, path)
+        os.replace(unfinished, target)
+    except OSError as error:
+        if error.filename in (None, unfinished, str(unfinished)) and error.errno is not None:
+            error.filename, error.filename2 = str(path), None
+        raise
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def write_table(table: pd.DataFrame, path: Path, **options: Any) -> Path:
+    """Write a table as CSV, with the options of pandas, and return its path.
+
+    A text that a spreadsheet would run as a formula gets an apostrophe before it.
+    """
+    texts = [name for name in table if table[name].dtype.kind not in "biuf"]
+    plain = table.assign(**{name: table[name].map(_no_formula) for name in texts})
+    with atomic_write(path) as unfinished:
+        plain.rename(index=_no_formula).to_csv(unfinished, errors="backslashreplace", **options)
+    return path
+
+
+def _no_formula(value: Any) -> Any:
+    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value

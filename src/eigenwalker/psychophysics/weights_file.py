@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from eigenwalker.core.atomic_write import write_table
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.published import PUBLISHED
 
@@ -43,8 +44,7 @@ def save_weights(weights: pd.DataFrame, path: str | Path, *, metric: str) -> Pat
     ...     load_metric(path).group_weights
     {'head': 0.2, 'forearm': 0.8}
     """
-    weights.assign(metric=metric).to_csv(path, index_label="group")
-    return Path(path)
+    return write_table(weights.assign(metric=metric), Path(path), index_label="group")
 
 
 def load_metric(name_or_path: str | Path) -> GroupMetric:

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import chi2
 
+from eigenwalker.core.atomic_write import write_table
 from eigenwalker.plotting.fitted_weights import figure_predictions, figure_weights
 from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, MetricFit
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
@@ -108,8 +109,8 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     save_weights(fit.weights, folder / WEIGHTS_NAME, metric=fit.name)
     save_weights(fit.by_choices, folder / BY_CHOICES_NAME, metric=fit.name)
-    fit.pairs.to_csv(folder / PAIRS_NAME)
-    fit.compared.to_csv(folder / COMPARED_NAME)
+    write_table(fit.pairs, folder / PAIRS_NAME)
+    write_table(fit.compared, folder / COMPARED_NAME)
     weights: list[Block] = [_weights_figure(fit)]
     for target, table in (("choices", fit.by_choices), ("differences", fit.weights)):
         weights.append(_weights_table(f"Weights of {fit.name}, fitted to {target}", table))

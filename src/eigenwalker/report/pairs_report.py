@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.atomic_write import write_table
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.neighbours import label_table
 from eigenwalker.plotting.difference_tables import (
@@ -67,7 +68,7 @@ def write_pairs_report(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    table.to_csv(folder / TABLE_NAME, index_label="walk")
+    write_table(table, folder / TABLE_NAME, index_label="walk")
     names = short_names([str(name) for name in table.index])
     labels = [walks.labels.get(str(name)) for name in table.index]
     order, clusters = order_of_walks(table), clusters_of_walks(table, n_clusters)

@@ -11,6 +11,7 @@ import pandas as pd
 import xarray as xr
 from joblib import Parallel, delayed
 
+from eigenwalker.core.atomic_write import write_table
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
@@ -235,6 +236,5 @@ def write_captures(
         write_mocap(walk, folder / file)
         people.append({"file": file, **person.to_dict()})
     table = pd.DataFrame(people)
-    table[["file", *TRAITS]].to_csv(folder / "traits.csv", index=False)
-    table.to_csv(folder / "truth.csv", index=False)
-    return folder / "traits.csv"
+    write_table(table, folder / "truth.csv", index=False)
+    return write_table(table[["file", *TRAITS]], folder / "traits.csv", index=False)

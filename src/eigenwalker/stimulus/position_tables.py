@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy.io import savemat
 
+from eigenwalker.core.atomic_write import write_table
 from eigenwalker.plotting.shades import rgb
 from eigenwalker.stimulus.drawing import places_px
 from eigenwalker.stimulus.stimulus import Stimulus
@@ -64,7 +65,7 @@ def frame_arrays(stimulus: Stimulus) -> dict[str, np.ndarray]:
 
 def write_csv(stimulus: Stimulus, path: Path) -> None:
     """Write `positions_table` with commas."""
-    positions_table(stimulus).to_csv(path, index=False, float_format="%.9g")
+    write_table(positions_table(stimulus), path, index=False, float_format="%.9g")
 
 
 def write_npz(stimulus: Stimulus, path: Path) -> None:

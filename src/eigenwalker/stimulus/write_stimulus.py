@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.image import imsave
@@ -82,8 +83,8 @@ def write_stimulus(
             _write_film(stimulus, unfinished, progress)
         elif suffix == ".py":
             table = path.with_suffix(".npz")
-            write_stimulus(stimulus, table)
             _write_text(position_tables.psychopy_script(stimulus, table), unfinished)
+            write_stimulus(stimulus, table)
         else:
             WRITERS[suffix](stimulus, unfinished)
     return path
@@ -117,13 +118,19 @@ def _write_film(stimulus: Stimulus, path: Path, progress: Progress | None) -> No
 
 
 def _write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None) -> None:
-    """Write every frame as a PNG into a folder: ``frame_0000.png``, ``frame_0001.png``, ..."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write every frame as a PNG into a folder: ``frame_0000.png``, ``frame_0001.png``, ...
+
+    They appear once all are drawn.
+    """
     times = stimulus.frame_times
     colours = np.rint(drawn_shades(stimulus)).astype(np.uint8)
     frames = drawn_frames(stimulus, times)
-    for number, shades in enumerate(ticked(frames, len(times), progress)):
-        imsave(folder / f"frame_{number:04d}.png", colours[shades])
+    folder.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=".frames-", dir=folder) as unfinished:
+        for number, shades in enumerate(ticked(frames, len(times), progress)):
+            imsave(Path(unfinished, f"frame_{number:04d}.png"), colours[shades])
+        for frame in sorted(Path(unfinished).iterdir()):
+            frame.replace(folder / frame.name)
 
 
 def _write_png(stimulus: Stimulus, path: Path) -> None:

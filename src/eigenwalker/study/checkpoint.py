@@ -1,12 +1,16 @@
 """The walkers that a long fit has made so far, in a file from which an interrupted fit goes on.
 
-A text file with one line of JSON a capture, to which lines are only added. A line that is cut short
-or does not fit is ignored, and its capture is read again.
+A text file to which lines are only added. The first is the head: folder, settings and program of
+the fit. Each other line is the walker of one capture in JSON, after a checksum of it and the head.
+A line whose checksum does not hold is ignored, and its capture is read again; so are all where the
+head is another.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
+import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import fields
@@ -15,49 +19,60 @@ from typing import Any
 
 import numpy as np
 
+from eigenwalker._version import __version__
 from eigenwalker.core.walker import CaptureFit, Walker
+
+FORMAT = "eigenwalker checkpoint 2"
 
 
 class Checkpoint:
     """The walkers that were made so far, by the names of their captures."""
 
-    def __init__(self, path: Path, settings: Mapping[str, Any]) -> None:
+    def __init__(self, path: Path, folder: Path, settings: Mapping[str, Any]) -> None:
         self.path = path
-        self._settings = dict(settings)
-        self._known: dict[str, dict] = {}
-        self._whole_lines = True
+        head = {"format": FORMAT, "program": __version__, "folder": str(folder.resolve())}
+        self._head = json.dumps({**head, "settings": dict(settings)}, sort_keys=True).encode()
+        self._known: dict[str, dict[str, Any]] = {}
+        self._goes_on = self._given_up = False
         if path.is_file():
-            text = path.read_text(encoding="utf-8", errors="replace")
-            self._whole_lines = not text or text.endswith("\n")
-            for line in text.splitlines():
-                with suppress(ValueError, TypeError, KeyError, RecursionError):  # of a cut line
-                    entry = json.loads(line)
-                    if entry["settings"] == self._settings:
-                        self._known[entry["file"]] = entry
+            head, *lines = path.read_bytes().split(b"\n")
+            self._goes_on = head == self._head
+            for checksum, _, body in (line.partition(b" ") for line in lines if self._goes_on):
+                if checksum == self._checksum(body):
+                    entry = json.loads(body)
+                    self._known[entry["file"]] = entry
+
+    def _checksum(self, body: bytes) -> bytes:
+        return hashlib.sha256(self._head + b"\n" + body).hexdigest().encode()
 
     def get(self, name: str, state: list[int]) -> tuple[Walker, dict[str, Any]] | None:
         """Return the walker of a capture and its row of `Study.files`, if they are there."""
         entry = self._known.get(name, {})
-        if entry.get("state") != state:
-            return None
-        try:
-            return _walker(entry["walker"]), dict(entry["facts"])
-        except (TypeError, ValueError, KeyError, AttributeError):
-            return None
+        return (_walker(entry["walker"]), entry["facts"]) if entry.get("state") == state else None
 
     def append(self, name: str, state: list[int], walker: Walker, row: Mapping) -> None:
-        """Add the walker of a capture and its row of `Study.files`."""
-        entry = {
-            "file": name,
-            "state": state,
-            "settings": self._settings,
-            "facts": dict(row),
-            "walker": walker,
-        }
-        with self.path.open("a", encoding="utf-8") as file:
-            start = "" if self._whole_lines else "\n"
-            file.write(f"{start}{json.dumps(entry, default=_plain)}\n")
-        self._whole_lines = True
+        """Add the walker of a capture and its row of `Study.files`.
+
+        Where that is not possible, as on a full disk, a warning says so and the fit goes on.
+        """
+        if self._given_up:
+            return
+        entry = {"file": name, "state": state, "facts": dict(row), "walker": walker}
+        body = json.dumps(entry, default=_plain).encode()
+        line = b"\n" + self._checksum(body) + b" " + body + b"\n"  # ends one that was cut short
+        try:
+            with self.path.open("ab" if self._goes_on else "wb") as file:
+                file.write(line if self._goes_on else self._head + line)
+            self._goes_on = True
+        except OSError as error:
+            self._given_up = True
+            with suppress(OSError):
+                self.path.unlink()
+            warnings.warn(
+                f"{self.path}: {error.strerror}. What was read is not kept, so that the same "
+                "command starts anew if it is interrupted.",
+                stacklevel=2,
+            )
 
 
 def _plain(value: object) -> object:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,6 @@ import pandas as pd
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 
-from eigenwalker._version import __version__
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.io.read import companion_files
@@ -41,6 +40,8 @@ class Study:
         for those that were read the rate, duration, strides, frequency, speed and share explained.
     unlisted : tuple of str
         Captures of the folder that a traits table does not list.
+    n_resumed : int
+        Captures that an earlier run had read, which was interrupted.
 
     See Also
     --------
@@ -50,6 +51,7 @@ class Study:
     population: Population | None
     files: pd.DataFrame
     unlisted: tuple[str, ...] = ()
+    n_resumed: int = 0
 
     @property
     def refused(self) -> pd.DataFrame:
@@ -94,8 +96,8 @@ def fit_folder(
         Processes to read with; -1 uses all cores.
     checkpoint : str or Path, optional
         A file to which each walker is added as soon as it is made. If it is there from an earlier
-        run that was interrupted, captures that have not changed since are not read again. Remove it
-        when the population is saved.
+        run that was interrupted, of the same folder with the same settings, captures that have not
+        changed since are not read again. Remove it when the population is saved.
     progress : callable, optional
         Called with the number of captures done and of all.
 
@@ -139,14 +141,17 @@ def fit_folder(
     }
     earlier = None
     if checkpoint is not None:
-        earlier = Checkpoint(Path(checkpoint), settings | {"version": __version__})
+        earlier = Checkpoint(Path(checkpoint), folder, settings)
     done: dict[str, _Outcome] = {}
-    for name, outcome in _outcomes(folder, names, settings, n_jobs, earlier):
+    n_resumed = 0
+    for name, outcome, resumed in _outcomes(folder, names, settings, n_jobs, earlier):
         done[name] = outcome
+        n_resumed += resumed
         if progress:
             progress(len(done), len(names))
     unlisted = sorted(set(captures_in(folder)) - set(names)) if traits is not None else ()
-    return _study(table, [done[name] for name in names], form, tuple(unlisted))
+    study = _study(table, [done[name] for name in names], form, tuple(unlisted))
+    return replace(study, n_resumed=n_resumed)
 
 
 def _study(
@@ -192,18 +197,19 @@ def _outcomes(
     settings: Mapping[str, Any],
     n_jobs: int,
     checkpoint: Checkpoint | None,
-) -> Iterator[tuple[str, _Outcome]]:
-    """Yield the outcome of each capture by name, first of those that are in the checkpoint."""
-    waiting = []
+) -> Iterator[tuple[str, _Outcome, bool]]:
+    """Yield the outcome of each capture by name, and whether it was in the checkpoint."""
+    waiting: dict[str, list[int]] = {}
     for name in names:
-        if checkpoint and (earlier := checkpoint.get(name, _state(folder, name))):
-            yield name, earlier
+        state = _state(folder, name) if checkpoint else []
+        if checkpoint and (earlier := checkpoint.get(name, state)):
+            yield name, earlier, True
         else:
-            waiting.append(name)
-    for name, (walker, row) in _in_processes(folder, waiting, settings, n_jobs):
+            waiting[name] = state
+    for name, (walker, row) in _in_processes(folder, list(waiting), settings, n_jobs):
         if checkpoint is not None and walker is not None:
-            checkpoint.append(name, _state(folder, name), walker, row)
-        yield name, (walker, row)
+            checkpoint.append(name, waiting[name], walker, row)
+        yield name, (walker, row), False
 
 
 def _in_processes(
@@ -289,12 +295,15 @@ def _row(result: CaptureResult) -> dict[str, Any]:
 
 
 def _state(folder: Path, name: str) -> list[int]:
-    """Return sizes and times of a capture and of the files that explain it."""
+    """Return sizes and times of a capture and of the files that explain it.
+
+    The time of the last change to the file itself tells one that was copied over it with its time.
+    """
     path = folder / name
     if not path.is_file():
         return []
     stats = [file.stat() for file in (path, *companion_files(path))]
-    return [number for stat in stats for number in (stat.st_size, stat.st_mtime_ns)]
+    return [n for stat in stats for n in (stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)]
 
 
 def _within(folder: Path, name: str) -> Path:
