@@ -121,7 +121,7 @@ def test_a_fit_that_is_killed_goes_on_where_it_stopped(folder, tmp_path, run) ->
     assert "Traceback" not in said
     code, said, errors = run(*command[3:])
     assert code == 0
-    assert "Going on where an earlier run stopped" in errors
+    assert "captures were read by an earlier run" in errors
     assert not journal.exists()
     run("fit", captures, "-o", tmp_path / "at_once.nc", "--fresh", "--jobs", 1)
     resumed, at_once = Population.load(output), Population.load(tmp_path / "at_once.nc")

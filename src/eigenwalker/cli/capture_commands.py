@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from eigenwalker.cli.options import Rate, Unit, option
+from eigenwalker.cli.wording import in_options
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
@@ -27,9 +28,12 @@ def info(
 
     if as_json:
         facts = inspect_file(file, unit=unit, rate_hz=rate)
+        if isinstance(problems := facts.get("problems"), list):
+            facts["problems"] = [in_options(each) for each in problems]
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    lines = inspection_in_words(file_facts(file, unit=unit, rate_hz=rate))
+    facts = inspection_in_words(file_facts(file, unit=unit, rate_hz=rate))
+    lines = {name: _in_options(value) for name, value in facts.items()}
     width = max(len(name) for name in lines) + 2
     for name, value in lines.items():
         print(f"{name:<{width}}{_laid_out(value, width)}")
@@ -42,16 +46,21 @@ def convert(
         bool, option("Write joints, not markers; .bvh always holds joints.", "--joints")
     ] = False,
     unit: Unit = None,
+    rate: Rate = None,
 ) -> None:
     """Write a capture in another format."""
     from eigenwalker.io.read import read_mocap
     from eigenwalker.io.write import write_mocap
     from eigenwalker.markers.virtual_markers import virtual_markers
 
-    walk = read_mocap(capture, unit=unit)
+    walk = read_mocap(capture, unit=unit, rate_hz=rate)
     if joints or output.suffix.lower() == ".bvh":
         walk = virtual_markers(walk, joints="full")
     print(f"Written: {write_mocap(walk, output)}")
+
+
+def _in_options(value: str | list[str]) -> str | list[str]:
+    return in_options(value) if isinstance(value, str) else [in_options(each) for each in value]
 
 
 def _laid_out(value: str | list[str], indent: int) -> str:

@@ -21,6 +21,8 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
+from eigenwalker.cli.wording import in_options
+from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -352,13 +354,14 @@ def _print_left_out(walks: Walks) -> None:
     }
     for title, reasons in titles.items():
         if reasons:
-            lines = [f"  {name}: {reason}" for name, reason in reasons.items()]
-            print("\n".join([f"{len(reasons)} {title}:", *lines]), file=sys.stderr)
+            print(f"{len(reasons)} {title}:", file=sys.stderr)
+            for name, reason in reasons.items():
+                print(f"  {printable(in_options(f'{name}: {reason}'))}", file=sys.stderr)
 
 
 def _print_remarks(sentences: list[str]) -> None:
     for sentence in sentences:
-        print(f"eigenwalker: {sentence}", file=sys.stderr)
+        print(f"eigenwalker: {in_options(sentence)}", file=sys.stderr)
 
 
 @contextmanager
@@ -374,5 +377,3 @@ def _summarised_warnings() -> Iterator[None]:
     messages = list(dict.fromkeys(str(each.message).strip() for each in caught))
     more = f"and {len(messages) - MAX_WARNINGS} more warnings."
     _print_remarks(messages[:MAX_WARNINGS] + ([more] if len(messages) > MAX_WARNINGS else []))
-    if any(issubclass(each.category, RateAssumed | UnitGuessed) for each in caught):
-        _print_remarks(["On the command line, name a unit or a rate by --unit and --rate."])

@@ -8,6 +8,8 @@ from importlib import import_module
 from typing import Any
 
 from eigenwalker.cli.exit_codes import EXIT_FAILED
+from eigenwalker.cli.printing import print_without_fail, printing_error
+from eigenwalker.cli.wording import in_options, speak_of
 
 COMMANDS = {
     "demo": ("classify_command", "Classify a trait, and write a page to play with the walkers."),
@@ -39,10 +41,26 @@ Commands:
 """Printed by itself: without the library of options the help of all is there at once."""
 
 
+PRINTING = ("classify", "compare", "data", "info")
+"""Commands whose result is what they print."""
+
+
 def main() -> None:
     """Run the command line; errors and warnings are printed as sentences, without a traceback."""
-    warnings.showwarning = _print_warning
+    print_without_fail()
     name, *words = sys.argv[1:] or [""]
+    try:
+        _run(name, words)
+        code: Any = 0
+    except SystemExit as ended:
+        code = ended.code
+    if error := printing_error():
+        print(f"eigenwalker: not all could be printed: {error.strerror}.", file=sys.stderr)
+        code = code or (EXIT_FAILED if name in PRINTING else 0)
+    sys.exit(code)
+
+
+def _run(name: str, words: list[str]) -> None:
     if name in ("-h", "--help", ""):
         print(HELP)
         sys.exit(0 if name else EXIT_FAILED)
@@ -53,10 +71,13 @@ def main() -> None:
     elif name not in COMMANDS:
         sys.exit(_explain_unknown(name))
     else:
+        command = load_command(name)
+        speak_of(command)
+        warnings.showwarning = lambda message, *_, **__: _say(message)
         try:
-            load_command(name)(args=words, prog_name=f"eigenwalker {name}")
+            command(args=words, prog_name=f"eigenwalker {name}")
         except (ValueError, OSError) as error:
-            print(f"eigenwalker: {error}", file=sys.stderr)
+            _say(error)
             sys.exit(EXIT_FAILED)
 
 
@@ -87,5 +108,5 @@ def _explain_unknown(word: str) -> int:
     return EXIT_FAILED
 
 
-def _print_warning(message: Warning | str, *_: object, **__: object) -> None:
-    print(f"eigenwalker: {message}", file=sys.stderr)
+def _say(message: object) -> None:
+    print(f"eigenwalker: {in_options(str(message))}", file=sys.stderr)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from eigenwalker.core.wording import reworded
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -99,7 +101,12 @@ def start_vector(population: Population, start: str) -> np.ndarray:
     from eigenwalker.study.process_capture import process_capture
 
     first = population.walkers[0]
-    result = process_capture(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
+    try:
+        result = process_capture(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
+    except ValueError as error:
+        convert = f"eigenwalker convert {start} walk.c3d"
+        how = {name: f"{convert} --{name[:4]} {{value}}" for name in ("rate_hz", "unit")}
+        raise ValueError(reworded(str(error), how)) from error
     if flag := flag_of(result.quality):
         print(f"eigenwalker: {start}: {flag}", file=sys.stderr)
     return population.vector(result.walker)

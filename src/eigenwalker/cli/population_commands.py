@@ -22,6 +22,8 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
+from eigenwalker.cli.wording import in_options
+from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
     from eigenwalker.study.fit_folder import Study
@@ -56,11 +58,16 @@ def fit(
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used,
     130 when it was interrupted; the same command then goes on where it stopped.
     """
+    from eigenwalker.core.atomic_write import write_table
     from eigenwalker.study.fit_folder import fit_folder
     from eigenwalker.study.process_capture import DECOMPOSE
 
     check_choice(form, DECOMPOSE, "--form")
     check_population_file(output)
+    if table is not None and not table.parent.is_dir():
+        raise ValueError(
+            f"{table}: there is no folder {table.parent} to write into; make it first."
+        )
     checkpoint = output.with_name(f"{output.name}.part")
     if fresh:
         checkpoint.unlink(missing_ok=True)
@@ -78,14 +85,18 @@ def fit(
             checkpoint=checkpoint,
             progress=progress,
         )
+    if study.population is not None:
+        study.population.save(output)
+        checkpoint.unlink(missing_ok=True)
     if table is not None:
-        study.files.to_csv(table, index=False)
+        write_table(study.files, table, index=False)
+    if study.n_resumed:
+        resumed = f"{study.n_resumed} of {len(study.files)} captures were read by an earlier run"
+        print(f"{resumed}, which was interrupted; --fresh reads all anew.", file=sys.stderr)
     _print_problems(study)
     if study.population is None:
         print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
         raise typer.Exit(EXIT_FAILED)
-    study.population.save(output)
-    checkpoint.unlink(missing_ok=True)
     _print_summary(study, output)
     if len(study.refused):
         raise typer.Exit(EXIT_PARTIAL)
@@ -94,8 +105,6 @@ def fit(
 @contextmanager
 def _resumable(checkpoint: Path) -> Iterator[None]:
     """Say, when work is interrupted, where it is kept and how to go on."""
-    if checkpoint.is_file():
-        print("Going on where an earlier run stopped; --fresh starts anew.", file=sys.stderr)
     try:
         yield
     except KeyboardInterrupt:
@@ -110,10 +119,14 @@ def _print_problems(study: Study) -> None:
         files = study.files[study.files["status"] == status]
         if len(files):
             print(f"{len(files)} {status}:")
-            print("".join(f"  {row.file}: {row.reason}\n" for row in files.itertuples()))
+            for row in files.itertuples():
+                print(f"  {printable(in_options(f'{row.file}: {row.reason}'))}")
+            print()
     if study.unlisted:
         names = ", ".join(study.unlisted[:5]) + (", ..." if len(study.unlisted) > 5 else "")
-        print(f"{len(study.unlisted)} captures of the folder are not in the table: {names}")
+        print(
+            f"{len(study.unlisted)} captures of the folder are not in the table:", printable(names)
+        )
 
 
 def _print_summary(study: Study, output: Path) -> None:

@@ -30,9 +30,9 @@ def atomic_write(path: Path) -> Generator[Path, None, None]:
         yield unfinished
         os.replace(unfinished, target)
     except OSError as error:
-        if error.filename in (None, unfinished, str(unfinished)) and error.errno is not None:
-            error.filename, error.filename2 = str(path), None
-        raise
+        if error.errno is None or error.filename not in (None, unfinished, str(unfinished)):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
         unfinished.unlink(missing_ok=True)
 
@@ -42,10 +42,12 @@ def write_table(table: pd.DataFrame, path: Path, **options: Any) -> Path:
 
     A text that a spreadsheet would run as a formula gets an apostrophe before it.
     """
-    texts = [name for name in table if table[name].dtype.kind not in "biuf"]
-    plain = table.assign(**{name: table[name].map(_no_formula) for name in texts})
+    plain: Any = table.rename(index=_no_formula)
+    for name in table:
+        if table[name].dtype.kind not in "biuf":
+            plain[name] = plain[name].map(_no_formula)
     with atomic_write(path) as unfinished:
-        plain.rename(index=_no_formula).to_csv(unfinished, errors="backslashreplace", **options)
+        plain.to_csv(unfinished, errors="backslashreplace", **options)
     return path
 
 

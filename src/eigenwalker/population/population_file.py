@@ -119,14 +119,18 @@ def _dataset(
             stacked = np.stack([np.asarray(getattr(walker.fit, entry.name)) for walker in walkers])
             variables[f"fit_{entry.name}"] = (_FIT_DIMS.get(entry.name, ("walker",)), stacked)
     for number, name in enumerate(traits):
-        variables[f"trait_{number}"] = ("walker", _storable(traits[name]), {"trait": str(name)})
+        variables[f"trait_{number}"] = (
+            "walker",
+            _storable(traits[name]),
+            {"trait": _utf8(str(name))},
+        )
     reference = correspondence.reference
     variables["similarity"] = (("walker", "component"), correspondence.similarity)
     variables["correspondence_flag"] = ("walker", np.array(correspondence.flags, dtype=object))
     variables["reference_axes"] = (("harmonic", "pair", "feature"), reference.axes)
     variables["reference_average"] = (("coefficient", "feature"), reference.average)
     coords = {
-        "marker": list(first.markers),
+        "marker": [_utf8(name) for name in first.markers],
         "axis": list(AXES),
         "harmonics": ("component", first.harmonics),
     }
@@ -135,10 +139,16 @@ def _dataset(
 
 def _storable(column: pd.Series) -> np.ndarray:
     if pd.api.types.is_bool_dtype(column) or not pd.api.types.is_numeric_dtype(column):
-        return column.astype(object).where(column.notna(), "").astype(str).to_numpy(dtype=object)
+        texts = column.astype(object).where(column.notna(), "")
+        return np.array([_utf8(str(text)) for text in texts], dtype=object)
     whole = pd.api.types.is_integer_dtype(column) and not column.isna().any()
     small = whole and column.abs().max() < 2**31
     return column.to_numpy(dtype="int32" if small else float)
+
+
+def _utf8(text: str) -> str:
+    """Return a text with escapes for what UTF-8 lacks: bytes of a file name that are no letters."""
+    return text.encode(errors="backslashreplace").decode()
 
 
 def _stored(dataset: xr.Dataset) -> Stored:

@@ -1,0 +1,41 @@
+"""Messages in the words of the command line: options in place of arguments of Python."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from eigenwalker.core.wording import reworded
+
+ARGUMENTS = {
+    "accept_licence": "--accept-licence",
+    "default_rate_hz": "--rate {value}",
+    "default_unit": "--unit {value}",
+    "duration_s": "--duration {value}",
+    "eye_distance_mm": "--eye-distance {value}",
+    "form": "--form {value}",
+    "low_pass_hz": "--low-pass {value}",
+    "n_clusters": "--clusters {value}",
+    "n_components": "--components {value}",
+    "n_harmonics": "--harmonics {value}",
+    "n_men": "--men {value}",
+    "n_permutations": "--permutations {value}",
+    "n_women": "--women {value}",
+    "part": "--part {value}",
+    "rate_hz": "--rate {value}",
+    "size_px": "--size {value}",
+    "unit": "--unit {value}",
+}
+"""Options that give arguments of Python, which messages name."""
+_of_this_command: dict[str, str] = {}
+
+
+def speak_of(command: Any) -> None:
+    """Let messages name the options of a command, which is about to run."""
+    options = {name for each in command.params for name in each.opts}
+    _of_this_command.clear()
+    _of_this_command.update({k: v for k, v in ARGUMENTS.items() if v.split()[0] in options})
+
+
+def in_options(sentence: str) -> str:
+    """Return a sentence that names options where it names arguments that the command has."""
+    return reworded(sentence, _of_this_command)
