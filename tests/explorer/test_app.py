@@ -6,12 +6,13 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import httpx
@@ -25,7 +26,7 @@ from eigenwalker.explorer import app as explorer_app, tasks
 from eigenwalker.explorer.app import make_app
 from eigenwalker.simulation import simulate_population
 from eigenwalker.study.process_capture import process_capture
-from eigenwalker.web import upload
+from eigenwalker.web import task_runner, upload
 from eigenwalker.web.host_check import HEADERS
 from eigenwalker.web.run import address_of, listening_socket
 from eigenwalker.web.upload import safe_name
@@ -72,8 +73,8 @@ def capture_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(autouse=True)
 def nothing_is_left(app: FastAPI, client: httpx.Client) -> Iterator[None]:
     yield
-    left = [path for path in app.state.task_runner.folder.iterdir() if path.suffix != ".nc"]
-    assert left == []
+    left = {path.name for path in app.state.task_runner.folder.iterdir() if path.suffix != ".nc"}
+    assert left == {".in-use"}
 
 
 def test_the_page_is_served_and_says_that_it_is(client):
@@ -134,6 +135,16 @@ def test_what_is_no_capture_is_refused_in_the_words_of_its_reader(client, name, 
     answer = client.post("/api/capture", params={"name": name}, content=content)
     assert answer.status_code == 422
     assert said in answer.json()["detail"]
+
+
+def test_what_python_would_be_told_is_told_as_the_page_can_do_it(client):
+    names = ",".join(f"{joint}_{axis}" for joint in ew.JOINTS.markers for axis in "xyz")
+    content = "\n".join([names, *[",".join("1" * 45)] * 9]).encode()
+    answer = client.post("/api/capture?name=a.csv", content=content)
+    assert (
+        "open what this command writes: eigenwalker convert FILE walk.c3d --rate 30" in answer.text
+    )
+    assert "rate_hz" not in answer.text
 
 
 def test_a_population_is_loaded_and_captures_are_compared_with_it(client, capture_file, tmp_path):
@@ -214,6 +225,8 @@ def test_lists_of_files_that_make_no_sense_are_refused(client, files, said):
         ("NUL.csv", "_NUL.csv"),
         ("<b>.nc", "_b_.nc"),
         (f"{'long' * 99}.c3d", f"{'long' * 19}.c3d"),
+        ("\U0001d538" * 80 + ".c3d", "\U0001d538" * 49 + ".c3d"),
+        ("Mu\u0308ller.\ud800", "M\u00fcller._"),
     ],
 )
 def test_names_lead_nowhere(sent, safe):
@@ -322,36 +335,91 @@ def test_a_free_port_is_taken_where_the_usual_one_is_not():
 
 
 def film_asked_of(address: str, shown: str, answers: list[int]) -> None:
-    answer = httpx.post(f"{address}api/film?format=mp4", content=shown, timeout=60)
-    answers.append(answer.status_code)
+    with suppress(httpx.HTTPError):
+        answer = httpx.post(f"{address}api/film?format=mp4", content=shown, timeout=60)
+        answers.append(answer.status_code)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends interrupts to whole consoles")
-def test_an_interrupt_ends_it_and_its_work_without_a_word(people, tmp_path):
-    people.save(tmp_path / "people.nc")
+@contextmanager
+def typed_serve(people: ew.Population, folder: Path) -> Iterator[tuple[subprocess.Popen, str]]:
+    """A server started on the command line, its temporary files in a folder; and its address."""
+    people.save(folder / "people.nc")
     command = [sys.executable, "-c", "from eigenwalker.cli.main import main; main()", "serve"]
     server = subprocess.Popen(
-        [*command, str(tmp_path / "people.nc"), "--no-open"],
+        [*command, str(folder / "people.nc"), "--no-open"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        env=os.environ | {"TMPDIR": str(tmp_path)},
+        env=os.environ | {"TMPDIR": str(folder)},
     )
     try:
         assert server.stdout is not None
         address = re.search(r"http://127\.0\.0\.1:\d+/", server.stdout.readline())
         assert address is not None
         assert "eigenwalker-server" in httpx.get(address[0], timeout=20).text
-        shown = ew.make_stimulus(people.walkers[0], duration_s=100).to_json()
-        asked = threading.Thread(target=film_asked_of, args=(address[0], shown, answers := []))
-        asked.start()
-        while asked.is_alive() and not list(tmp_path.glob("eigenwalker-*/*/task.json")):
-            time.sleep(0.02)
-        server.send_signal(signal.SIGINT)
-        rest, errors = server.communicate(timeout=20)
+        yield server, address[0]
     finally:
         server.kill()
+        server.communicate()
+
+
+def works(folder: Path) -> bool:
+    return bool(list(folder.glob("eigenwalker-*/*/task.json")))
+
+
+def wait_until(happened: Callable[[], bool]) -> None:
+    ends = time.monotonic() + 30
+    while not happened() and time.monotonic() < ends:
+        time.sleep(0.02)
+    assert happened()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends interrupts to whole consoles")
+def test_an_interrupt_ends_it_and_its_work_without_a_word(people, tmp_path):
+    shown = ew.make_stimulus(people.walkers[0], duration_s=100).to_json()
+    with typed_serve(people, tmp_path) as (server, address):
+        asked = threading.Thread(target=film_asked_of, args=(address, shown, answers := []))
+        asked.start()
+        wait_until(lambda: works(tmp_path))
+        server.send_signal(signal.SIGINT)
+        rest, errors = server.communicate(timeout=20)
     asked.join()
     assert (answers, server.returncode, rest) == ([503], 0, "")
     assert errors == ""
     assert list(tmp_path.glob("eigenwalker-*")) == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="children are looked up in /proc")
+def test_work_that_nobody_waits_for_any_more_ends(people, tmp_path, capture_file):
+    """Clients that leave, a film beside which a capture is read, and a server that is killed."""
+    shown = ew.make_stimulus(people.walkers[0], duration_s=100).to_json()
+    with typed_serve(people, tmp_path) as (server, address):
+        port = int(address.rstrip("/").rpartition(":")[2])
+        with socket.create_connection(("127.0.0.1", port)) as leaving:
+            leaving.sendall(
+                f"POST /api/capture?name=a HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n".encode()
+            )
+            leaving.sendall(b"Content-Length: 999999\r\n\r\nabc")
+        with pytest.raises(httpx.ReadTimeout):
+            httpx.post(f"{address}api/film?format=mp4", content=shown, timeout=2)
+        wait_until(lambda: not works(tmp_path))
+        asked = threading.Thread(target=film_asked_of, args=(address, shown, []))
+        asked.start()
+        wait_until(lambda: works(tmp_path))
+        sent = capture_file.read_bytes()
+        assert httpx.post(f"{address}api/capture?name=a.c3d", content=sent, timeout=60).is_success
+        assert works(tmp_path)
+        children = Path(f"/proc/{server.pid}/task/{server.pid}/children").read_text().split()
+        server.kill()
+        rest, errors = server.communicate(timeout=20)
+    asked.join()
+    assert (rest, errors) == ("", "")
+    assert len(children) == 1
+    wait_until(lambda: not Path(f"/proc/{children[0]}").exists())
+    (left,) = tmp_path.glob("eigenwalker-*")
+    with left.joinpath(".in-use").open("a") as another:
+        task_runner._lock(another)
+        task_runner.remove_abandoned(tmp_path)
+        assert left.exists()
+    task_runner.remove_abandoned(tmp_path)
+    assert not left.exists()

@@ -18,7 +18,7 @@ from eigenwalker.explorer.interactive_page import interactive_page
 from eigenwalker.explorer.model import page_model
 from eigenwalker.io.sandbox import Job
 from eigenwalker.population.population import Population
-from eigenwalker.web.run import new_app
+from eigenwalker.web.run import new_app, while_connected
 from eigenwalker.web.task_runner import Refused, TaskRunner
 from eigenwalker.web.upload import receive_files, stream_to_file
 
@@ -54,7 +54,7 @@ def make_app(
     ``POST /api/film``        a film of a stimulus
     ========================= ===================================================================
 
-    Files that are sent are read by a child process, one at a time, within limits of time and
+    Files that are sent are read by child processes, a few at a time, within limits of time and
     memory, and removed afterwards. What cannot be used is refused with a sentence (``detail``).
     """
     runner = TaskRunner()
@@ -96,7 +96,7 @@ async def read_capture(
     with runner.workdir() as workdir:
         settings = {"population": str(people), "unit": unit, "rate_hz": rate}
         settings["files"] = await _receive(request, workdir, name, files)
-        return await _run(runner, tasks.capture, workdir, settings)
+        return await _run(request, tasks.capture, workdir, settings)
 
 
 async def read_population(request: Request, name: str = "", files: str = "") -> dict[str, Any]:
@@ -105,7 +105,7 @@ async def read_population(request: Request, name: str = "", files: str = "") -> 
     with runner.workdir() as workdir:
         settings = {"files": await _receive(request, workdir, name, files)}
         task = tasks.study if files else tasks.population
-        answer = await _run(runner, task, workdir, settings)
+        answer = await _run(request, task, workdir, settings)
         answer["model"]["population"] = _keep(runner.folder, Path(workdir, tasks.PEOPLE))
         return answer
 
@@ -130,7 +130,7 @@ async def make_film(request: Request, format: str = Query(...)) -> Response:
         stimulus = tasks.files_of(workdir) / "stimulus.json"
         await stream_to_file(request.stream(), stimulus, MAX_STIMULUS_BYTES)
         limits = {"max_pixels": MAX_PIXELS, "max_dots": MAX_DOTS}
-        answer = await _run(runner, tasks.film, workdir, {"format": format, **limits})
+        answer = await _run(request, tasks.film, workdir, {"format": format, **limits})
         film = Path(workdir, answer["file"]).read_bytes()
     return Response(film, media_type=FILMS[format])
 
@@ -144,9 +144,9 @@ async def _receive(request: Request, workdir: str, name: str, manifest: str) -> 
 
 
 async def _run(
-    runner: TaskRunner, task: Callable[[str], bytes], workdir: str, settings: dict[str, Any]
+    request: Request, task: Callable[[str], bytes], workdir: str, settings: dict[str, Any]
 ) -> dict[str, Any]:
     """Return the answer of a task that a child process does in a folder."""
     Path(workdir, tasks.SETTINGS).write_text(json.dumps(settings), encoding="utf-8")
     job = Job(task, (workdir,), seconds=SECONDS[task.__name__], max_bytes=MAX_MEMORY)
-    return json.loads(await runner.run(job))
+    return json.loads(await while_connected(request, _runner(request).run(job)))

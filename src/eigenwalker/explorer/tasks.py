@@ -15,9 +15,17 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
+from eigenwalker.core.wording import reworded
+
 SETTINGS = "task.json"
 PEOPLE = "people.nc"
 """Where a task leaves the population that its model is of."""
+
+ON_THE_PAGE = {
+    name: f"open what this command writes: eigenwalker convert FILE walk.c3d --{option} {{value}}"
+    for name, option in (("rate_hz", "rate"), ("unit", "unit"))
+}
+"""What to do on the page where Python takes an argument: it has no field for a unit or a rate."""
 
 Answer = dict[str, Any]
 
@@ -37,7 +45,12 @@ def _task(function: Callable[[Path, Answer], Answer]) -> Callable[[str], bytes]:
         settings = json.loads(Path(folder, SETTINGS).read_text(encoding="utf-8"))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            answer = function(Path(folder), settings)
+            try:
+                answer = function(Path(folder), settings)
+            except ValueError as error:
+                raise ValueError(reworded(str(error), ON_THE_PAGE)) from error
+        if "messages" in answer:
+            answer["messages"] = [reworded(each, ON_THE_PAGE) for each in answer["messages"]]
         return json.dumps(answer, allow_nan=False).encode()
 
     return task

@@ -11,7 +11,8 @@ import inspect
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -54,37 +55,39 @@ class Job:
     def run(self) -> bytes:
         """Return what the function returns, or raise `JobError`."""
         try:
-            child = subprocess.run(
-                self._command(),
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                timeout=self.seconds,
-                check=False,
-                env=_environment(),
-                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-            )
+            with _pipe_that_ends() as stdin:
+                child = subprocess.run(
+                    self._command(),
+                    stdin=stdin,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.DEVNULL,
+                    timeout=self.seconds,
+                    check=False,
+                    env=_environment(),
+                    creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+                )
         except subprocess.TimeoutExpired as error:
             raise JobError("too slow") from error
         return self._result(child.returncode, child.stdout)
 
     async def run_async(self) -> bytes:
         """Return what the function returns, without blocking; the child ends if cancelled."""
-        child = await asyncio.create_subprocess_exec(
-            *self._command(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            env=_environment(),
-        )
-        try:
-            output, _ = await asyncio.wait_for(child.communicate(), self.seconds)
-        except TimeoutError as error:
-            raise JobError("too slow") from error
-        finally:
-            if child.returncode is None:
-                child.kill()
-                await child.wait()
+        with _pipe_that_ends() as stdin:
+            child = await asyncio.create_subprocess_exec(
+                *self._command(),
+                stdin=stdin,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                env=_environment(),
+            )
+            try:
+                output, _ = await asyncio.wait_for(child.communicate(), self.seconds)
+            except TimeoutError as error:
+                raise JobError("too slow") from error
+            finally:
+                if child.returncode is None:
+                    child.kill()
+                    await child.wait()
         return self._result(child.returncode or 0, output)
 
     def _command(self) -> list[str]:
@@ -98,6 +101,20 @@ class Job:
             return output
         message = output.decode(errors="replace")
         raise JobError(_REASONS.get(status, "failed"), message, status)
+
+
+@contextmanager
+def _pipe_that_ends() -> Generator[int]:
+    """Yield an end to read of a pipe that nothing is written to, and that ends with this process.
+
+    The child ends with it too, even where this process was killed.
+    """
+    reading, writing = os.pipe()
+    try:
+        yield reading
+    finally:
+        os.close(reading)
+        os.close(writing)
 
 
 def _environment() -> dict[str, str]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
+import threading
 
 FAILED = 1
 """The function raised an error that is none of those below, as a fault in the program does."""
@@ -21,6 +22,7 @@ TOO_LARGE = 4
 
 def main(module: str, function: str, seconds: str, max_bytes: str, *arguments: str) -> int:
     """Return the exit status after one call."""
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     with os.fdopen(os.dup(1), "wb") as output:
         os.dup2(2, 1)  # what libraries print does not mix with the result
         try:
@@ -40,6 +42,12 @@ def main(module: str, function: str, seconds: str, max_bytes: str, *arguments: s
             return TOO_LARGE
         output.write(result)
     return 0
+
+
+def _end_with_parent() -> None:
+    """Wait for the end of standard input, which is a pipe that the parent holds, and end."""
+    os.read(0, 1)
+    os._exit(FAILED)
 
 
 def limit_process(seconds: int, max_bytes: int) -> None:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import socket
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar
 
 import uvicorn
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.middleware.gzip import GZipMiddleware
+from starlette.requests import ClientDisconnect
 
 from eigenwalker.web.host_check import WILDCARDS, HostCheck
 from eigenwalker.web.task_runner import Ending
 from eigenwalker.web.upload import TooLarge
+
+_Answer = TypeVar("_Answer")
 
 DEFAULT_PORT = 8640
 """Taken where it is free, so that a bookmarked address still leads to the page."""
@@ -34,6 +38,8 @@ def new_app(lifespan: Any, *, host: str) -> FastAPI:
         (404, 404, "There is nothing of that name here."),
         (Ending, 503, None),
         (TooLarge, 413, None),
+        (ClientDisconnect, 400, "The request ended before it was whole."),
+        (OSError, 507, "The server has no room for this, or may not write into its folder."),
         (ValueError, 422, None),
         (RequestValidationError, 422, None),
     ):
@@ -52,6 +58,26 @@ def _answer_with(
         return JSONResponse({"detail": detail}, status)
 
     return answer
+
+
+async def while_connected(request: Request, answer: Coroutine[Any, Any, _Answer]) -> _Answer:
+    """Return an answer; what makes it ends as soon as the client that waits for it has left."""
+    making = asyncio.ensure_future(answer)
+    leaving = asyncio.ensure_future(_left(request))
+    try:
+        await asyncio.wait({making, leaving}, return_when=asyncio.FIRST_COMPLETED)
+        if not making.done():
+            raise ClientDisconnect
+        return making.result()
+    finally:
+        leaving.cancel()
+        making.cancel()
+        await asyncio.gather(making, leaving, return_exceptions=True)
+
+
+async def _left(request: Request) -> None:
+    while not await request.is_disconnected():
+        await asyncio.sleep(0.2)
 
 
 def listening_socket(host: str, port: int | None) -> socket.socket:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import unicodedata
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ MAX_BYTES = 200_000_000
 """Of one request."""
 MAX_FILES = 500
 _MAX_NAME = 80
+_MAX_BYTES_OF_NAME = 200
 
 
 class TooLarge(ValueError):  # noqa: N818 - the name says what is wrong
@@ -84,11 +86,14 @@ def safe_name(name: str) -> str:
     >>> safe_name("../../etc/passwd"), safe_name("walk 1 (slow).c3d"), safe_name("..")
     ('passwd', 'walk 1 (slow).c3d', 'file')
     """
-    last = re.split(r"[/\\]", name)[-1]
+    last = unicodedata.normalize("NFC", re.split(r"[/\\]", name)[-1])
     plain = re.sub(r"[^\w .()+=,-]", "_", last).strip(" .")
     if re.fullmatch(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", plain, re.IGNORECASE):
         plain = f"_{plain}"
-    if len(plain) > _MAX_NAME:
+    if len(plain) > _MAX_NAME or len(plain.encode()) > _MAX_BYTES_OF_NAME:
         suffix = Path(plain).suffix[:10]
-        plain = plain[: _MAX_NAME - len(suffix)] + suffix
+        stem = plain[: _MAX_NAME - len(suffix)]
+        while len((stem + suffix).encode()) > _MAX_BYTES_OF_NAME:
+            stem = stem[:-1]
+        plain = stem + suffix
     return plain or "file"
