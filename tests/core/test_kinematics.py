@@ -20,7 +20,7 @@ PARENTS = [-1, 0, 1, 0, 3]
 def _body(seed: int, n_frames: int = 4) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
     offsets = rng.normal(size=(len(PARENTS), 3))
-    turns = Rotation.random(n_frames * len(PARENTS), rng=rng).as_quat()
+    turns = Rotation.random(n_frames * len(PARENTS), rng).as_quat()
     return offsets, turns.reshape(n_frames, len(PARENTS), 4)
 
 

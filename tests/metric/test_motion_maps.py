@@ -70,7 +70,7 @@ def test_large_maps_are_off_by_less_than_a_millionth_of_how_far_points_move(metr
 
 def test_large_maps_of_orientations_are_exact_to_a_millionth_of_a_radian():
     rng = np.random.default_rng(2)
-    a, b = (Rotation.random(n, rng=rng).as_quat()[:, None] for n in (2100, 2000))
+    a, b = (Rotation.random(n, rng).as_quat()[:, None] for n in (2100, 2000))
     assert len(a) * len(b) > EXACT
     found = point_map(a, b, np.ones(1), shape="absolute")
     expected = 2 * np.arccos(np.minimum(np.abs(a[:, 0] @ b[:, 0].T), 1))
@@ -152,7 +152,7 @@ def test_windows_average_corresponding_frames():
 
 def test_orientations_are_compared_by_the_angle_between_them():
     rng = np.random.default_rng(0)
-    a, b = Rotation.random(6, rng=rng), Rotation.random(5, rng=rng)
+    a, b = Rotation.random(6, rng), Rotation.random(5, rng)
     expected = np.array([[(x.inv() * y).magnitude() for y in b] for x in a])
     quaternions = [each.as_quat()[:, None] for each in (a, b)]
     found = point_map(*quaternions, np.ones(1), shape="absolute")

@@ -100,7 +100,7 @@ def read_population(path: Path) -> Stored:
         )
     try:
         return _stored(dataset)
-    except (KeyError, ValueError, TypeError, IndexError) as error:
+    except (KeyError, ValueError, TypeError, IndexError, RecursionError) as error:
         raise UnreadableFile(
             path.name, _EXPECTED, f"a damaged one ({error})", "make or copy it again"
         ) from error

@@ -91,8 +91,14 @@ def truth_of(population: Population) -> Truth:
             "This population was not simulated, so nobody knows its truth; "
             "make one with simulate_population()."
         )
-    settings, planted, capture = read_provenance(population.provenance[KEY])
-    people = draw_people(**settings)
+    try:
+        settings, planted, capture = read_provenance(population.provenance[KEY])
+        people = draw_people(**settings)
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
+        raise ValueError(
+            f"The population's entry {KEY!r}, from which its people are simulated again, is damaged "
+            f"({error}); make the population again with simulate_population()."
+        ) from error
     rows = _same_rows(people, population.traits)
     return Truth(
         people=people.iloc[rows].reset_index(drop=True),
