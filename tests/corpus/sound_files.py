@@ -24,6 +24,7 @@ from eigenwalker.io.write import write_mocap
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.people import simulate_population
 from eigenwalker.simulation.walk import simulate_walk
+from eigenwalker.stimulus.make import make_stimulus
 
 Files = dict[str, bytes]
 """Files that belong together by name; the first is the one to read."""
@@ -344,6 +345,12 @@ def _population(walk: xr.DataArray) -> list[Files]:
         return [{path.name: path.read_bytes()}]
 
 
+def _stimulus(walk: xr.DataArray) -> list[Files]:
+    del walk
+    shown = make_stimulus(simulate_population(1, 1, seed=1).walkers[0]).then("mirror")
+    return [{"a.json": shown.to_json().encode()}]
+
+
 def _bml(walk: xr.DataArray) -> list[Files]:
     del walk
     rng = np.random.default_rng(0)
@@ -370,6 +377,7 @@ KINDS = {
     "described": Kind(_described),
     "netcdf": Kind(_by_our_writer(".nc")),
     "population": Kind(_population),
+    "stimulus": Kind(_stimulus),
     "bml": Kind(_bml),
     "mat": Kind(_mat, in_child=True),
 }

@@ -42,9 +42,10 @@ from eigenwalker.io.read import read_mocap
 from eigenwalker.io.readers.mat_arrays import mat_arrays
 from eigenwalker.io.up_axis_and_unit import UnitGuessed
 from eigenwalker.population.population import Population
+from eigenwalker.stimulus.stimulus import Stimulus
 from eigenwalker.study.inspect import inspect_file
 from eigenwalker.study.process_capture import process_capture
-from fuzz.mutations import mutated
+from fuzz.mutations import mutated, nested_attribute
 
 SECONDS = 10
 MOST_BYTES = 2**30
@@ -67,7 +68,10 @@ def spoilt(kind: str, sound: list[Files], number: int, seed: int) -> Files:
     files = dict(random.choice(sound))
     name = random.choice(list(files))
     others = random.choice(sound)
-    files[name] = mutated(files[name], others.get(name, files[name]), random)
+    if kind in ("population", "netcdf") and random.random() < 0.03:
+        files[name] = nested_attribute(files[name], random)
+    else:
+        files[name] = mutated(files[name], others.get(name, files[name]), random)
     return files
 
 
@@ -91,6 +95,7 @@ DOORS: dict[str, dict[str, Callable[[Path], object]]] = {
     "read": dict.fromkeys(KINDS, _captured)
     | {
         "population": _of_population,
+        "stimulus": Stimulus.load,
         "bml": lambda path: read_bml_axes(path).walker(),
         "mat": lambda path: mat_arrays(str(path)),
     },

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import re
 import struct
 from collections.abc import Callable
 from random import Random
 
-MOST_BYTES = 300_000
+import xarray as xr
+
+MOST_BYTES = 1_000_000
 """Files are not made to grow beyond this, but for a line that is very long."""
 NUMBERS = (
     *("0", "-0", "1", "-1", "2", "255", "65535", "65536", "4294967296", "99999999999999999999"),
@@ -40,6 +43,9 @@ _REPEATED = (
     ),
 )
 _NUMBER = re.compile(rb"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?")
+_VALUE = re.compile(
+    rb'(?<=[:\[,])\s*(?:[-+]?\d[\d.eE+-]*|"[^"\\\n]{0,80}"|null|true|false)(?=\s*[,\]}])'
+)
 _WORD = re.compile(rb"[A-Za-z_][A-Za-z_0-9]*")
 _LETTERS = b" \t\n\r,;:.0123456789eE+-naifXYZ\"'#=[]{}()\\/|*~_\x00\x1a\x7f\x80\xbf\xef\xff"
 
@@ -189,9 +195,33 @@ def _recode(content: bytes, random: Random) -> bytes:
 
 
 def _nest(content: bytes, random: Random) -> bytes:
+    """Open brackets somewhere, or put closed ones in the place of a value of JSON."""
+    depth = random.choice((1, 50, 400, 950, 2000, 20_000, 100_000))
+    hits = [hit.span() for hit in _VALUE.finditer(content)]
+    if hits and random.random() < 0.7:
+        start, end = random.choice(hits)
+        return content[:start] + _nested(depth, random) + content[end:]
     at = _place(content, random)
     bracket = random.choice((b"[", b"{", b"(", b'{"a":', b'"', b"JOINT a {", b"begin\n"))
-    return content[:at] + bracket * random.choice((1, 50, 2000, 20_000)) + content[at:]
+    return content[:at] + bracket * depth + content[at:]
+
+
+def _nested(depth: int, random: Random) -> bytes:
+    """Return lists and objects of JSON in one another, all closed."""
+    open_, close = random.choice(
+        ((b"[", b"]"), (b'{"a":', b"}"), (b'[{"a":', b"}]"), (b"[1,", b"]"))
+    )
+    inner = random.choice((b"", b"1", b'"a"', b"null")) if open_ == b"[" else b"1"
+    return open_ * depth + inner + close * depth
+
+
+def nested_attribute(content: bytes, random: Random) -> bytes:
+    """Put nested JSON in the place of an attribute of a NetCDF file, or into its object."""
+    dataset = xr.load_dataset(io.BytesIO(content))
+    text = _nested(random.choice((400, 950, 2000, 20_000, 100_000)), random).decode()
+    name = random.choice(sorted(dataset.attrs, key=str))
+    dataset.attrs[name] = random.choice((text, f'{{"a": {text}}}'))
+    return bytes(dataset.to_netcdf())
 
 
 def _long_line(content: bytes, random: Random) -> bytes:
