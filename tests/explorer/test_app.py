@@ -17,6 +17,7 @@ from pathlib import Path
 
 import httpx
 import numpy as np
+import pandas as pd
 import pytest
 import uvicorn
 from fastapi import FastAPI
@@ -83,6 +84,27 @@ def test_the_page_is_served_and_says_that_it_is(client):
     assert '<meta name="eigenwalker-server" content="1"' in answer.text
     assert "connect-src 'self'" in answer.text
     assert {name: answer.headers[name] for name in HEADERS} == HEADERS
+
+
+def untimed_table() -> bytes:
+    """A walk as a table in metres without times."""
+    walk = ew.simulate_walk(seed=5, sex="male", duration_s=6, rate_hz=60)
+    columns = [f"{name}_{axis}" for name in walk.marker.values for axis in "xyz"]
+    table = pd.DataFrame(walk.values.reshape(len(walk), -1) / 1000, columns=columns)
+    return table.interpolate(limit_direction="both").to_csv(index=False).encode()
+
+
+@pytest.mark.parametrize("route", ["capture?name=a.csv&", "population?files={manifest}&"])
+def test_refusals_name_fields_of_the_page_and_what_they_say_is_used(client, route):
+    table = untimed_table()
+    route = f"/api/{route}".replace("{manifest}", json.dumps([["a.csv", len(table)]]))
+    told = client.post(route, content=table).json()["detail"]
+    assert '"Frames a second"' in told
+    assert "rate_hz" not in told
+    assert "(..." not in told
+    answer = client.post(f"{route}rate=60&unit=m", content=table)
+    assert answer.status_code == 200, answer.json()
+    assert not any("rate_hz" in message for message in answer.json()["messages"])
 
 
 @pytest.mark.parametrize(

@@ -67,6 +67,14 @@ def browser() -> Iterator[Browser]:
         started.close()
 
 
+def untimed_table() -> bytes:
+    """A walk as a table in metres without times."""
+    walk = ew.simulate_walk(seed=5, sex="male", duration_s=6, rate_hz=60)
+    columns = [f"{name}_{axis}" for name in walk.marker.values for axis in "xyz"]
+    table = pd.DataFrame(walk.values.reshape(len(walk), -1) / 1000, columns=columns)
+    return table.interpolate(limit_direction="both").to_csv(index=False).encode()
+
+
 def said_in(address: str) -> dict[str, str]:
     """What the end of an address says, by its short names."""
     parts = (part.partition("=") for part in address.split("&") if part)
@@ -503,6 +511,16 @@ def test_a_capture_walks_on_the_page_that_is_served(browser, served, tmp_path):
     told.wait_for(timeout=90_000)
     assert there.state()["w"] == "own"
     assert "mine.c3d" in there.page.locator("#people").inner_text()
+    there.open("Who walks")
+    there.bring("untimed.csv", untimed_table())
+    there.page.get_by_role("alert").get_by_text('"Frames a second"').wait_for(timeout=90_000)
+    assert "(..." not in there.page.get_by_role("alert").inner_text()
+    there.page.get_by_label("Frames a second").fill("60")
+    there.page.get_by_label("Unit of length").select_option("m")
+    there.bring("untimed.csv", untimed_table())
+    told = there.page.get_by_role("status").get_by_text("Read at 60 frames a second, in m")
+    told.wait_for(timeout=90_000)
+    there.page.get_by_label("Frames a second").fill("")
     there.bring("broken.c3d", b"no capture at all")
     there.page.get_by_role("alert").get_by_text("broken.c3d").wait_for(timeout=90_000)
     assert there.state()["w"] == "own"

@@ -6,7 +6,7 @@ import type { Model, OwnWalker } from "../model/model";
 import { readModel } from "../model/readModel";
 import { find } from "../page/elements";
 import { ownWalkerOf } from "./ownWalker";
-import { hasServer, readCapture, readPopulation } from "./server";
+import { fieldsSaid, hasServer, readCapture, readPopulation } from "./server";
 
 /** The content of files, with messages about them. */
 export type Opened = { readonly messages: readonly string[] } & (
@@ -63,7 +63,7 @@ export async function openFiles(files: readonly File[], source: ModelSource | nu
   const opened = modelSourceOf(model);
   if (isPopulation) return { kind: "model", source: opened, messages };
   const named = { ...opened.model, captures: bundleName(captures, folder) };
-  return { kind: "model", source: { ...opened, model: named }, messages };
+  return { kind: "model", source: { ...opened, model: named }, messages: [...fieldsSaid(), ...messages] };
 }
 
 async function openCapture(files: readonly File[], source: ModelSource | null): Promise<Opened> {
@@ -71,7 +71,7 @@ async function openCapture(files: readonly File[], source: ModelSource | null): 
   const { name, vector, messages } = await readCapture(files, source.population);
   const { length } = source.model.average;
   if (vector.length !== length) throw new Error(`${name} came as ${vector.length} numbers; walkers here have ${length}.`);
-  return { kind: "own", own: { name, vector }, messages };
+  return { kind: "own", own: { name, vector }, messages: [...fieldsSaid(), ...messages] };
 }
 
 async function openText(file: File, model: Model | null): Promise<Opened> {

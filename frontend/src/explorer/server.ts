@@ -9,16 +9,26 @@ const CAPTURE = record({ name: line, vector: list(number(), 0, Infinity), messag
 /** The model is not checked yet. */
 const POPULATION = record({ model: {}, messages: lines });
 
+/** What the visitor knows of captures better than their files: frames a second, and the unit of length. */
+export const captureFields: { rate?: string; unit?: string } = {};
+
+/** A sentence about the fields where they are filled in, for messages about captures. */
+export function fieldsSaid(): string[] {
+  const { rate, unit } = captureFields;
+  const said = [...(rate ? [`at ${rate} frames a second`] : []), ...(unit ? [`in ${unit}`] : [])];
+  return said.length > 0 ? [`Read ${said.join(", ")}, as the fields under "Who walks" say.`] : [];
+}
+
 export const hasServer = (): boolean =>
   document.querySelector('meta[name="eigenwalker-server"]')?.getAttribute("content") === "1";
 
 /** A capture, with the files that belong to it, as a walker of a population that the server holds. */
 export const readCapture = (files: readonly File[], population: string) =>
-  answerAbout(files, CAPTURE, "walker", post("capture", { ...namesOf(files), population }, new Blob([...files])));
+  answerAbout(files, CAPTURE, "walker", post("capture", { ...queryOf(files), population }, new Blob([...files])));
 
 /** The file of a population, or many captures with or without a table of traits, as a model. */
 export const readPopulation = (files: readonly File[]) =>
-  answerAbout(files, POPULATION, "population", post("population", namesOf(files), new Blob([...files])));
+  answerAbout(files, POPULATION, "population", post("population", queryOf(files), new Blob([...files])));
 
 async function answerAbout<T>(files: readonly File[], schema: Schema<T>, what: string, answer: Promise<Response>): Promise<T> {
   const content: unknown = await (await answer).json();
@@ -29,11 +39,11 @@ export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif")
   return (await post("film", { format }, stimulus)).blob();
 }
 
-/** One file by its name; several by names and sizes, in their order. */
-function namesOf(files: readonly File[]): Record<string, string> {
+/** One file by its name, several by names and sizes in their order; and what the page's fields say of captures. */
+function queryOf(files: readonly File[]): Record<string, string> {
   const [first, ...others] = files;
-  if (first && others.length === 0) return { name: first.name };
-  return { files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
+  if (first && others.length === 0) return { ...captureFields, name: first.name };
+  return { ...captureFields, files: JSON.stringify(files.map(({ name, size }) => [name, size])) };
 }
 
 async function post(what: string, query: Readonly<Record<string, string>>, body: BodyInit): Promise<Response> {

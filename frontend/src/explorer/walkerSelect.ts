@@ -2,9 +2,10 @@
 
 import { endLabels, walkerLabel } from "../model/labels";
 import { MAX_IN_CROWD, type SceneName, type State } from "../model/state";
-import { button, make } from "../page/elements";
+import { button, freshId, make } from "../page/elements";
 import { choice, pick, type Option } from "./controls";
 import { bound, group, note } from "./parts";
+import { captureFields, hasServer } from "./server";
 import type { Part, Store } from "./store";
 
 /** `open` lets the visitor choose files. */
@@ -40,12 +41,30 @@ export function walkerSelect(store: Store, open: () => void): Part {
     ".",
   );
   return {
-    element: make("div", {}, holder, ...(walkers.length > 0 ? [steps] : []), bring),
+    element: make("div", {}, holder, ...(walkers.length > 0 ? [steps] : []), bring, ...(hasServer() ? [aboutCaptures()] : [])),
     show({ state, own }) {
       update(own?.name ?? null);
       list.show(state.from);
     },
   };
+}
+
+const UNITS = ["mm", "cm", "m", "in", "ft"].map((unit) => ({ value: unit, label: unit }));
+
+/** Fields for captures whose files name no frame rate or no unit, or wrong ones. */
+function aboutCaptures(): HTMLElement {
+  const id = freshId();
+  const rate = make("input", { id, type: "number", min: 0.1, max: 100000, step: "any", placeholder: "as the file says", value: captureFields.rate });
+  rate.addEventListener("input", () => setField("rate", rate.value));
+  const unit = pick("Unit of length", [{ value: "", label: "as the file says" }, ...UNITS], (value) => setField("unit", value));
+  unit.show(captureFields.unit ?? "");
+  return make("div", { class: "pair" },
+    make("div", { class: "pick" }, make("label", { for: id }, "Frames a second"), rate), unit.element);
+}
+
+function setField(field: keyof typeof captureFields, value: string): void {
+  if (value === "") delete captureFields[field];
+  else captureFields[field] = value;
 }
 
 /** Several walkers at once: means of two classes and both tripled, four at one tempo, a crowd. */

@@ -16,6 +16,7 @@ from fastapi.responses import HTMLResponse, Response
 from eigenwalker.explorer import tasks
 from eigenwalker.explorer.interactive_page import interactive_page
 from eigenwalker.explorer.model import page_model
+from eigenwalker.explorer.wording import in_fields
 from eigenwalker.io.sandbox import Job
 from eigenwalker.population.population import Population
 from eigenwalker.web.run import new_app, while_connected
@@ -99,11 +100,18 @@ async def read_capture(
         return await _run(request, tasks.capture, workdir, settings)
 
 
-async def read_population(request: Request, name: str = "", files: str = "") -> dict[str, Any]:
+async def read_population(
+    request: Request,
+    name: str = "",
+    files: str = "",
+    unit: str | None = None,
+    rate: float | None = None,
+) -> dict[str, Any]:
     """Return the model of a population's file, or of captures that are made into a population."""
     runner = _runner(request)
     with runner.workdir() as workdir:
-        settings = {"files": await _receive(request, workdir, name, files)}
+        settings = {"unit": unit, "rate_hz": rate}
+        settings["files"] = await _receive(request, workdir, name, files)
         task = tasks.study if files else tasks.population
         answer = await _run(request, task, workdir, settings)
         answer["model"]["population"] = _keep(runner.folder, Path(workdir, tasks.PEOPLE))
@@ -149,4 +157,10 @@ async def _run(
     """Return the answer of a task that a child process does in a folder."""
     Path(workdir, tasks.SETTINGS).write_text(json.dumps(settings), encoding="utf-8")
     job = Job(task, (workdir,), seconds=SECONDS[task.__name__], max_bytes=MAX_MEMORY)
-    return json.loads(await while_connected(request, _runner(request).run(job)))
+    try:
+        answer = json.loads(await while_connected(request, _runner(request).run(job)))
+    except Refused as error:
+        raise Refused(in_fields(str(error))) from None
+    if "messages" in answer:
+        answer["messages"] = [in_fields(message) for message in answer["messages"]]
+    return answer

@@ -109,7 +109,13 @@ def study(folder: Path, settings: Answer) -> Answer:
     from eigenwalker.study.fit_folder import fit_folder
 
     captures = files_of(folder)
-    fitted = fit_folder(captures, traits=_traits_table(captures), n_jobs=1)
+    fitted = fit_folder(
+        captures,
+        traits=_traits_table(captures),
+        unit=settings["unit"],
+        rate_hz=settings["rate_hz"],
+        n_jobs=1,
+    )
     not_used = fitted.files[fitted.files["status"] != "used"]
     messages = [f"{row.file}: {row.status}. {row.reason}" for row in not_used.itertuples()]
     messages += [f"{name}: not in the table of traits." for name in fitted.unlisted[:20]]
@@ -171,6 +177,6 @@ def _check_length(stimulus: Any, each: int, content: str, limit: float) -> None:
     if each * seconds * rate_hz > limit:
         raise ValueError(
             f"A film of {seconds:g} s with {content} at {rate_hz:g} Hz is too long here; up to "
-            f"{limit / (each * rate_hz):.2g} s are made. Longer ones are written by write_stimulus "
-            "in Python."
+            f"{limit / (each * rate_hz):.2g} s are made. Longer ones are made of a saved stimulus "
+            "by eigenwalker stimulus."
         )

@@ -96,8 +96,8 @@ def truth_of(population: Population) -> Truth:
         people = draw_people(**settings)
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
         raise ValueError(
-            f"The population's entry {KEY!r}, from which its people are simulated again, is damaged "
-            f"({error}); make the population again with simulate_population()."
+            f"The population's entry {KEY!r}, of which its people are simulated again, is "
+            f"damaged ({error}); make the population again with simulate_population()."
         ) from error
     rows = _same_rows(people, population.traits)
     return Truth(
