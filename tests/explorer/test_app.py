@@ -159,16 +159,6 @@ def test_what_is_no_capture_is_refused_in_the_words_of_its_reader(client, name, 
     assert said in answer.json()["detail"]
 
 
-def test_what_python_would_be_told_is_told_as_the_page_can_do_it(client):
-    names = ",".join(f"{joint}_{axis}" for joint in ew.JOINTS.markers for axis in "xyz")
-    content = "\n".join([names, *[",".join("1" * 45)] * 9]).encode()
-    answer = client.post("/api/capture?name=a.csv", content=content)
-    assert (
-        "open what this command writes: eigenwalker convert FILE walk.c3d --rate 30" in answer.text
-    )
-    assert "rate_hz" not in answer.text
-
-
 def test_a_population_is_loaded_and_captures_are_compared_with_it(client, capture_file, tmp_path):
     others = simulate_population(3, 3, seed=8)
     others.save(tmp_path / "others.nc")

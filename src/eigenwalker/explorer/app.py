@@ -16,7 +16,6 @@ from fastapi.responses import HTMLResponse, Response
 from eigenwalker.explorer import tasks
 from eigenwalker.explorer.interactive_page import interactive_page
 from eigenwalker.explorer.model import page_model
-from eigenwalker.explorer.wording import in_fields
 from eigenwalker.io.sandbox import Job
 from eigenwalker.population.population import Population
 from eigenwalker.web.run import new_app, while_connected
@@ -157,10 +156,4 @@ async def _run(
     """Return the answer of a task that a child process does in a folder."""
     Path(workdir, tasks.SETTINGS).write_text(json.dumps(settings), encoding="utf-8")
     job = Job(task, (workdir,), seconds=SECONDS[task.__name__], max_bytes=MAX_MEMORY)
-    try:
-        answer = json.loads(await while_connected(request, _runner(request).run(job)))
-    except Refused as error:
-        raise Refused(in_fields(str(error))) from None
-    if "messages" in answer:
-        answer["messages"] = [in_fields(message) for message in answer["messages"]]
-    return answer
+    return json.loads(await while_connected(request, _runner(request).run(job)))

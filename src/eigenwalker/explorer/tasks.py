@@ -15,17 +15,11 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from eigenwalker.core.wording import reworded
+from eigenwalker.explorer.wording import in_fields
 
 SETTINGS = "task.json"
 PEOPLE = "people.nc"
 """Where a task leaves the population that its model is of."""
-
-ON_THE_PAGE = {
-    name: f"open what this command writes: eigenwalker convert FILE walk.c3d --{option} {{value}}"
-    for name, option in (("rate_hz", "rate"), ("unit", "unit"))
-}
-"""What to do on the page where Python takes an argument: it has no field for a unit or a rate."""
 
 Answer = dict[str, Any]
 
@@ -48,9 +42,9 @@ def _task(function: Callable[[Path, Answer], Answer]) -> Callable[[str], bytes]:
             try:
                 answer = function(Path(folder), settings)
             except ValueError as error:
-                raise ValueError(reworded(str(error), ON_THE_PAGE)) from error
+                raise ValueError(in_fields(str(error))) from error
         if "messages" in answer:
-            answer["messages"] = [reworded(each, ON_THE_PAGE) for each in answer["messages"]]
+            answer["messages"] = [in_fields(each) for each in answer["messages"]]
         return json.dumps(answer, allow_nan=False).encode()
 
     return task
