@@ -88,3 +88,9 @@ def test_a_command_names_its_own_options(tmp_path, run_command) -> None:
         assert (code, "--rate" in errors, "rate_hz" in errors) == (2, True, False), errors
     code, _, errors = run_command("stimulus", "--from", table, "-o", tmp_path / "a.json")
     assert (code, f"eigenwalker convert {table} walk.c3d --rate" in errors) == (2, True), errors
+    _, _, errors = run_command("stimulus", "--size", "3x300", "-o", tmp_path / "a.json")
+    assert "--size (width): expected a number from 16, got 3." in errors
+    _, _, errors = run_command("stimulus", "--limb-dots", "seed=-1", "-o", tmp_path / "a.json")
+    assert "--limb-dots seed: expected a number from 0, got -1" in errors
+    _, _, errors = run_command("simulate", "--women", -3, "-o", tmp_path / "a.nc")
+    assert "--women -3 and --men 20 make no group" in errors

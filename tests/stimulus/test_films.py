@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 import types
 import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
 
 import av
 import numpy as np
@@ -15,6 +18,7 @@ from scipy.io import loadmat
 
 from eigenwalker.core.walker import Walker
 from eigenwalker.stimulus.make import make_stimulus
+from eigenwalker.stimulus.position_tables import psychopy_script
 from eigenwalker.stimulus.stimulus import Stimulus
 from eigenwalker.stimulus.write_stimulus import write_stimulus
 
@@ -155,6 +159,22 @@ def test_the_psychopy_script_shows_every_dot(shown, tmp_path, monkeypatch):
     assert len(drawn) == 33
     np.testing.assert_allclose(drawn[7][0], expected[int(14 / 64 * 25)], atol=1e-9)
     np.testing.assert_allclose(drawn[-1][0], expected[24], atol=1e-9)
+
+
+def test_no_name_becomes_code_of_the_psychopy_script(shown):
+    hostile = Path("/tmp", 'a"""\n{x}\\' + "'''; import os\u2028\ud800.npz")
+    named = replace(shown, provenance={"program": hostile.stem.replace("\ud800", "")})
+    scripts = [psychopy_script(shown, Path("a.npz")), psychopy_script(named, hostile)]
+    plain, other = (ast.parse(script) for script in scripts)
+    assert scripts[1].isascii()
+    assert [node.value for node in ast.walk(other) if isinstance(node, ast.Constant)].count(
+        hostile.name
+    ) == 1
+    for tree in (plain, other):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Constant):
+                node.value = None
+    assert ast.dump(plain) == ast.dump(other)
 
 
 def test_an_unknown_suffix_names_those_that_are(shown, tmp_path):

@@ -95,7 +95,7 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
         raise ValueError(
             f"All {len(population)} walkers are flagged, the first because: "
             f"{population.traits[FLAG][0]} To use them all the same, take "
-            "population.without_flags(), or --with-flagged on the command line."
+            "population.without_flags()."
         )
     known = values.notna() & (_as_text(values) != "") & ~population.flagged
     if not pair and pd.api.types.is_numeric_dtype(values) and values[known].nunique() > 2:

@@ -59,10 +59,13 @@ def fit(
     130 when it was interrupted; the same command then goes on where it stopped.
     """
     from eigenwalker.core.atomic_write import write_table
+    from eigenwalker.core.trajectories import MILLIMETRES
     from eigenwalker.study.fit_folder import fit_folder
     from eigenwalker.study.process_capture import DECOMPOSE
 
     check_choice(form, DECOMPOSE, "--form")
+    if unit is not None:
+        check_choice(unit, MILLIMETRES, "--unit")
     check_population_file(output)
     if table is not None and not table.parent.is_dir():
         raise ValueError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from eigenwalker.core.wording import reworded
@@ -13,6 +14,7 @@ ARGUMENTS = {
     "duration_s": "--duration {value}",
     "eye_distance_mm": "--eye-distance {value}",
     "form": "--form {value}",
+    "kind": "--kind {value}",
     "low_pass_hz": "--low-pass {value}",
     "n_clusters": "--clusters {value}",
     "n_components": "--components {value}",
@@ -26,6 +28,21 @@ ARGUMENTS = {
     "unit": "--unit {value}",
 }
 """Options that give arguments of Python, which messages name."""
+PLACES = {
+    "This is no stimulus: ": "",
+    "stimulus.view.view_deg": "--view",
+    "stimulus.view.elevation_deg": "--elevation",
+    "stimulus.view.eye_distance_mm": "--eye-distance",
+    "stimulus.timing.duration_s": "--duration",
+    "stimulus.timing.rate_hz": "--rate",
+    "stimulus.display.width_px": "--size (width)",
+    "stimulus.display.height_px": "--size (height)",
+    "stimulus.display.style": "--style",
+    "stimulus.display.viewing_distance_mm": "--distance",
+    "stimulus.display.px_per_cm": "--px-per-cm",
+}
+"""Options that give parts of a stimulus."""
+_TRANSFORM = re.compile(r"stimulus\.transforms\[\d+\] \((\w+)\)\.?")
 _of_this_command: dict[str, str] = {}
 
 
@@ -38,4 +55,9 @@ def speak_of(command: Any) -> None:
 
 def in_options(sentence: str) -> str:
     """Return a sentence that names options where it names arguments that the command has."""
+    if sentence.startswith(next(iter(PLACES))):  # one made of options, not of a file
+        for place, option in PLACES.items():
+            sentence = sentence.replace(place, option)
+        sentence = _TRANSFORM.sub(lambda found: f"--{found[1].replace('_', '-')} ", sentence)
+    sentence = sentence.replace("take population.without_flags()", "give --with-flagged")
     return reworded(sentence, _of_this_command)

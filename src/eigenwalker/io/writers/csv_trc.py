@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.io.errors import printable
 
 CSV_TITLE = "# eigenwalker trajectories"
 _NUMBER = "%.9g"
@@ -37,7 +38,7 @@ def write_trc(walk: xr.DataArray, unit: str, up: str, path: Path) -> None:
     rate = f"{sampling_rate(walk):.10g}"
     n_frames, n_markers = len(walk), len(names)
     head = [
-        ["PathFileType", "4", "(X/Y/Z)", str(walk.name or path.name)],
+        ["PathFileType", "4", "(X/Y/Z)", printable(str(walk.name or path.name))],
         ["DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units",
          "OrigDataRate", "OrigDataStartFrame", "OrigNumFrames"],
         [rate, rate, str(n_frames), str(n_markers), unit, rate, "1", str(n_frames)],
