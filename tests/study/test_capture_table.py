@@ -77,3 +77,11 @@ def test_names_that_differ_in_case_only_are_not_guessed(folder) -> None:
 def test_a_pattern_of_composed_letters_fits_decomposed_names(folder) -> None:
     table = capture_table(folder, trait_from_name="(?P<who>M\u00fcller)_")
     assert table["who"].dropna().tolist() == ["M\u00fcller"]
+
+
+def test_hidden_files_are_no_captures_of_a_folder(folder) -> None:
+    for name in ("._c.c3d", ".part.c3d", ".trash/e.c3d"):
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).touch()
+    names = [unicodedata.normalize("NFC", name) for name in capture_table(folder)["file"]]
+    assert names == ["M\u00fcller_1.c3d", "c.c3d", "d.c3d", "sub/B.c3d"]

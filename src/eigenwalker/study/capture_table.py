@@ -60,8 +60,13 @@ def capture_table(
 
 
 def captures_in(folder: Path) -> list[str]:
-    """Return the captures of a folder and its subfolders, by their paths relative to it."""
-    return [path.relative_to(folder).as_posix() for path in folder.rglob("*") if is_capture(path)]
+    """Return the captures of a folder and its subfolders, by their paths relative to it.
+
+    Hidden ones are left out: those of macOS (``._walk.c3d``), and what is being written.
+    """
+    paths = [path.relative_to(folder) for path in folder.rglob("*") if is_capture(path)]
+    hidden = [any(part.startswith(".") for part in path.parts) for path in paths]
+    return [path.as_posix() for path, out in zip(paths, hidden, strict=True) if not out]
 
 
 def _known() -> str:
