@@ -1,9 +1,11 @@
 """All that is wrong with a capture is found, and nothing that is not."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import eigenwalker as ew
 from eigenwalker.core.skeleton import JOINTS
@@ -13,6 +15,7 @@ from eigenwalker.markers.label_repair import Repair
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.quality.assessment import assess
 from eigenwalker.simulation.walk import simulate_walk
+from eigenwalker.study.messages import flag_of, reasons
 
 
 @pytest.fixture(scope="module")
@@ -223,3 +226,97 @@ def test_a_partial_file_that_is_kept_is_flagged(tmp_path: Path) -> None:
     assert quality.n_frames_cut == 20
     assert "cut_short" in quality.findings
     assert quality.verdict == "use with care"
+
+
+def in_a_room(walk, per_second):
+    return walk.copy(data=walk.values + np.multiply.outer(walk.time.values, per_second)[:, None])
+
+
+def tilted(walk, axis, degrees):
+    turn = Rotation.from_euler(axis, degrees, degrees=True).as_matrix()
+    return walk.copy(data=walk.values @ turn.T)
+
+
+@pytest.mark.parametrize("markers", ["joints", "skin"])
+def test_frames_that_drift_or_are_tilted_are_noticed(markers):
+    walk = simulate_walk(seed=1, duration_s=8, rate_hz=50, markers=markers)
+    speed = walk.attrs["speed_mm_s"]
+
+    def findings(capture):
+        return assess(virtual_markers(capture)).findings
+
+    for progress in (0.0, speed):
+        assert findings(in_a_room(walk, [progress, 0, 0])) == ()
+        assert findings(in_a_room(walk, [progress, 0, 125])) == ("not_level",)
+        for degrees in (-10, 10):
+            assert findings(tilted(in_a_room(walk, [progress, 0, 0]), "x", degrees)) == ("tilted",)
+    for degrees in (-10, 10):
+        assert findings(tilted(walk, "y", degrees)) == ("sloping",)
+
+
+@pytest.mark.parametrize("markers", ["joints", "skin"])
+@pytest.mark.parametrize("progress", [0.0, 1.0])
+def test_a_walk_that_is_played_backwards_is_told(markers, progress):
+    walk = simulate_walk(seed=3, duration_s=6, rate_hz=60, markers=markers)
+    capture = in_a_room(walk, [progress * walk.attrs["speed_mm_s"], 0, 0])
+    backwards = capture[::-1].assign_coords(time=capture.time.values)
+    quality = assess(virtual_markers(backwards))
+    assert (quality.verdict, quality.findings) == ("use with care", ("backwards",))
+    assert quality.speed_mm_s == pytest.approx(-walk.attrs["speed_mm_s"], rel=0.06)
+    assert "played backwards" in reasons(quality)[0]
+    assert "somebody" not in reasons(quality)[0]
+
+
+def test_somebody_who_walks_backwards_on_straight_legs_is_told(person):
+    """Nothing tells then whether the person or the time goes backwards."""
+    walk = person.copy()
+    for side in ("left", "right"):
+        hip, ankle = (walk.sel(marker=f"{side}_{part}").values for part in ("hip", "ankle"))
+        walk.loc[{"marker": f"{side}_knee"}] = (hip + ankle) / 2 + [40, 0, 0]
+    quality = assess(walk[::-1].assign_coords(time=walk.time.values))
+    assert "backwards" in quality.findings
+    assert "somebody walks backwards" in flag_of(quality)
+
+
+def test_a_capture_in_two_dimensions_is_told(person):
+    for axes in ([1, 0, 1], [0, 1, 1]):
+        flat = person.copy(data=person.values * axes)
+        quality = assess(tilted(flat, "z", 30))
+        assert quality.verdict == "do not use"
+        assert "flat" in quality.findings
+        assert "sides_swapped" not in quality.findings
+
+
+def test_a_speed_at_which_nobody_walks_is_told(person):
+    fast = person.assign_coords(time=person.time.values / 3)
+    assert {"speed", "cadence"} <= set(assess(fast).findings)
+    assert assess(fast).frequency_hz == pytest.approx(3 * assess(person).frequency_hz, rel=1e-3)
+
+
+def test_a_run_has_no_double_support(person):
+    """Feet that are on the ground for less than half of the stride, as they are lifted early."""
+    walk = person.copy()
+    phase = 2 * np.pi * person.attrs["frequency_hz"] * person.time.values
+    for side, shift in (("left", 0.0), ("right", np.pi)):
+        for joint, size in (("ankle", 350.0), ("knee", 200.0)):
+            swing = np.sin(phase + shift) + 0.35 * np.sin(2 * (phase + shift))
+            walk.loc[{"marker": f"{side}_{joint}", "axis": "x"}] = -size * swing
+    assert 0 < assess(walk).stance_shares < 1
+    assert "no_double_support" in assess(walk).findings
+
+
+@pytest.mark.parametrize("markers", ["joints", "skin"])
+def test_the_wrong_unit_comes_before_what_follows_from_it(markers):
+    walk = simulate_walk(seed=1, duration_s=5, rate_hz=50, markers=markers)
+    quality = assess(virtual_markers(walk.copy(data=walk.values / 1000)))
+    assert quality.findings == ("impossible_height",)
+    assert "unit='m'" in reasons(quality)[0]
+
+
+def test_a_number_does_not_look_like_the_limit_that_it_is_beyond(person):
+    quality = replace(assess(person), r2=0.8967, frequency_hz=1.4012)
+    assert quality.findings == ("hardly_periodic", "cadence")
+    unsteady, pace = reasons(quality)
+    assert "0.897 of the movement" in unsteady
+    assert "0.90 or more" in unsteady
+    assert "1.401 strides a second" in pace

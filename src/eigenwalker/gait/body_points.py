@@ -8,6 +8,14 @@ import numpy as np
 
 SIDES = ("left", "right")
 
+FLAT = 0.01
+"""Thickness of a body over its length below which a capture has two dimensions: skeletons of real
+captures reach 0.15 and more."""
+
+COHERENT = 0.5
+"""Mean of directions over their mean length: of a body seen from the side, left minus right changes
+its sign with every step."""
+
 ANKLE_HEIGHT_OF_LEG = 0.084
 """Height of a standing ankle as a share of thigh and shank (ANSUR II: 0.040 of 0.475 of height)."""
 
@@ -41,13 +49,26 @@ def legs_of(positions: np.ndarray, markers: Sequence[str]) -> list[np.ndarray]:
 
 
 def facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
-    """Return the direction x + iy square to hips and shoulders in each frame; None without them."""
+    """Return the direction x + iy square to hips and shoulders in each frame; None if unknown."""
     names = [[f"{side}_{part}" for side in SIDES] for part in ("hip", "shoulder")]
     pairs = [pair for each in names if (pair := paths_of(positions, markers, each)) is not None]
     if not pairs:
         return None
     x, y, _ = np.sum([pair[:, 0] - pair[:, 1] for pair in pairs], axis=0).T
-    return y - 1j * x
+    facing = y - 1j * x
+    known = facing[np.isfinite(facing)]
+    coherent = abs(known.sum()) >= COHERENT * np.abs(known).sum()
+    return facing if coherent or thickness(positions) > FLAT else None
+
+
+def thickness(positions: np.ndarray) -> float:
+    """Return the SD of a body along its shortest axis over that along its longest; or NaN."""
+    seen = positions[np.isfinite(positions).all(axis=(1, 2))]
+    if not seen.size:
+        return float("nan")
+    centred = (seen - seen.mean(axis=1, keepdims=True)).reshape(-1, 3)
+    least, _, most = np.linalg.eigvalsh(centred.T @ centred)
+    return float(np.sqrt(max(least, 0) / most)) if most > 0 else float("nan")
 
 
 def find_origin(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray:

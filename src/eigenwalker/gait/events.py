@@ -11,6 +11,7 @@ from eigenwalker.core.smoothing import parabola_vertex
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.gait.body_points import SIDES, pelvis_path
 from eigenwalker.gait.frequency import fundamental_frequency
+from eigenwalker.gait.heading import goes_backwards
 
 HEEL_STRIKE = "heel_strike"
 TOE_OFF = "toe_off"
@@ -23,14 +24,16 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
     """Return heel strikes and toe offs of a walk.
 
     A foot strikes the ground when it is furthest in front of the pelvis, and leaves it when it is
-    furthest behind. The markers are heels and toes (``left_heel``, ``left_toe``) where there are
-    some, otherwise ankles. An ankle turns back before the foot does: on simulated walks its heel
-    strikes are 5 % of the stride too early (4.4 to 5.7 %), its toe offs 2 % (1 to 4 %).
+    furthest behind; of someone who walks backwards, the other way round, toe first. The markers are
+    heels and toes (``left_heel``, ``left_toe``) where there are some, otherwise ankles. An ankle
+    turns back before the foot does: on simulated walks its heel strikes are 5 % of the stride too
+    early (4.4 to 5.7 %), its toe offs 2 % (1 to 4 %).
 
     Parameters
     ----------
     trajectories : DataArray of shape (time, marker, axis)
-        A walk that faces +x, best in place, with the markers left_ankle and right_ankle.
+        A walk that faces +x, best in place, with the markers left_ankle and right_ankle. Whether it
+        goes forwards is told by its coordinate ``speed_mm_s``, else by the standing feet.
 
     Returns
     -------
@@ -77,14 +80,22 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
             f"Events are found from the ankles, and {lacking} are missing from "
             f"{sorted(place)}; map the markers with virtual_markers()."
         )
-    frequency_hz = fundamental_frequency(walk)
+    return events_at(walk, fundamental_frequency(walk))
+
+
+def events_at(walk: xr.DataArray, frequency_hz: float) -> pd.DataFrame:
+    """Return what `gait_events` does of a walk whose stride frequency is known."""
+    place = {name: index for index, name in enumerate(walk.marker.values.tolist())}
     forward = walk.values[:, :, 0] - pelvis_path(walk.values, list(place))[:, :1]
     time = walk.time.values
+    ways = [(HEEL_STRIKE, 1, "heel"), (TOE_OFF, -1, "toe")]
+    if goes_backwards(walk):
+        ways = [(HEEL_STRIKE, -1, "toe"), (TOE_OFF, 1, "heel")]
     separation = max(1, round(_SEPARATION / frequency_hz / np.diff(time).mean()))
     events = [
         (moment, side, event, marker)
         for side in SIDES
-        for event, sign, point in ((HEEL_STRIKE, 1, "heel"), (TOE_OFF, -1, "toe"))
+        for event, sign, point in ways
         for marker in [f"{side}_{point}" if f"{side}_{point}" in place else f"{side}_ankle"]
         for moment in _peak_times(sign * forward[:, place[marker]], time, separation)
     ]

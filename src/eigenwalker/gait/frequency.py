@@ -16,11 +16,12 @@ class NoStrideError(ValueError):
     """Nothing in a clip repeats as strides do, or it is too short for one."""
 
 
-BOUNDS_HZ = (0.3, 2.0)
-"""Range of strides a second in which the frequency is searched: slowest patient to sprint."""
+BOUNDS_HZ = (0.3, 3.0)
+"""Range of strides a second in which the frequency is searched: slowest patient to sprint.
+Sprinters take 2.2 to 2.6 (Weyand et al. 2000, J Appl Physiol 89:1991)."""
 
-_COARSE_RATE_HZ = 12.0
-"""Three times what the second harmonic of the fastest stride needs."""
+_COARSE_RATE_HZ = 18.0
+"""Half as much again as the second harmonic of the fastest stride needs."""
 
 _OCTAVE = 0.99
 """If about twice a frequency explains this share of what the frequency explains, the lower one
@@ -149,7 +150,17 @@ def frequency_of_scores(
         _refined(blocks, each * angle * block, n_harmonics, trend, max_steps=1)
         for each in candidates
     ]
-    return _refined(centred, _of_octaves(blocks, angles) / block, n_harmonics, trend) / angle
+    coarse = _of_octaves(blocks, angles)
+    found = _refined(centred, coarse / block, n_harmonics, trend)
+    frequency_hz = found / angle
+    doubled = 2 * frequency_hz
+    within = highest < doubled < rate_hz / 4
+    if within and _of_octaves(centred, [found, 2 * found]) > found:
+        raise NoStrideError(
+            f"The movement repeats {doubled:.3g} times a second, more often than strides do "
+            f"({BOUNDS_HZ[1]:g} at most); look whether the frame rate of {rate_hz:.4g} Hz is right."
+        )
+    return frequency_hz
 
 
 _FEWEST_STRIDES = 0.9

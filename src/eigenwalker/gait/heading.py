@@ -23,6 +23,9 @@ STRAIGHT_KNEE_MM = 15.0
 """Knees less far behind hips and ankles are straight; knees of walkers are 50 mm or more in
 front."""
 
+LEAST_LIFT_MM = 10.0
+"""Lift of an ankle below which it is not known when it stands; feet that shuffle lift more."""
+
 LEAST_PROGRESS_MM = 150.0
 """Progress a stride below which a walker whose feet are not known counts as walking in place: more
 than the wander on a treadmill, less than the stride of a slow patient."""
@@ -118,6 +121,16 @@ def _while_standing(path: np.ndarray, rate_hz: float) -> np.ndarray:
 def known_speed(walk: xr.DataArray) -> float:
     """Return the speed in mm/s that `in_place` took out of a walk; NaN where it is not known."""
     return float(walk.coords["speed_mm_s"]) if "speed_mm_s" in walk.coords else float("nan")
+
+
+def goes_backwards(walk: xr.DataArray) -> bool:
+    """Return whether a walk in place goes backwards, by its known speed or its standing feet."""
+    speed = known_speed(walk)
+    if not np.isfinite(speed):
+        ankles = walk.reindex(marker=[f"{side}_ankle" for side in SIDES]).sel(axis="z").values
+        lifted = np.ptp(ankles, axis=0).min() > LEAST_LIFT_MM  # else nothing tells when it stands
+        speed = stance_speed(walk) if lifted else np.nan
+    return bool(speed < 0)
 
 
 def stance_speed(walk: xr.DataArray) -> float:

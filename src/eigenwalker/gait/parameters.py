@@ -41,13 +41,16 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     Series
         NaN where more strides are needed.
 
-        - ``frequency_hz``, ``stride_time_s``, ``cadence_steps_min``, ``speed_mm_s``,
-          ``stride_length_mm``;
+        - ``frequency_hz``, ``stride_time_s``, ``cadence_steps_min``; ``speed_mm_s``, negative of
+          who walks backwards; ``stride_length_mm``;
         - ``stride_time_cv``: SD over mean, NaN for a walker or less than three strides;
         - ``step_length_left_mm``: along x between the places on the ground of a right heel strike
-          and the left one that follows; ``step_length_right_mm``; ``step_width_mm``: along y;
+          and the left one that follows, in the direction of travel; ``step_length_right_mm``;
+          ``step_width_mm``: along y;
         - ``stance_share_left``, ``stance_share_right``, ``double_support_share``: of the stride;
-        - ``step_asymmetry``, ``stance_asymmetry``: left minus right over their mean;
+          double support is 0 where at moments no foot stands, as in running;
+        - ``step_asymmetry``, ``stance_asymmetry``: left minus right over their mean, NaN where one
+          of them is not above 0;
         - ``pelvis_vertical_range_mm``: mean over strides.
 
     Raises
@@ -88,15 +91,15 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
         walk = check_trajectories(walk, complete=True)
         frequency_hz = fundamental_frequency(walk)
         speed = known_speed(walk)
-    events = gait_events(walk)
     speed = float(speed if speed_mm_s is None else speed_mm_s)
     if not np.isfinite(speed):
         speed = stance_speed(walk)
-    times = {key: rows.to_numpy() for key, rows in events.groupby(["side", "event"])["time_s"]}
-    strikes = [times.get((side, HEEL_STRIKE), np.empty(0)) for side in SIDES]
-    offs = [times.get((side, TOE_OFF), np.empty(0)) for side in SIDES]
+    else:
+        walk = walk.assign_coords(speed_mm_s=speed)
+    events = gait_events(walk)
+    stance = stance_shares(events, frequency_hz)
+    strikes = [_times(events, side, HEEL_STRIKE) for side in SIDES]
     left_mm, right_mm, width_mm = _steps(walk, events[events["event"] == HEEL_STRIKE], speed)
-    stance = [_stance(*each, frequency_hz) for each in zip(strikes, offs, strict=True)]
     return pd.Series(
         {
             "frequency_hz": frequency_hz,
@@ -104,7 +107,7 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
             "speed_mm_s": speed,
             "stride_time_s": 1 / frequency_hz,
             "stride_time_cv": _variation(np.concatenate([np.diff(each) for each in strikes])),
-            "stride_length_mm": speed / frequency_hz,
+            "stride_length_mm": abs(speed) / frequency_hz,
             "step_length_left_mm": left_mm,
             "step_length_right_mm": right_mm,
             "step_width_mm": width_mm,
@@ -112,7 +115,7 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
             "stance_share_left": stance[0],
             "stance_share_right": stance[1],
             "stance_asymmetry": _asymmetry(*stance),
-            "double_support_share": sum(stance) - 1,
+            "double_support_share": float(np.maximum(sum(stance) - 1, 0)),
             "pelvis_vertical_range_mm": _vertical_range(walk, frequency_hz),
         }
     )
@@ -129,14 +132,27 @@ def _steps(walk: xr.DataArray, strikes: pd.DataFrame, speed: float) -> tuple[flo
         ]
         for axis in (0, 1)
     )
-    forward, to_left = np.diff(x + speed * moments), np.diff(y)
+    forward = np.diff(x + speed * moments) * np.copysign(1, speed)
+    to_left = np.diff(y)
     left, is_step = side[1:] == "left", side[1:] != side[:-1]
     width_mm = _mean(np.where(left, to_left, -to_left)[is_step])
     return _mean(forward[is_step & left]), _mean(forward[is_step & ~left]), width_mm
 
 
+def stance_shares(events: pd.DataFrame, frequency_hz: float) -> tuple[float, float]:
+    """Return the mean shares of the stride from heel strike to toe off, left and right."""
+    left, right = (
+        _stance(_times(events, side, HEEL_STRIKE), _times(events, side, TOE_OFF), frequency_hz)
+        for side in SIDES
+    )
+    return left, right
+
+
+def _times(events: pd.DataFrame, side: str, event: str) -> np.ndarray:
+    return events["time_s"][(events["side"] == side) & (events["event"] == event)].to_numpy()
+
+
 def _stance(strikes: np.ndarray, offs: np.ndarray, frequency_hz: float) -> float:
-    """Return the mean share of the stride from each heel strike to the toe off that follows."""
     next_off = np.searchsorted(offs, strikes, side="right")
     known = next_off < len(offs)
     shares = (offs[next_off[known]] - strikes[known]) * frequency_hz
@@ -158,8 +174,7 @@ def _variation(values: np.ndarray) -> float:
 
 
 def _asymmetry(left: float, right: float) -> float:
-    both = left + right
-    return 2 * (left - right) / both if both else float("nan")
+    return 2 * (left - right) / (left + right) if left > 0 and right > 0 else float("nan")
 
 
 def _mean(values: np.ndarray) -> float:

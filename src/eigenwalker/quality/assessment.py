@@ -10,12 +10,14 @@ import xarray as xr
 from eigenwalker.core.fourier import share_explained
 from eigenwalker.core.smoothing import running_mean
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
-from eigenwalker.gait.body_points import SIDES
+from eigenwalker.gait.body_points import SIDES, thickness
 from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import body_relative
 from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
 from eigenwalker.markers.label_repair import Rebuilt, Repair, repair_labels
+from eigenwalker.quality.anthropometry import wrong_joints
+from eigenwalker.quality.on_the_ground import on_the_ground
 from eigenwalker.quality.quality import Quality
 
 LIMBS = tuple(
@@ -30,8 +32,12 @@ LIMBS = tuple(
 )
 """The segments that are single bones."""
 
+FEWEST_POINTS = 6
+"""Fewer may lie in a plane without the capture having two dimensions."""
+
 _LIVELY = 0.3
-_LEAST_PROGRESS_MM = 300.0
+_LEAST_PROGRESS_MM = 600.0
+"""Length of a stride to which a rise is compared in place, where no body should rise at all."""
 
 
 def assess(trajectories: xr.DataArray) -> Quality:
@@ -124,6 +130,7 @@ def judge(
         if walk.sizes["marker"] < repaired.sizes["marker"]:
             strides = strides.sel(marker=walk.marker)
     height_mm, lean_deg = _height_and_lean(repaired.values, names)
+    seen = strides if walk is None else walk
     return Quality(
         rate_hz=rate_hz,
         duration_s=len(capture) / rate_hz,
@@ -136,8 +143,16 @@ def judge(
         bone_length_variation=bone_length_variation(strides),
         height_mm=height_mm,
         lean_deg=lean_deg,
+        extent_mm=_extent(repaired.values),
+        thickness=thickness(seen.values) if len(names) >= FEWEST_POINTS else np.nan,
+        wrong_joints=wrong_joints(seen),
         problem=problem,
-        **({} if walk is None else _steadiness(walk, strides, repaired.values, rate_hz)),
+        **(
+            {}
+            if walk is None
+            else _steadiness(walk, strides, repaired.values, rate_hz)
+            | on_the_ground(walk, rate_hz)._asdict()
+        ),
     )
 
 
@@ -157,6 +172,15 @@ def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, fl
     rises = np.nanmean(head[seen], axis=1) - np.nanmean(feet[seen], axis=1)
     x, y, z = np.median(rises, axis=0)
     return body_height(positions, names), float(np.degrees(np.arctan2(np.hypot(x, y), z)))
+
+
+def _extent(positions: np.ndarray) -> float:
+    """Return the median diagonal of the box about a body, in mm."""
+    seen = positions[np.isfinite(positions).any(axis=(1, 2))]
+    if not len(seen):
+        return float("nan")
+    box = np.nanmax(seen, axis=1) - np.nanmin(seen, axis=1)
+    return float(np.median(np.linalg.norm(box, axis=1)))
 
 
 def bone_length_variation(capture: xr.DataArray) -> dict[tuple[str, str], float]:
@@ -179,7 +203,8 @@ def _steadiness(
     facts = walk.attrs
     same = ("n_strides", "straight_passes", "unwound_deg", "frequency_hz", "speed_mm_s")
     stride = rate_hz / facts["frequency_hz"]
-    per_stride = np.nanmax([abs(facts["speed_mm_s"]) / facts["frequency_hz"], _LEAST_PROGRESS_MM])
+    progress = 0.0 if facts["treadmill"] else abs(facts["speed_mm_s"]) / facts["frequency_hz"]
+    per_stride = np.nanmax([progress, _LEAST_PROGRESS_MM])
     movement = walk.values.reshape(len(walk), -1)
     moving = max(1, _moving_frames(positions, stride))
     return {name: facts[name] for name in (*same, "climb_mm", "wander_mm", "treadmill")} | {

@@ -9,7 +9,9 @@ from typing import Literal
 
 import numpy as np
 
+from eigenwalker.gait.body_points import FLAT
 from eigenwalker.markers.label_repair import Rebuilt, Repair
+from eigenwalker.quality.anthropometry import WrongJoint
 
 Verdict = Literal["use", "use with care", "do not use"]
 
@@ -51,12 +53,41 @@ MOST_LEAN_DEG = 30.0
 CHILD_MM = 800.0
 """Below this it is a small child, or centimetres were taken for inches."""
 
-LEVEL_CLIMB = 0.10
-"""Rise over run of a path that is no longer level: the steepest ramps built for wheelchairs have
-0.08, stairs 0.5; floors of laboratories that were set up askew 0.02."""
+LEVEL_CLIMB = 0.05
+"""Rise over run of a path that is no longer level: ramps built for wheelchairs have 0.05 to 0.08,
+stairs 0.5; floors of laboratories that were set up askew 0.02."""
+
+LEVEL_MM = 400.0
+"""Rise of a body that is no longer level over any distance: a floor askew by 0.02 over 20 m."""
+
+STANDING_SLOPE = (-0.16, 0.08)
+"""Rise over run of the ankles that stand in a level walk in place: from -0.14 to 0 in real
+captures, up to 0.05 in simulated ones; a frame tilted by 10 degrees adds 0.18."""
+
+MOST_ROLL_DEG = 5.0
+"""Lean to one side, in the mean of whole strides, beyond which the frame is tilted: real captures
+stay below 2.5."""
+
+FASTEST_FROUDE = 1.0
+"""Speed squared over gravity and length of leg, above which nobody walks but racers (Alexander
+1989, Physiol Rev 69:1199)."""
+
+EXTENTS_MM = (500.0, 3500.0)
+"""Diagonal of the box about a person, standing or lying."""
+
+BACKWARDS_MM_S = -100.0
+"""Speed below which a walk goes backwards and does not mark time."""
 
 RULES_OUT = {"head_below_feet", "leaning", "impossible_height", "sides_swapped"}
-RULES_OUT |= {"no_steady_walk", "not_level", "not_periodic"}
+RULES_OUT |= {
+    "no_steady_walk",
+    "not_level",
+    "sloping",
+    "not_periodic",
+    "tilted",
+    "flat",
+    "wrong_joints",
+}
 """Findings after which a capture is not to be used."""
 
 
@@ -80,9 +111,14 @@ class Quality:
         Whether knees bend backwards throughout: left is called right, or the capture is mirrored.
     bone_length_variation : mapping of (str, str) to float
         Coefficient of variation of the length of each limb, in the steady strides.
-    height_mm, lean_deg : float
-        Height of the head above the feet (or ankles), NaN if it is not above them; and angle
-        between the vertical and the line from feet to head. Both NaN if head or feet are unknown.
+    height_mm, lean_deg, extent_mm, roll_deg : float
+        Height of the head above the feet (or ankles), NaN if it is not above them; angle between
+        the vertical and the line from feet to head, both NaN if head or feet are unknown; diagonal
+        of the box about the body; and lean to the left in the mean of the steady strides.
+    thickness : float
+        SD of the body along its shortest axis over that along its longest.
+    wrong_joints : tuple of WrongJoint
+        What joints of a person cannot be.
     unit, unit_guessed
         Unit of length of the file, and whether it was guessed from the size of the body.
     n_strides, steady_share
@@ -93,6 +129,11 @@ class Quality:
     frequency_hz, speed_mm_s, climb, climb_mm, wander_mm : float
         Of the steady strides: climb is rise over run, negative downwards, climb_mm the rise;
         wander_mm the root mean square distance from a straight line walked at constant speed.
+    standing_slope, froude, stance_shares : float
+        Rise over run of the standing ankles; speed squared over gravity and length of leg; shares
+        of the stride in which left and right foot stand, added. NaN if unknown.
+    knees_yield : bool
+        Whether knees bend twice a stride, as they do under load in forward walking.
     filled_share, r2, periodicity : float
         Of the steady strides: share of samples that were filled; share of variance that two
         harmonics explain; correlation of the movement with itself a stride later.
@@ -117,6 +158,10 @@ class Quality:
     lean_deg: float
     unit: str
     unit_guessed: bool
+    extent_mm: float = np.nan
+    roll_deg: float = np.nan
+    thickness: float = np.nan
+    wrong_joints: tuple[WrongJoint, ...] = ()
     n_strides: int = 0
     steady_share: float = 0.0
     straight_passes: int = 0
@@ -126,6 +171,10 @@ class Quality:
     climb: float = np.nan
     climb_mm: float = np.nan
     wander_mm: float = np.nan
+    standing_slope: float = np.nan
+    froude: float = np.nan
+    stance_shares: float = np.nan
+    knees_yield: bool = False
     filled_share: float = 0.0
     r2: float = np.nan
     periodicity: float = np.nan
@@ -144,13 +193,15 @@ class Quality:
     def findings(self) -> tuple[str, ...]:
         """Codes of all that speaks against the capture; empty for "use"."""
         walk = _of_walk(self) if self.n_strides else {"no_steady_walk": True}
-        checks = _of_body(self) | walk | _of_labels(self)
-        return tuple(code for code, holds in checks.items() if holds)
+        body = _of_body(self)
+        checks = body | walk | _of_labels(self)
+        follow = next((_FOLLOW[code] for code in _FOLLOW if body.get(code)), set())
+        return tuple(code for code, holds in checks.items() if holds and code not in follow)
 
     @property
     def level(self) -> bool:
         """Whether the walk neither falls nor climbs."""
-        return not abs(self.climb) >= LEVEL_CLIMB
+        return not (abs(self.climb) >= LEVEL_CLIMB or abs(self.climb_mm) >= LEVEL_MM)
 
     @property
     def jumps(self) -> dict[str, int]:
@@ -173,27 +224,45 @@ class Quality:
         return sum(repair.kind == "swap" for repair in self.repairs)
 
 
+_FOLLOW = {
+    "flat": {"wrong_joints", "tilted", "sides_swapped"},
+    "impossible_height": {
+        *("elastic_limbs", "sides_swapped", "wrong_joints", "tilted", "sloping"),
+        *("not_level", "backwards", "speed", "no_double_support"),
+    },
+    "head_below_feet": {"wrong_joints", "tilted"},
+    "leaning": {"wrong_joints", "tilted"},
+}
+"""Findings that are no news after one about the body."""
+
+
 def _of_body(quality: Quality) -> dict[str, bool]:
     """Return whether this is an upright person in this unit of length; the first problem counts."""
-    smallest, tallest = HEIGHTS_MM
+    if quality.thickness <= FLAT:
+        return {"flat": True}
     if np.isnan(quality.lean_deg):
         return {}
+    upright = not np.isnan(quality.height_mm) and quality.lean_deg <= MOST_LEAN_DEG
+    size, (least, most) = quality.extent_mm, EXTENTS_MM
+    if upright:
+        size, (least, most) = quality.height_mm, HEIGHTS_MM
+    if not least <= size <= most:
+        return {"impossible_height": True}
     if np.isnan(quality.height_mm):
         return {"head_below_feet": True}
-    if quality.lean_deg > MOST_LEAN_DEG:
-        return {"leaning": True}
-    impossible = not smallest <= quality.height_mm <= tallest
-    return {
-        "impossible_height": impossible,
-        "small_body": quality.height_mm < CHILD_MM and not impossible,
-    }
+    return {"leaning": not upright, "small_body": upright and quality.height_mm < CHILD_MM}
 
 
 def _of_walk(quality: Quality) -> dict[str, bool]:
-    n_strides, r2 = quality.n_strides, quality.r2
+    n_strides, r2, slope = quality.n_strides, quality.r2, quality.standing_slope
     few = n_strides < ENOUGH_STRIDES and quality.straight_passes <= 1
     return {
         "not_level": not quality.level,
+        "sloping": quality.treadmill and (slope < STANDING_SLOPE[0] or slope > STANDING_SLOPE[1]),
+        "tilted": abs(quality.roll_deg) > MOST_ROLL_DEG,
+        "backwards": quality.speed_mm_s < BACKWARDS_MM_S,
+        "speed": quality.froude > FASTEST_FROUDE,
+        "no_double_support": quality.stance_shares < 1,
         "hardly_periodic": HOPELESS_R2 <= r2 < STEADY_R2,
         "not_periodic": not r2 >= HOPELESS_R2,
         "cadence": not FREQUENCIES_HZ[0] <= quality.frequency_hz <= FREQUENCIES_HZ[1],
@@ -207,6 +276,7 @@ def _of_labels(quality: Quality) -> dict[str, bool]:
     return {
         "elastic_limbs": max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
         "sides_swapped": quality.sides_swapped,
+        "wrong_joints": bool(quality.wrong_joints),
         "repeated_names": bool(quality.repeated),
         "swapped_labels": quality.left_right_swaps > 0,
         "flicker": max(quality.removed_share.values(), default=0) > FLICKER_SHARE,

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.io.errors import printable
+from eigenwalker.io.up_axis_and_unit import PERSON_MM, UNITS
 from eigenwalker.markers.label_repair import Repair
 from eigenwalker.quality import quality as limit
 from eigenwalker.quality.quality import BONE_VARIATION, FLICKER_SHARE, Quality
@@ -112,9 +113,21 @@ def _length(millimetres: float) -> str:
     return f"{millimetres:.3g} mm" if millimetres < 1000 else f"{millimetres / 1000:.3g} m"
 
 
+def _beside(value: float, *limits: float, digits: int) -> str:
+    """Return a number with so many digits that it does not look like a limit which it is beyond."""
+    texts = [f"{value:.{places}f}" for places in range(digits, 9)]
+    return next((text for text in texts if float(text) not in limits), texts[-1])
+
+
 def _values(quality: Quality) -> dict[str, object]:
     """Return what the sentences on findings name."""
     variation = quality.bone_length_variation
+    size = quality.extent_mm if np.isnan(quality.height_mm) else quality.height_mm
+    raw = max(size, 1e-9) / UNITS.get(quality.unit, 1.0)
+    form = _words()["wrong_joints"]
+    wrong = [
+        form[each.kind].format(*each.points, value=each.value) for each in quality.wrong_joints
+    ]
     limb = max(variation, key=lambda limb: variation[limb], default=("", ""))
     swaps = [repair_in_words(repair) for repair in quality.repairs if repair.kind == "swap"]
     jumping = dict.fromkeys(repair.marker for repair in quality.repairs if repair.kind == "jump")
@@ -122,13 +135,23 @@ def _values(quality: Quality) -> dict[str, object]:
     return {
         "q": quality,
         "limit": limit,
-        "height": _length(quality.height_mm),
+        "height": _length(size),
+        "likely_unit": min(UNITS, key=lambda unit: abs(np.log(raw * UNITS[unit] / PERSON_MM))),
+        "slope": np.degrees(np.arctan(abs(quality.standing_slope))),
+        "roll": abs(quality.roll_deg),
+        "speed": quality.speed_mm_s / 1000,
+        "backwards": -quality.speed_mm_s / 1000,
+        "reversed": _words()["reversed"]["yes" if quality.knees_yield else "no"],
+        "wrong": "; ".join(wrong[:3]) + (f" and {len(wrong) - 3} more" if len(wrong) > 3 else ""),
         "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
         "rises": "rises" if quality.climb > 0 else "falls",
         "rise": abs(quality.climb_mm),
         "n_elastic": sum(share > BONE_VARIATION for share in variation.values()),
         "n_limbs": len(variation),
-        "worst": f"{limb[0]} to {limb[1]}, {variation.get(limb, 0):.1%}",
+        "worst": f"{limb[0]} to {limb[1]}, "
+        f"{_beside(100 * variation.get(limb, 0), 100 * BONE_VARIATION, digits=1)}%",
+        "r2": _beside(quality.r2, limit.STEADY_R2, digits=2),
+        "frequency": _beside(quality.frequency_hz, *limit.FREQUENCIES_HZ, digits=2),
         "repeated": ", ".join(quality.repeated),
         "swaps": "; ".join(swaps[:3]) + (f" and {len(swaps) - 3} more" if len(swaps) > 3 else ""),
         "often": ", ".join(often),

@@ -1,0 +1,215 @@
+"""Joints that are not where those of people are, by lengths, sides, heights and breadth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Literal, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.gait.body_points import SIDES
+
+SEGMENTS = {
+    ("hip", "knee"): 0.245,
+    ("knee", "ankle"): 0.246,
+    ("shoulder", "elbow"): 0.186,
+    ("elbow", "wrist"): 0.146,
+}
+"""Lengths as shares of stature (Winter 2009, fig. 4.1, after Drillis & Contini 1966)."""
+
+TRUNK = 0.288
+"""From the middle of the hips to that of the shoulders (same figure: 0.818 less 0.530)."""
+
+LENGTH_FACTOR = 1.5
+"""Factor by which a segment may differ. People vary by a few per cent (de Leva 1996, J Biomech
+29:1223), points of skeletons and markers that are called joints by up to 1.37."""
+
+SIDE_FACTOR = 1.25
+"""Ratio of left and right that is tolerated: noisy depth cameras reach 1.12."""
+
+BREADTHS = {
+    "hip": 0.103,
+    "shoulder": 0.2025,
+    "knee": 0.09,
+    "elbow": 0.28,
+    "wrist": 0.29,
+    "ankle": 0.065,
+}
+"""How far left and right are apart across the body, as shares of stature: hips and shoulders as in
+`retarget` (ANSUR II), the others as people walk (medians of simulated people)."""
+
+BREADTH_FACTORS = (0.6, 1.5)
+"""Range of their geometric mean over `BREADTHS`; real and simulated people have 0.66 to 1.32."""
+
+CROSSING = 0.05
+"""Share of stature by which wrists and ankles may cross over: they swing, feet step narrowly."""
+
+SQUARE = 0.5
+"""Cosine of the angle between hips and shoulders, whose twist is 20 degrees at most."""
+
+LEVEL_LINE = 0.85
+"""Cosine of the slope of hips and shoulders: those of people slope by some 10 degrees."""
+
+ONE_PLACE = 0.01
+"""Share of stature within which two joints are one; the nearest ones of skeletons have 0.04."""
+
+MIDDLE = 0.25
+"""Share of the distance of left and right by which pelvis and sternum may be off the middle."""
+
+NEAR_MIDDLE = 0.15
+"""Share of stature within which pelvis and sternum are of the middle of hips and shoulders; those
+of skeletons reach 0.09."""
+
+LINK_VARIATION = 0.10
+"""Coefficient of variation of distances within pelvis and trunk: skeletons and skin stay below
+0.04, noisy depth cameras reach 0.3."""
+
+FRAMES = 200
+"""Frames that are looked at."""
+
+_LINKS = [("pelvis", "sternum"), ("sternum", "head")]
+_LINKS += [(f"left_{part}", f"right_{part}") for part in ("hip", "shoulder")]
+_LINKS += [
+    (centre, f"{s}_{p}")
+    for centre, p in (("pelvis", "hip"), ("sternum", "shoulder"))
+    for s in SIDES
+]
+_ABOVE = [("head", "sternum"), ("sternum", "pelvis")]
+_ABOVE += [
+    (upper if upper == "head" else f"{side}_{upper}", f"{side}_{lower}")
+    for side in SIDES
+    for upper, lower in (
+        ("head", "shoulder"),
+        ("shoulder", "hip"),
+        ("hip", "knee"),
+        ("knee", "ankle"),
+    )
+]
+
+
+class WrongJoint(NamedTuple):
+    """Something that joints of a person cannot be.
+
+    Parameters
+    ----------
+    kind : str
+        ``"length"`` of a segment (value: over what it is in people), ``"unequal"`` segments of left
+        and right (ratio), ``"order"`` (the first is not above the second), ``"side"`` (the first is
+        not to the left of the second), ``"place"`` (both are in one), ``"middle"`` (the first is
+        not between the others), ``"breadth"`` of the body (over that of people), ``"link"``
+        (coefficient of variation of a distance).
+    points : tuple of str
+        The joints.
+    value : float
+        NaN where the kind has none.
+    """
+
+    kind: Literal["length", "unequal", "order", "side", "place", "middle", "breadth", "link"]
+    points: tuple[str, ...]
+    value: float = float("nan")
+
+
+def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
+    """Return what the joints of a capture, z up, cannot be; none without all 15 joints."""
+    if not set(JOINTS.markers) <= set(capture.marker.values.tolist()):
+        return ()
+    values = capture.sel(marker=list(JOINTS.markers)).values
+    values = values[np.isfinite(values).all(axis=(1, 2))]
+    values = values[:: max(1, len(values) // FRAMES)]
+    if not len(values):
+        return ()
+    path = dict(zip(JOINTS.markers, values.swapaxes(0, 1), strict=True))
+    for part in BREADTHS:
+        path[part] = (path[f"left_{part}"] + path[f"right_{part}"]) / 2
+        path[f"{part}s"] = path[f"left_{part}"] - path[f"right_{part}"]
+    lengths = {
+        (f"{side}_{upper}", f"{side}_{lower}"): (
+            _distance(path, f"{side}_{upper}", f"{side}_{lower}"),
+            share,
+        )
+        for (upper, lower), share in SEGMENTS.items()
+        for side in SIDES
+    }
+    lengths["hip", "shoulder"] = _distance(path, "hip", "shoulder"), TRUNK
+    stature = float(np.median([length / share for length, share in lengths.values()]))
+    if not stature > 0:
+        return (WrongJoint("place", ("left_hip", "left_knee")),)
+    found = [
+        WrongJoint("length", points, length / share / stature)
+        for points, (length, share) in lengths.items()
+        if not 1 / LENGTH_FACTOR <= length / share / stature <= LENGTH_FACTOR
+    ]
+    found += _places(path, stature)
+    found += _unequal(path)
+    found += _sides(path, stature)
+    found += [
+        WrongJoint("order", pair)
+        for pair in _ABOVE
+        if not np.median(path[pair[0]][:, 2] - path[pair[1]][:, 2]) > 0
+    ]
+    found += _links(path)
+    return tuple(found)
+
+
+def _distance(path: dict[str, np.ndarray], one: str, other: str) -> float:
+    return float(np.median(np.linalg.norm(path[one] - path[other], axis=1)))
+
+
+def _places(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
+    """Yield joints in one place, and centres that are not in the middle of left and right."""
+    for pair in combinations(JOINTS.markers, 2):
+        if _distance(path, *pair) < ONE_PLACE * stature:
+            yield WrongJoint("place", pair)
+    for centre, part in (("pelvis", "hip"), ("sternum", "shoulder")):
+        across = path[f"{part}s"]
+        aside = np.einsum("ta,ta->t", path[centre] - path[part], across)
+        aside = abs(np.median(aside / np.einsum("ta,ta->t", across, across).clip(1e-9)))
+        if aside > MIDDLE or _distance(path, centre, part) > NEAR_MIDDLE * stature:
+            yield WrongJoint("middle", (centre, f"left_{part}", f"right_{part}"))
+
+
+def _unequal(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
+    """Yield segments whose left and right differ."""
+    for upper, lower in (*SEGMENTS, ("pelvis", "hip"), ("sternum", "shoulder")):
+        ends = [
+            (upper if upper in ("pelvis", "sternum") else f"{side}_{upper}", f"{side}_{lower}")
+            for side in SIDES
+        ]
+        left, right = (_distance(path, *each) for each in ends)
+        ratio = max(left, right) / max(min(left, right), 1e-9)
+        if ratio > SIDE_FACTOR:
+            yield WrongJoint("unequal", tuple(dict.fromkeys([*ends[0], *ends[1]])), ratio)
+
+
+def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
+    """Yield left joints that are not to the left, lines that are askew, and a wrong breadth."""
+    hips, shoulders = path["hips"][:, :2], path["shoulders"][:, :2]
+    lengths = [np.linalg.norm(line, axis=1).clip(1e-9) for line in (hips, shoulders)]
+    if np.median(np.einsum("ta,ta->t", hips, shoulders) / lengths[0] / lengths[1]) < SQUARE:
+        yield WrongJoint("side", ("left_hip", "right_hip"))
+        return
+    leftward = hips / lengths[0][:, None] + shoulders / lengths[1][:, None]
+    leftward /= np.linalg.norm(leftward, axis=1, keepdims=True).clip(1e-9)
+    logs = []
+    for part, share in BREADTHS.items():
+        across = path[f"{part}s"]
+        apart = np.einsum("ta,ta->t", across[:, :2], leftward)
+        least = -CROSSING * stature if part in ("wrist", "ankle") else 0.0
+        sloping = np.median(apart / np.linalg.norm(across, axis=1).clip(1e-9)) < LEVEL_LINE
+        if np.median(apart) <= least or (part in ("hip", "shoulder") and sloping):
+            yield WrongJoint("side", (f"left_{part}", f"right_{part}"))
+        logs.append(np.log(max(np.median(apart) / stature / share, 0.25)))
+    breadth = float(np.exp(np.mean(logs)))
+    if not BREADTH_FACTORS[0] <= breadth <= BREADTH_FACTORS[1]:
+        yield WrongJoint("breadth", (), breadth)
+
+
+def _links(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
+    """Yield distances within pelvis and trunk that do not hold."""
+    for pair in _LINKS:
+        length = np.linalg.norm(path[pair[0]] - path[pair[1]], axis=1)
+        if length.std() > LINK_VARIATION * max(length.mean(), 1e-9):
+            yield WrongJoint("link", pair, float(length.std() / max(length.mean(), 1e-9)))

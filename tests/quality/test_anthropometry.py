@@ -1,0 +1,129 @@
+"""Joints that no person has are found, and people of all builds are none of these."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import eigenwalker as ew
+from eigenwalker.io.read import read_mocap
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.quality.anthropometry import wrong_joints
+from eigenwalker.quality.assessment import bone_length_variation
+from eigenwalker.simulation.walk import simulate_walk
+
+JOINTS = list(ew.JOINTS.markers)
+PAIRS = list(combinations(range(15), 2))
+
+
+@pytest.fixture(scope="module")
+def person():
+    return simulate_walk(seed=4, duration_s=3, rate_hz=30)
+
+
+def is_wrong(walk):
+    return bool(wrong_joints(walk)) or max(bone_length_variation(walk).values()) > 0.05
+
+
+def exchanged(walk, one, other):
+    values = walk.values.copy()
+    values[:, [one, other]] = walk.values[:, [other, one]]
+    return walk.copy(data=values)
+
+
+def stretched(walk, start, end, factor, beyond=()):
+    values, place = walk.values.copy(), JOINTS.index
+    further = (factor - 1) * (values[:, place(end)] - values[:, place(start)])
+    for name in (end, *beyond):
+        values[:, place(name)] += further
+    return walk.copy(data=values)
+
+
+def kinds(walk):
+    return {each.kind for each in wrong_joints(walk)}
+
+
+def test_every_exchange_of_two_joints_is_found(person):
+    assert [pair for pair in PAIRS if not is_wrong(exchanged(person, *pair))] == []
+
+
+def test_every_joint_that_is_put_where_another_is_is_found(person):
+    for one, other in PAIRS:
+        for target, source in ((one, other), (other, one)):
+            values = person.values.copy()
+            values[:, target] = values[:, source]
+            assert "place" in kinds(person.copy(data=values)), (JOINTS[target], JOINTS[source])
+
+
+@pytest.mark.parametrize("factor", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize(
+    ("start", "end", "beyond"),
+    [
+        ("left_hip", "left_knee", ["left_ankle"]),
+        ("right_knee", "right_ankle", []),
+        ("left_shoulder", "left_elbow", ["left_wrist"]),
+        ("right_elbow", "right_wrist", []),
+    ],
+)
+def test_segments_of_wrong_length_are_found(person, factor, start, end, beyond):
+    found = wrong_joints(stretched(person, start, end, factor, beyond))
+    assert any(each.kind == "length" and each.points == (start, end) for each in found)
+    assert any(each.kind == "unequal" for each in found)
+
+
+def test_both_shanks_of_wrong_length_are_found(person):
+    for factor in (0.1, 2.0):
+        both = person
+        for side in ("left", "right"):
+            both = stretched(both, f"{side}_knee", f"{side}_ankle", factor)
+        assert kinds(both) >= {"length"}
+
+
+def test_a_body_twice_or_half_as_broad_is_found(person):
+    for factor in (0.5, 2.0):
+        assert "breadth" in kinds(person.copy(data=person.values * [1, factor, 1]))
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        {"height_mm": 1000.0, "frequency_hz": 1.2},
+        {"height_mm": 2150.0},
+        {"body_mass_index": 50.0},
+        {"body_mass_index": 14.0},
+        {"step_width_mm": 260.0},
+        {"step_width_mm": 10.0},
+    ],
+)
+def test_people_of_all_builds_have_their_joints_in_place(build):
+    for seed in (1, 2):
+        walk = simulate_walk(seed=seed, duration_s=3, rate_hz=30, **build)
+        assert wrong_joints(walk) == ()
+
+
+def test_the_ends_of_the_built_in_people_have_their_joints_in_place():
+    people = ew.load_population()
+    space = ew.WalkerSpace().fit(people.X)
+    sd = space.transform(people.X).std(axis=0)
+    for component in range(4):
+        for sign in (-3, 3):
+            scores = np.zeros(len(sd))
+            scores[component] = sign * sd[component]
+            walker = people.walker(space.inverse_transform(scores[None])[0])
+            assert wrong_joints(walker.trajectories(np.arange(0, 2, 1 / 30))) == ()
+
+
+def test_markers_that_are_no_joints_are_not_judged():
+    assert wrong_joints(simulate_walk(seed=1, duration_s=2, markers="skin")) == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [("02_01.c3d", "mm"), ("07_01.data3d.txt", "asf"), ("12_01.bvh", "asf"), ("35_01.amc", "asf")],
+)
+def test_real_joints_are_in_place_and_their_exchanges_are_found(captures, name, unit):
+    capture = read_mocap(captures / "cmu" / name, unit=unit, rate_hz=120)
+    joints = virtual_markers(capture)[::8]
+    assert wrong_joints(joints) == ()
+    missed = [pair for pair in PAIRS if not is_wrong(exchanged(joints, *pair))]
+    assert [(JOINTS[one], JOINTS[other]) for one, other in missed] == []
