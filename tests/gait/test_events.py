@@ -136,3 +136,28 @@ def test_what_too_few_strides_cannot_tell_is_nan(walks):
 def test_a_capture_that_travels_has_the_parameters_of_its_walk_in_place(captures) -> None:
     joints = virtual_markers(read_mocap(captures / "cmu" / "02_01.c3d"))
     pd.testing.assert_series_equal(gait_parameters(joints), gait_parameters(in_place(joints)))
+
+
+@pytest.mark.parametrize("travels", [False, True])
+def test_a_walk_that_is_played_backwards_has_the_shares_of_the_forward_one(travels):
+    walk = simulate_walk(seed=3, duration_s=8)
+    if travels:
+        progress = walk.attrs["speed_mm_s"] * walk.time.values
+        walk = walk.copy(data=walk.values + np.multiply.outer(progress, [1, 0, 0])[:, None])
+    forwards = gait_parameters(walk)
+    backwards = gait_parameters(walk[::-1].assign_coords(time=walk.time.values))
+    assert backwards.speed_mm_s == pytest.approx(-forwards.speed_mm_s, rel=1e-3)
+    for name in ("stance_share_left", "double_support_share", "stride_length_mm"):
+        assert backwards[name] == pytest.approx(forwards[name], rel=0.02)
+    assert backwards.step_length_left_mm > 0.45 * backwards.stride_length_mm
+    assert 0 < backwards.double_support_share < 1
+
+
+def test_a_flat_walk_has_steps_without_width_and_its_own_speed():
+    walk = simulate_walk(seed=3, duration_s=8)
+    flat = in_place(walk.copy(data=walk.values * [1, 0, 1]))
+    told = gait_parameters(flat)
+    assert flat.attrs["heading_deg"] == pytest.approx(0, abs=1e-6)
+    assert told.speed_mm_s == pytest.approx(walk.attrs["speed_mm_s"], rel=0.06)
+    assert told.step_width_mm == pytest.approx(0, abs=1e-6)
+    assert abs(told.step_asymmetry) < 0.1

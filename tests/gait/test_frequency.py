@@ -6,7 +6,12 @@ from hypothesis import given, settings, strategies as st
 
 from eigenwalker.core.trajectories import label_trajectories
 from eigenwalker.core.walker import Walker
-from eigenwalker.gait.frequency import frequency_of_scores, fundamental_frequency
+from eigenwalker.gait.frequency import (
+    NoStrideError,
+    frequency_of_scores,
+    fundamental_frequency,
+)
+from eigenwalker.simulation.walk import simulate_walk
 
 
 def some_walker(seed=0, *, n_markers=15, frequency_hz=0.85, second=0.25):
@@ -118,3 +123,18 @@ def test_a_weak_first_harmonic_still_sets_the_stride(share: float) -> None:
         values += np.stack([np.sin(2 * turn), np.cos(2 * turn)], axis=1) @ second
         values += rng.normal(size=values.shape)
         assert frequency_of_scores(values, 120) == pytest.approx(stride_hz, abs=1e-3)
+
+
+@pytest.mark.parametrize("strides_a_second", [2.1, 2.5, 2.9])
+def test_a_sprint_is_not_halved(strides_a_second):
+    walk = simulate_walk(seed=1, duration_s=12)
+    faster = strides_a_second / walk.attrs["frequency_hz"]
+    sprint = walk.assign_coords(time=walk.time.values / faster)
+    assert fundamental_frequency(sprint) == pytest.approx(strides_a_second, rel=1e-3)
+
+
+def test_what_repeats_more_often_than_strides_is_told():
+    walk = simulate_walk(seed=1, duration_s=12)
+    faster = 3.5 / walk.attrs["frequency_hz"]
+    with pytest.raises(NoStrideError, match=r"3.5 times a second"):
+        fundamental_frequency(walk.assign_coords(time=walk.time.values / faster))
