@@ -7,7 +7,11 @@ BIN := .venv/bin
 # What the pages are built from, when the package is installed:
 PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json frontend/vite.config.ts $(wildcard src/eigenwalker/stimulus/*.json)
 
-.PHONY: demo test lint bench clean
+# Tests that use every dependency, on the lowest versions that pyproject.toml declares:
+LOWEST_PYTHON ?= $(firstword $(foreach p,python3.11 python3.12 python3,$(if $(shell $p -c "import sys, venv, ensurepip; print((3, 11) <= sys.version_info < (3, 13) or '')" 2>/dev/null | grep True),$p)))
+LOWEST_TESTS ?= tests/core tests/cli/test_options.py tests/io/test_bvh.py tests/plotting/test_walker_films.py tests/explorer/test_widget.py tests/population/test_population.py
+
+.PHONY: demo test lint lowest newest bench clean
 
 demo: .venv/installed
 	$(BIN)/eigenwalker demo
@@ -20,6 +24,21 @@ lint: .venv/installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/pyright
+
+# As the tests of a fresh clone, in an environment that was made before.
+newest: .venv/bin/python
+	$(BIN)/python -m pip install --quiet --upgrade --upgrade-strategy eager -e ".[dev]"
+	$(BIN)/pytest -q -n auto
+
+lowest: .venv-lowest/installed
+	PYTHONPATH=src .venv-lowest/bin/python -m pytest -q -n 2 -W default -p no:cacheprovider $(LOWEST_TESTS)
+
+.venv-lowest/installed: pyproject.toml .ci/lowest.py
+	@test -n "$(LOWEST_PYTHON)" || { echo "The lowest versions have wheels for Python 3.11 and 3.12; found neither. Name one: make lowest LOWEST_PYTHON=/path/to/python3.11"; exit 1; }
+	$(LOWEST_PYTHON) -m venv .venv-lowest
+	$(LOWEST_PYTHON) .ci/lowest.py > .venv-lowest/requirements.txt
+	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: -r .venv-lowest/requirements.txt
+	@touch $@
 
 bench: .venv/installed-dev
 	$(BIN)/python -m pip install --quiet -e ".[dev,bench]"
@@ -39,4 +58,4 @@ bench: .venv/installed-dev
 	@touch $@ .venv/installed
 
 clean:
-	rm -rf .venv eigenwalker-demo
+	rm -rf .venv .venv-lowest eigenwalker-demo
