@@ -9,7 +9,7 @@ PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json f
 
 # Tests that use every dependency, on the lowest versions that pyproject.toml declares:
 LOWEST_PYTHON ?= $(firstword $(foreach p,python3.11 python3.12 python3,$(if $(shell $p -c "import sys, venv, ensurepip; print((3, 11) <= sys.version_info < (3, 13) or '')" 2>/dev/null | grep True),$p)))
-LOWEST_TESTS ?= tests/core tests/cli/test_options.py tests/io/test_bvh.py tests/plotting/test_walker_films.py tests/explorer/test_widget.py tests/population/test_population.py
+LOWEST_TESTS ?= tests/core/test_kinematics.py tests/cli/test_options.py tests/io/test_bvh.py tests/io/test_c3d.py tests/plotting/test_walker_films.py tests/population/test_population.py tests/datasets/test_downloads.py tests/metric/test_loops.py tests/analysis/test_walker_space.py tests/study/test_process_capture.py tests/stimulus/test_stimulus_file.py tests/explorer/test_model.py
 
 .PHONY: demo test lint lowest newest bench clean
 
