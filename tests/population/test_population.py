@@ -224,3 +224,13 @@ def test_what_is_no_population_is_called_what_it_is(tmp_path, content, came):
         f"weather.nc: expected a population file, but got {came}; make one with 'eigenwalker fit' "
         "or Population.save."
     )
+
+
+def test_the_average_walker_has_the_mean_speed_of_the_walkers():
+    people = ew.simulate_population(3, 3, seed=5)
+    speeds = [walker.speed_mm_s for walker in people.walkers]
+    assert people.walker(people.average).speed_mm_s == pytest.approx(np.mean(speeds), rel=1e-9)
+    flagged = people.traits.assign(flag=["", "wrong joints", "", "", "", ""])
+    some = ew.Population(people.walkers, flagged)
+    others = np.delete(speeds, 1)
+    assert some.walker(some.average).speed_mm_s == pytest.approx(others.mean(), rel=1e-9)

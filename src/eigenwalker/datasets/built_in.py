@@ -56,5 +56,5 @@ def _built_in() -> Population:
 def built_in_capture() -> xr.DataArray:
     """Return the walk in place, at 120 Hz, of the first woman of the built-in population."""
     capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
-    walk = in_place(virtual_markers(capture), speed_mm_s=capture.attrs["speed_mm_s"])
+    walk = in_place(virtual_markers(capture))
     return walk.assign_attrs(source="The first woman of the built-in population")

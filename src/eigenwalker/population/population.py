@@ -198,7 +198,8 @@ class Population:
         Returns
         -------
         Walker
-            Its speed is that of its feet on the ground.
+            Its speed is that of its feet on the ground, times a factor by which the average walker
+            has the mean of the walkers' speeds.
 
         Raises
         ------
@@ -214,7 +215,16 @@ class Population:
         True
         """
         walker = self.layout.walker(vector)
-        return replace(walker, speed_mm_s=ground_speed(walker))
+        return replace(walker, speed_mm_s=self._speed_factor * ground_speed(walker))
+
+    @cached_property
+    def _speed_factor(self) -> float:
+        """The mean of the walkers' known speeds over that of the average walker's feet, else 1."""
+        speeds = np.array([walker.speed_mm_s for walker in self.walkers])[self.in_average]
+        known = speeds[np.isfinite(speeds)]
+        feet = ground_speed(self.layout.walker(self.average))
+        factor = known.mean() / feet if len(known) and feet else np.nan
+        return float(factor) if factor > 0 else 1.0
 
     def vector(self, walker: Walker) -> np.ndarray:
         """Return any walker as a point of this population's feature space: shape (feature,).

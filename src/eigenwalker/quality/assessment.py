@@ -17,7 +17,7 @@ from eigenwalker.gait.steady_strides import body_relative
 from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
 from eigenwalker.markers.label_repair import Rebuilt, Repair, repair_labels
 from eigenwalker.quality.anthropometry import wrong_joints
-from eigenwalker.quality.on_the_ground import on_the_ground
+from eigenwalker.quality.ground_contact import ground_contact
 from eigenwalker.quality.quality import Quality
 
 LIMBS = tuple(
@@ -151,7 +151,7 @@ def judge(
             {}
             if walk is None
             else _steadiness(walk, strides, repaired.values, rate_hz)
-            | on_the_ground(walk, rate_hz)._asdict()
+            | ground_contact(walk, rate_hz)._asdict()
         ),
     )
 

@@ -180,7 +180,7 @@ def _walkers(
                 phase = {"phase": walk["phase"]} if "phase" in walk.coords else {}
                 walk = virtual_markers(walk).assign_coords(phase)
             walk = _with_effects(walk, person, planted)
-            walk = in_place(walk, speed_mm_s=walk.attrs["speed_mm_s"])
+            walk = in_place(walk)
             walkers.append(decompose_pca(walk))
     return walkers
 

@@ -156,7 +156,7 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
 
     def walked(person: pd.Series, amount: float) -> np.ndarray:
         walk = add_effect(simulate_walk((person + amount * steps).to_dict()), effect, amount)
-        walk = in_place(walk, speed_mm_s=walk.attrs["speed_mm_s"])
+        walk = in_place(walk)
         return population.vector(decompose_pca(walk))
 
     step = 0.5 if trait == "sex" else 1.0

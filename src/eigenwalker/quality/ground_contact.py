@@ -25,7 +25,7 @@ _STANDING_SHARE = 0.25
 """Share of the frames in which an ankle moves backwards most evenly: those of stance."""
 
 
-class OnTheGround(NamedTuple):
+class GroundContact(NamedTuple):
     """Fields as in `Quality`."""
 
     roll_deg: float = float("nan")
@@ -35,17 +35,17 @@ class OnTheGround(NamedTuple):
     knees_yield: bool = False
 
 
-def on_the_ground(walk: xr.DataArray, rate_hz: float) -> OnTheGround:
+def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
     """Return what the joints of a walk in place show; NaN without hips, knees and ankles."""
     positions, names = walk.values, walk.marker.values.tolist()
     legs = legs_of(positions, names)
     if len(legs) < 2:
-        return OnTheGround()
+        return GroundContact()
     bones = [np.linalg.norm(np.diff(leg, axis=1), axis=2).mean(axis=0).sum() for leg in legs]
     leg_mm = (1 + ANKLE_HEIGHT_OF_LEG) * float(np.mean(bones))
     frequency_hz, speed = walk.attrs["frequency_hz"], known_speed(walk)
     slope = np.nan if speed < 0 else np.mean([_slope(leg[:, 2], rate_hz) for leg in legs])
-    return OnTheGround(
+    return GroundContact(
         roll_deg=_roll(positions, names),
         standing_slope=float(slope),
         froude=speed**2 / (GRAVITY_MM_S2 * max(leg_mm, 1e-9)),
