@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -12,6 +13,7 @@ from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.people import simulate_captures, simulate_population
 
+_PEOPLE: dict[str, Any] = {"n_women": 20, "n_men": 20, "seed": 0, "balanced": True}
 BUILT_IN = "the built-in population, simulated: 20 women and 20 men who do not exist"
 
 
@@ -50,11 +52,11 @@ def load_population(path: str | Path | None = None) -> Population:
 
 @cache
 def _built_in() -> Population:
-    return simulate_population(n_women=20, n_men=20, seed=0)
+    return simulate_population(**_PEOPLE)
 
 
 def built_in_capture() -> xr.DataArray:
     """Return the walk in place, at 120 Hz, of the first woman of the built-in population."""
-    capture, _ = next(simulate_captures(n_women=20, n_men=20, seed=0, markers="skin"))
+    capture, _ = next(simulate_captures(**_PEOPLE, markers="skin"))
     walk = in_place(virtual_markers(capture))
     return walk.assign_attrs(source="The first woman of the built-in population")

@@ -39,7 +39,7 @@ _KNEE_RAD = np.radians(0.5)
 _CLEARANCE_MM = 16.0
 _SPREAD_RAD = np.radians([[1.5], [1.3], [2.3]])
 """How far thigh, knee and pitch may be from what was drawn; higher harmonics less."""
-_RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 1.5, 5.0
+_RISE_MM, _BOB_MM, _AHEAD_MM = 1.2, 0.4, 5.0
 """How far the pelvis may be from it: other harmonics, the second one of its height, fore-aft."""
 _ONE = np.ones(2 * _FRAMES)
 

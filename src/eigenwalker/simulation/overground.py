@@ -83,6 +83,7 @@ def blend_with_standing(
         "elbow_flexion": np.radians(18.0),
         "shoulder_abduction": np.radians(8.0),
         "shoulder_rotation": np.radians(15.0),
+        "carrying_angle": np.radians(13.0),
         "foot_yaw": np.radians(-7.3),
     }
     blended = {}

@@ -35,6 +35,7 @@ def simulate_captures(
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
     planted: Mapping[str, PlantedEffect] | None = None,
+    balanced: bool = False,
     **capture: Any,
 ) -> Iterator[tuple[xr.DataArray, pd.Series]]:
     """Yield the capture of one simulated person after another, with all that is known of them.
@@ -54,6 +55,8 @@ def simulate_captures(
     planted : mapping of trait to PlantedEffect, optional
         Effects in mean posture, movement or frequency themselves, for each unit of the trait's
         score (see `draw_people`: sex counts from -0.5 to 0.5).
+    balanced : bool
+        Whether chance is taken out of the draw: see `draw_people`.
     **capture
         How the capture is made, as `simulate_walk` takes it: ``markers="skin"``,
         ``noise_mm=0``. What is left out is `CAPTURE`.
@@ -76,7 +79,10 @@ def simulate_captures(
     female 360
     male 360
     """
-    people = draw_people(n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects)
+    people = draw_people(
+        n_women, n_men, seed=seed, sex_effect=sex_effect, effects=effects, balanced=balanced,
+        over_ground=capture.get("route") is not None,
+    )  # fmt: skip
     planted = planted or {}
     for number in range(len(people)):
         person = people.iloc[number]
@@ -110,6 +116,7 @@ def simulate_population(
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
     planted: Mapping[str, PlantedEffect] | None = None,
+    balanced: bool = False,
     n_jobs: int = -1,
     **capture: Any,
 ) -> Population:
@@ -120,7 +127,7 @@ def simulate_population(
 
     Parameters
     ----------
-    n_women, n_men, seed, sex_effect, effects, planted, **capture
+    n_women, n_men, seed, sex_effect, effects, planted, balanced, **capture
         See `simulate_captures`; with ``markers="joints"`` the true joints are taken. Effects are
         planted in the 15 joints.
     n_jobs : int
@@ -148,7 +155,8 @@ def simulate_population(
     (4, 229)
     """
     settings = {"n_women": n_women, "n_men": n_men, "seed": seed, "sex_effect": sex_effect}
-    settings["effects"] = effects
+    settings |= {"effects": effects, "balanced": balanced}
+    settings["over_ground"] = capture.get("route") is not None
     people, planted = draw_people(**settings), dict(planted or {})
     capture = {"markers": "skin", **CAPTURE, **capture}
     parts = np.array_split(np.arange(len(people)), max(len(people) // _PER_TASK, 1))

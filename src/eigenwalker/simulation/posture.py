@@ -70,7 +70,11 @@ def segment_rotations(angles: Mapping[str, np.ndarray]) -> dict[str, Rotations]:
             *rotations["trunk"],
         )
         rotations[f"{name}_upper_arm"] = upper
-        rotations[f"{name}_forearm"] = (rotation("y", -own["elbow_flexion"]), *upper)
+        rotations[f"{name}_forearm"] = (
+            rotation("x", side * own["carrying_angle"]),
+            rotation("y", -own["elbow_flexion"]),
+            *upper,
+        )
     return rotations
 
 

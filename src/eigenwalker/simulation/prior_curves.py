@@ -16,6 +16,8 @@ from eigenwalker.simulation.norms import FREE_SPEED, delay, norm_coefficients
 
 LEG_HARMONICS = 8
 PELVIS_HARMONICS = 6
+_LEG_MM = 869.0
+"""Leg of `average_person`."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,13 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
     """Return speed from stride length and cadence, and pelvis movement from speed.
 
     The vertical range grows from 27 mm at 0.7 m/s to 48 mm at 1.6, the lateral one shrinks from
-    70 to 39 mm (Orendurff et al. 2004).
+    70 to 39 mm (Orendurff et al. 2004), both in bodies of average size: larger ones move by as
+    much more, at speeds that rise with the root of the leg (dynamic similarity, Alexander 1989).
     """
     stride_length = person["stride_share"] * body.height
     speed = stride_length * person["frequency_hz"]
-    faster = (speed / 1000 - 0.7) / 0.9
+    size = body.leg / _LEG_MM
+    faster = (speed / 1000 / np.sqrt(size) - 0.7) / 0.9
     # Schwartz et al. (2008): steps of 0.64, 0.76, 0.85 leg lengths at 0.29, 0.43, 0.56.
     effort = FREE_SPEED + (stride_length / 2 / body.leg - 0.76) / 0.78
     dimensionless = speed / np.sqrt(GRAVITY * body.leg)
@@ -57,8 +61,8 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
         effort=effort,
         stance=person["stance_share"] - 0.1 * (dimensionless - 0.38),
         step_width=max(person["step_width_mm"], 45.0),
-        vertical_range=max(27 + 21 * faster + person["vertical_mm"], 12.0),
-        lateral_range=max(70 - 31 * faster + person["lateral_mm"], 10.0),
+        vertical_range=max(size * (27 + 21 * faster) + person["vertical_mm"], 12.0),
+        lateral_range=max(size * (70 - 31 * faster) + person["lateral_mm"], 10.0),
     )
 
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from eigenwalker.simulation.person import PARAMETERS, PEOPLE, check_parameters
+from eigenwalker.simulation.person import PARAMETERS, PEOPLE, average_person, check_parameters
 
 Effects = Mapping[str, Mapping[str, float]]
 
@@ -24,6 +24,8 @@ def draw_people(
     seed: int = 0,
     sex_effect: float = 1.0,
     effects: Effects = EFFECTS,
+    over_ground: bool = False,
+    balanced: bool = False,
 ) -> pd.DataFrame:
     """Return a table of people drawn at random: their traits and the parameters of their walk.
 
@@ -41,6 +43,14 @@ def draw_people(
     effects : mapping of trait to mapping of parameter to effect size
         In SDs of the parameter: for ``"sex"`` men minus women, in addition to the difference
         in `PARAMETERS`; else for each SD of the trait. ``{}`` switches all these effects off.
+    over_ground : bool
+        Whether they walk over ground, where stride frequency falls with the root of height (the
+        pendulum law), rather than on a belt, where it hardly does.
+    balanced : bool
+        Whether chance is taken out of the effects: body mass index, height and moods are then
+        unrelated to each other, and what is drawn for a person is unrelated to them, and to sex
+        where that has an effect. So a few people show every effect at its size. Studies of chance
+        need people drawn without it.
 
     Returns
     -------
@@ -69,10 +79,13 @@ def draw_people(
     rng = np.random.default_rng(seed)
     n_people = n_women + n_men
     scores, rated = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}, {}
-    for trait, (mean, sd, lowest, highest) in PEOPLE["scales"].items():
+    for trait, (_, _, lowest, highest) in PEOPLE["scales"].items():
         scores[trait] = np.clip(rng.standard_normal(n_people), lowest, highest)
-        rated[trait] = mean + sd * scores[trait]
     own = np.clip(rng.standard_normal((len(PARAMETERS), n_people)), -2.5, 2.5)
+    if balanced:
+        scores, own = _balanced(scores, own, effects)
+    for trait, (mean, sd, _, _) in PEOPLE["scales"].items():
+        rated[trait] = mean + sd * scores[trait]
     own[list(PARAMETERS).index("body_mass_index")] = scores["weight"]
     amounts = scores | {"sex": sex_effect * scores["sex"]}
     values = {}
@@ -83,6 +96,8 @@ def draw_people(
             amount * effects.get(trait, {}).get(name, 0.0) for trait, amount in amounts.items()
         )
         values[name] = mean + parameter.sd * (score + shift)
+    taller = values["height_mm"] / average_person()["height_mm"]
+    values["frequency_hz"] *= taller ** frequency_exponent(over_ground)
     traits = {
         "sex": np.where(scores["sex"] > 0, "male", "female"),
         "age_years": rated["age"],
@@ -93,6 +108,45 @@ def draw_people(
     }
     named = {f"{trait}_score": score for trait, score in scores.items()}
     return pd.DataFrame(traits | {n: v for n, v in values.items() if n not in traits} | named)
+
+
+def frequency_exponent(over_ground: bool) -> float:
+    """Return the power of height with which stride frequency goes.
+
+    Over ground that of a pendulum (Alexander 1989). On a belt that of the sexes of Troje (2002),
+    0.845 and 0.836 Hz, at heights of 1629 and 1757 mm.
+    """
+    return -0.5 if over_ground else -0.14
+
+
+def _balanced(
+    scores: Mapping[str, np.ndarray], own: np.ndarray, effects: Effects
+) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Return scores and what is drawn for each parameter (parameter, person) freed of chance.
+
+    Residuals of regression on the traits, with unit SD. On sex only height, frequency and what it
+    has an effect on: classifiers of people who differ in nothing by chance do too well.
+    """
+    n_people, names, balanced = own.shape[1], list(PARAMETERS), dict(scores)
+    if n_people < (least := len(scores) + 4):
+        raise ValueError(f"{n_people} people are too few to balance; draw {least} or more.")
+    known = [np.ones(n_people), scores["age"]]
+
+    def freed(drawn: np.ndarray, of_sex: bool) -> np.ndarray:
+        design = np.column_stack([*known, scores["sex"]] if of_sex else known)
+        left = drawn - (design @ np.linalg.lstsq(design, drawn.T, rcond=None)[0]).T
+        return left / left.std(axis=-1, keepdims=True)
+
+    for trait in ("weight", "happy", "nervous"):
+        balanced[trait] = freed(scores[trait], of_sex=True)
+        known.append(balanced[trait])
+    height, frequency = names.index("height_mm"), names.index("frequency_hz")
+    known.append(freed(own[height], of_sex=True))
+    rest = freed(own, of_sex=False)
+    touched = [frequency, *(names.index(name) for name in effects.get("sex", ()))]
+    rest[touched] = freed(own[touched], of_sex=True)
+    rest[height] = known[-1]
+    return balanced, rest
 
 
 def _check(n_women: int, n_men: int, effects: Effects) -> None:

@@ -16,7 +16,7 @@ from eigenwalker.population.population import Population
 from eigenwalker.simulation.person import PARAMETERS
 from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
 from eigenwalker.simulation.provenance import KEY, read_provenance
-from eigenwalker.simulation.trait_effects import EFFECTS, Effects, draw_people
+from eigenwalker.simulation.trait_effects import EFFECTS, Effects, draw_people, frequency_exponent
 from eigenwalker.simulation.walk import simulate_walk
 
 
@@ -82,7 +82,7 @@ def truth_of(population: Population) -> Truth:
     --------
     >>> truth = truth_of(ew.simulate_population(2, 2, seed=1))
     >>> truth.people["arm_swing_deg"].round().tolist()
-    [13.0, 17.0, 6.0, 14.0]
+    [14.0, 18.0, 6.0, 14.0]
     >>> bool(truth.effects.loc["obliquity_factor", "sex"] < 0)
     True
     """
@@ -102,7 +102,7 @@ def truth_of(population: Population) -> Truth:
     rows = _same_rows(people, population.traits)
     return Truth(
         people=people.iloc[rows].reset_index(drop=True),
-        effects=_effect_table(settings["effects"], settings["sex_effect"]),
+        effects=_effect_table(**settings),
         planted=planted,
         capture=capture,
         seeds=[(settings["seed"], row) for row in rows],
@@ -177,10 +177,15 @@ def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> list[int]:
     return rows
 
 
-def _effect_table(effects: Effects, sex_effect: float) -> pd.DataFrame:
+def _effect_table(
+    effects: Effects, sex_effect: float, over_ground: bool = False, **_drawn: object
+) -> pd.DataFrame:
     table = pd.DataFrame(0.0, index=list(PARAMETERS), columns=list(EFFECTS))
     for trait, sizes in effects.items():
         table.loc[list(sizes), trait] = list(sizes.values())
     table["sex"] += [(p.male - p.female) / p.sd for p in PARAMETERS.values()]
+    heights, frequency = PARAMETERS["height_mm"], PARAMETERS["frequency_hz"]
+    taller = (heights.male / heights.female) ** frequency_exponent(over_ground) - 1
+    table.loc["frequency_hz", "sex"] += taller * frequency.male / frequency.sd
     table["sex"] *= sex_effect
     return table

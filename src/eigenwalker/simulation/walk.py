@@ -119,7 +119,9 @@ def simulate_walk(
     check_parameters(parameters)
     streams = (np.random.default_rng([*np.atleast_1d(seed).tolist(), n]) for n in range(5))
     person_rng, stride_rng, noise_rng, skin_rng, gap_rng = streams
-    person = {**(_anyone(person_rng, sex) if person is None else person), **parameters}
+    if person is None:
+        person = _anyone(person_rng, sex, over_ground=route is not None)
+    person = {**person, **parameters}
     time = np.arange(round(duration_s * rate_hz)) / rate_hz
     body, cycle = body_of(person), solve_cycle(person)
     gait = gait_parameters(person, body)
@@ -204,9 +206,10 @@ def _check(
         raise ValueError("This walk cannot be simulated: " + "; ".join(problems) + ".")
 
 
-def _anyone(rng: np.random.Generator, sex: str | None) -> dict[str, Any]:
+def _anyone(rng: np.random.Generator, sex: str | None, over_ground: bool) -> dict[str, Any]:
     women = int(rng.random() < 0.5) if sex is None else int(sex == "female")
-    person = draw_people(women, 1 - women, seed=int(rng.integers(2**31))).iloc[0]
+    seed = int(rng.integers(2**31))
+    person = draw_people(women, 1 - women, seed=seed, over_ground=over_ground).iloc[0]
     return {str(name): value for name, value in person.items()}
 
 

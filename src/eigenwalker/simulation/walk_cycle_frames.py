@@ -111,6 +111,7 @@ def _arm(person: Mapping[str, float], name: str, strides: Strides, cycle: Cycle)
         "shoulder_flexion": sided("arm_mean") + person["arm_swing_deg"] * swing + second,
         "shoulder_abduction": sided("arm_out") + person["arm_out_swing_deg"] * swing,
         "shoulder_rotation": np.full(len(own), person["arm_in_rotation_deg"]),
+        "carrying_angle": np.full(len(own), person["carrying_angle_deg"]),
         "elbow_flexion": _LEAST_ELBOW_DEG + _softened(bent - _LEAST_ELBOW_DEG),
     }
     return {f"{name}_{joint}": np.radians(curve) for joint, curve in curves.items()}
