@@ -39,6 +39,14 @@ def test_inputs_are_those_of_figure_4_and_of_the_text() -> None:
     assert all(each.size_normalised for each in INPUTS[1:N_PANELS])
 
 
+def test_only_panels_of_the_figure_count_among_the_inputs_that_miss_a_walker() -> None:
+    inputs = [INPUTS[2], *INPUTS[N_PANELS:]]  # as where walkers have one harmonic, some are missing
+    found = classify(planted("all", 0.0), "sex", inputs=inputs, n_permutations=0)
+    assert (
+        found.often_misclassified(least=1).tolist() == [1] * found.results[0].curves.fewest_errors
+    )
+
+
 def test_an_effect_in_the_structure_is_told_from_it_alone() -> None:
     found = classify(planted("structure", 2.0), "sex", n_permutations=50)
     errors = found.table().set_index("input")["errors"]

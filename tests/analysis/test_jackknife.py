@@ -11,6 +11,7 @@ from eigenwalker.analysis import (
     DiscriminantRegressor,
     WalkerSpace,
     jackknife_curves,
+    nested_leave_one_out,
     regression_curves,
 )
 
@@ -268,3 +269,21 @@ def test_groups_and_traits_must_fit_the_walkers():
         jackknife_curves(X, R, groups=[None, *range(19)])
     with pytest.raises(ValueError, match="The trait is 1 for all 20 walkers"):
         regression_curves(X, np.ones(20))
+
+
+def test_a_class_that_is_one_walker_or_one_person_is_refused():
+    walkers = np.random.default_rng(0).normal(size=(12, 5))
+    sex = np.array(["woman"] * 11 + ["man"])
+    with pytest.raises(ValueError, match=r"the class man .*one walker \(row 11\)"):
+        jackknife_curves(walkers, sex)
+    sex[6:], person = "man", ["a", "b", "c", "d", "e", "f"] + ["Bo"] * 6
+    with pytest.raises(ValueError, match="all of it is Bo"):
+        jackknife_curves(walkers, sex, groups=person)
+    assert jackknife_curves(walkers, sex, groups=[*person[:-1], "Al"]).fewest_errors < 12
+
+
+def test_two_of_a_class_are_enough_where_others_choose_the_components():
+    rng = np.random.default_rng(3)
+    sex = np.array([1] * 2 + [-1] * 10)
+    walkers = rng.normal(size=(12, 4)) + 8 * sex[:, None] * [1, 0, 0, 0]
+    assert nested_leave_one_out(walkers, sex).errors <= 2

@@ -29,6 +29,11 @@ class Task:
         """Taken off the trait before the discriminant is solved for, and added to predictions."""
         return float(self.y.mean()) if self.is_number else 0.0
 
+    def keeps_both(self, out: np.ndarray) -> bool:
+        """Return whether both classes are left without the rows `out`; a number always is."""
+        left = np.delete(self.y, out)
+        return self.is_number or bool((left > 0).any() and (left < 0).any())
+
     @property
     def r(self) -> np.ndarray:
         """What the discriminant is solved for: Troje (2002), eq. 10."""
@@ -57,8 +62,18 @@ def class_task(
     refuse_missing(y)
     classes = np.asarray(y)
     walkers, folds = _walkers_and_folds(X, classes, groups, least_folds)
-    _, which = two_classes(classes)
-    return Task(walkers, 2.0 * which - 1, folds, is_number=False)
+    names, which = two_classes(classes)
+    task = Task(walkers, 2.0 * which - 1, folds, is_number=False)
+    for out in folds:
+        if task.keeps_both(out):
+            continue
+        who = f"one walker (row {out[0]})" if groups is None else f"{np.asarray(groups)[out[0]]}"
+        alone = names[which[out[0]]]
+        raise ValueError(
+            f"Left out in turn, nobody of the class {alone} would be left to learn it from: all of "
+            f"it is {who}. Each class needs two walkers or more, of two persons or more."
+        )
+    return task
 
 
 def number_task(

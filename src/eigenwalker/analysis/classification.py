@@ -82,6 +82,11 @@ class InputResult(Generic[_Curves]):
     p: float
 
 
+def of_panels(results: Sequence[InputResult[_Curves]]) -> list[InputResult[_Curves]]:
+    """Return the results of panels of the figure, without those of what its text adds."""
+    return [result for result in results if result.input not in INPUTS[N_PANELS:]]
+
+
 @dataclass(frozen=True, eq=False)
 class Classification:
     """How well two classes of walkers can be told apart.
@@ -141,7 +146,7 @@ class Classification:
         """
         n_inputs = sum(
             result.curves.misclassified[:, result.curves.best_n - 1].astype(int)
-            for result in self.results[:N_PANELS]
+            for result in of_panels(self.results)
         )
         counts = pd.Series(n_inputs, index=self.contrast.rows, name="inputs that misclassify it")
         return counts[counts >= least].sort_values(ascending=False, kind="stable")
@@ -205,7 +210,8 @@ def classify(
 ) -> Classification:
     """Return how well two classes can be told apart, from everything and from parts.
 
-    Where the population names persons with several walks, a person's walks are left out together.
+    Where the population names persons with several walks, a person's walks are left out together;
+    errors count walks.
 
     Parameters
     ----------

@@ -190,7 +190,8 @@ def jackknife_curves(
         Whether to standardise again without the walker left out. Standardising once for all lets
         its scale, though not its class, leak into the training.
     groups : array of shape (walker,), optional
-        The person of each row: persons with several trials are left out with all of them.
+        The person of each row: persons with several trials are left out with all of them. Errors
+        and means still count rows, so that who walked more often weighs more.
     progress : callable, optional
         Called with the number of folds done and of all folds.
 
@@ -203,7 +204,7 @@ def jackknife_curves(
     ------
     ValueError
         If there are fewer than three walkers or groups, no two classes, no feature that varies,
-        or missing numbers.
+        missing numbers, or if all walkers of a class would be left out at once.
 
     See Also
     --------

@@ -69,7 +69,8 @@ def trait_axis(
     .. math:: w = w_0 + \alpha V c'
 
     V holds the first few eigenwalkers, those of most variance, so that a step leads where walkers
-    differ.
+    differ. Every walk counts once, also several of a person, whom `classify` leaves out together:
+    whoever walked more often weighs more. For an axis of people, keep one walk of each.
 
     Parameters
     ----------

@@ -101,6 +101,10 @@ def nested_leave_one_out(
     ValueError
         As `jackknife_curves`; four walkers or groups are needed.
 
+    Notes
+    -----
+    A pair of persons who are all of a class does not count when the number is chosen.
+
     See Also
     --------
     permutation_test : How often a permuted trait is predicted as well.
@@ -123,6 +127,8 @@ def nested_leave_one_out(
         losses_of_others = np.zeros((len(folds), min(svd.Y.shape)))
         steps = ticked(svd.leaving_out(both), len(pairs), progress)
         for (first, second), (out, fold) in zip(pairs, steps, strict=True):
+            if not task.keeps_both(out):
+                continue  # one class cannot be told from nothing
             losses = task.losses(fold.sums(order), task.r[out], svd.training_mean(out))
             of_first = len(folds[first])
             _add(losses[:, of_first:].sum(axis=1), losses_of_others[first])

@@ -149,7 +149,10 @@ class Population:
 
     @cached_property
     def average(self) -> np.ndarray:
-        """The average walker as a vector, w_0 of Troje (2002), eq. 5: shape (feature,)."""
+        """The average walker as a vector, w_0 of Troje (2002), eq. 5: shape (feature,).
+
+        Every walk counts once, also several of a person.
+        """
         return _read_only(self.X[self.in_average].mean(axis=0))
 
     @cached_property
