@@ -74,6 +74,10 @@ class InputResult(Generic[_Curves]):
         When the number of components is chosen without the walker predicted.
     p : float
         Share of permuted traits that reach as small an error on the curve.
+
+    See Also
+    --------
+    classify, regress : make them.
     """
 
     input: Input
@@ -99,6 +103,10 @@ class Classification:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
+
+    See Also
+    --------
+    classify : makes it.
     """
 
     contrast: Contrast
@@ -164,6 +172,10 @@ class Regression:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
+
+    See Also
+    --------
+    regress : makes it.
     """
 
     contrast: Contrast

@@ -80,6 +80,14 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     ValueError
         If there is no such trait, or it is the same for all walkers.
 
+    See Also
+    --------
+    classify, regress, trait_axis : take a trait in the same words.
+
+    References
+    ----------
+    Troje (2002), eq. 10: the row vector r.
+
     Examples
     --------
     >>> sex = trait_contrast(ew.load_population(), "sex")

@@ -48,6 +48,10 @@ class JackknifeCurves(_Curves):
     held_out : array of shape (walker, component)
         The same for each walker left out, by a discriminant trained on the others.
 
+    See Also
+    --------
+    jackknife_curves : makes them.
+
     References
     ----------
     Troje (2002), fig. 4.
@@ -106,6 +110,10 @@ class RegressionCurves(_Curves):
         Prediction by 1, 2, ... components, for the walkers trained on.
     held_out : array of shape (walker, component)
         The same for each walker left out, by a discriminant trained on the others.
+
+    See Also
+    --------
+    regression_curves : makes them.
     """
 
     @property
@@ -265,6 +273,10 @@ def regression_curves(
     ------
     ValueError
         As `jackknife_curves`, or if the trait does not vary.
+
+    See Also
+    --------
+    jackknife_curves : the same for two classes.
 
     References
     ----------

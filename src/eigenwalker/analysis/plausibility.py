@@ -33,6 +33,10 @@ class Plausibility:
     limb_stretch : Series
         Standard deviation of each limb's length over the stride as a share of its mean: bones are
         rigid, sums of walkers not quite.
+
+    See Also
+    --------
+    plausibility : makes it.
     """
 
     position: SpacePosition
@@ -53,6 +57,10 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     Returns
     -------
     Plausibility
+
+    See Also
+    --------
+    position_in_space : the first part of it, in any space.
 
     References
     ----------
@@ -110,6 +118,10 @@ class SpacePosition:
         space, 1 for a difference that no walker of the space has.
     percentile : float
         Percentage of the given walkers that are closer to the average; NaN if none is given.
+
+    See Also
+    --------
+    position_in_space : makes it.
     """
 
     distance: float
@@ -136,6 +148,14 @@ def position_in_space(
     Returns
     -------
     SpacePosition
+
+    See Also
+    --------
+    plausibility : with the lengths of limbs.
+
+    References
+    ----------
+    Troje (2002), eq. 13: positions along an axis as z-scores.
 
     Examples
     --------

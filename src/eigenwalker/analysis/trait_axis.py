@@ -33,6 +33,14 @@ class TraitAxis:
         Fitted on their scores.
     columns : array of int
         Features that the discriminant uses.
+
+    See Also
+    --------
+    trait_axis : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 13.
     """
 
     contrast: Contrast

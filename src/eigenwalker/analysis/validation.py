@@ -35,6 +35,10 @@ class NestedPredictions:
         Prediction for each walker left out: the sum of eq. 11 for two classes, else the trait.
     chosen_n : array of int of shape (walker,)
         The number of components chosen by the jack-knife of the others.
+
+    See Also
+    --------
+    nested_leave_one_out : makes them.
     """
 
     y: np.ndarray
@@ -109,6 +113,10 @@ def nested_leave_one_out(
     --------
     permutation_test : How often a permuted trait is predicted as well.
 
+    References
+    ----------
+    Troje (2002), eq. 11, chooses n on the curve itself; here n is chosen without the walker.
+
     Examples
     --------
     >>> rng = np.random.default_rng(0)
@@ -159,6 +167,10 @@ class PermutationTest:
         square error in standard deviations of the trait.
     null : array of shape (permutation,)
         The same of each permuted trait.
+
+    See Also
+    --------
+    permutation_test : makes it.
     """
 
     least_error: float
@@ -202,6 +214,14 @@ def permutation_test(
     Returns
     -------
     PermutationTest
+
+    See Also
+    --------
+    nested_leave_one_out : errors when n is chosen without the walker.
+
+    References
+    ----------
+    Ojala & Garriga (2010), Journal of Machine Learning Research 11:1833.
 
     Examples
     --------

@@ -41,6 +41,10 @@ def load_population(path: str | Path | None = None) -> Population:
     simulate_population : other simulated people.
     fit_folder : a population of captures.
 
+    References
+    ----------
+    Troje (2002), Decomposing biological motion; ``docs/simulation.md``.
+
     Examples
     --------
     >>> people = ew.load_population()

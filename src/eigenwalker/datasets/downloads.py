@@ -133,6 +133,10 @@ def fetch_captures(
     ConnectionError
         If a file cannot be fetched.
 
+    See Also
+    --------
+    fit_folder : a population of such a folder.
+
     Examples
     --------
     >>> fetch_captures("cmu", "captures")

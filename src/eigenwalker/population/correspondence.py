@@ -59,6 +59,10 @@ class Correspondence:
         Cosine between each eigenposture and the average walker's.
     flags : tuple of str
         For each walker, why correspondence does not hold; empty where it does.
+
+    See Also
+    --------
+    correspond : makes it.
     """
 
     reference: ReferenceWalker
@@ -163,6 +167,10 @@ def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, n
     See Also
     --------
     correspond : Many walkers at once, and how it is done.
+
+    References
+    ----------
+    As `correspond`.
     """
     if walker.markers != reference.markers or walker.form != reference.form:
         raise ValueError(
@@ -188,6 +196,10 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     -------
     array of shape (component,)
         Mean Pearson correlation over all pairs of walkers.
+
+    See Also
+    --------
+    Population.posture_correlations : of a whole population.
 
     References
     ----------
@@ -223,6 +235,14 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     Returns
     -------
     array of shape (walker, component, marker, axis)
+
+    See Also
+    --------
+    correspond : axes and phases agree too.
+
+    References
+    ----------
+    Troje (2002), correlations of eigenpostures.
     """
     postures: list[np.ndarray] = []
     for walker in walkers:

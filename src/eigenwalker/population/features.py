@@ -44,6 +44,14 @@ class FeatureLayout:
     fixed_phases : tuple of float
         In the Fourier form, the phases that every walker shares.
 
+    See Also
+    --------
+    Population.layout : that of a population.
+
+    References
+    ----------
+    Troje (2002), the 229 numbers of a walk.
+
     Examples
     --------
     >>> layout = FeatureLayout(ew.JOINTS.markers, (1, 1, 2, 2))

@@ -54,6 +54,14 @@ class Population:
     ValueError
         If the walkers cannot be compared, or there is not one row of traits for each.
 
+    See Also
+    --------
+    load_population, fit_folder, simulate_population : make one.
+
+    References
+    ----------
+    Troje (2002), eq. 4 to 6 and 12.
+
     Examples
     --------
     >>> people = ew.load_population()

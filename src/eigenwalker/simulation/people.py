@@ -72,6 +72,10 @@ def simulate_captures(
     write_captures : files of them.
     simulate_population : the population that they make.
 
+    References
+    ----------
+    Troje (2002), methods; ``docs/simulation.md``.
+
     Examples
     --------
     >>> for capture, person in simulate_captures(1, 1, duration_s=3):

@@ -20,6 +20,10 @@ class Parameter(NamedTuple):
         Standard deviation within a sex.
     source : str
         Publication that these come from.
+
+    See Also
+    --------
+    PARAMETERS : all of them.
     """
 
     female: float
@@ -56,6 +60,10 @@ def average_person() -> dict[str, float]:
     See Also
     --------
     draw_people : people who differ.
+
+    References
+    ----------
+    Of each number: `Parameter.source`.
 
     Examples
     --------

@@ -75,6 +75,10 @@ def random_effect(
     -------
     PlantedEffect
 
+    See Also
+    --------
+    add_effect : adds it to a walk.
+
     Examples
     --------
     >>> effect = random_effect("structure", size_mm=5, seed=1)
@@ -114,6 +118,10 @@ def add_effect(walk: xr.DataArray, effect: PlantedEffect, amount: float) -> xr.D
     ------
     ValueError
         If the walk is not of the 15 joints.
+
+    See Also
+    --------
+    simulate_population : plants effects in many.
 
     Examples
     --------

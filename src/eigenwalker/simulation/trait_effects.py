@@ -69,6 +69,10 @@ def draw_people(
     simulate_walk : simulates such a person.
     simulate_population : draws people and makes a population of them.
 
+    References
+    ----------
+    Alexander (1989), Physiological Reviews 69:1199 (the pendulum); ``docs/simulation.md``.
+
     Examples
     --------
     >>> people = draw_people(2, 1, seed=3)
