@@ -75,9 +75,9 @@ def test_perspective_shows_the_near_larger_and_the_centre_as_it_is(walker):
 
 
 def test_dots_behind_the_eye_are_not_seen(walker):
-    centre = make_stimulus(walker, azimuth_deg=90).view.centre_mm
-    towards = (walker.trajectories(TIME).values - centre) @ observer_axes(90)[2]
-    eye_mm = float(np.median(towards[:, INDEX["right_wrist"]]))
+    afar = make_stimulus(walker, azimuth_deg=90)
+    towards = (at(afar) - afar.view.centre_mm) @ observer_axes(90)[2]
+    eye_mm = 0.5 + float(np.median(towards[:, INDEX["right_wrist"]]))
     played = make_stimulus(walker, azimuth_deg=90, eye_distance_mm=eye_mm).play(TIME)
     assert played.visible.tolist() == (towards <= eye_mm - 1).tolist()
     assert 0 < played.visible[:, INDEX["right_wrist"]].mean() < 1

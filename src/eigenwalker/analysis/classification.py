@@ -316,7 +316,7 @@ def regress(
     >>> found = regress(people, "height", inputs=[Input("size alone", "size", False)])
     >>> found.table()[["input", "best n", "correlation"]].round(2)
             input  best n  correlation
-    0  size alone       1         0.96
+    0  size alone       1         0.97
     """
     contrast = trait_contrast(population, trait)
     if contrast.two_classes:
