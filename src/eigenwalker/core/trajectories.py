@@ -6,11 +6,14 @@ seconds; x points forward, y to the walker's left, z up. Missing samples are NaN
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+
+from eigenwalker.core.arguments import as_floats, described
 
 DIMS = ("time", "marker", "axis")
 AXES = ("x", "y", "z")
@@ -24,6 +27,8 @@ MILLIMETRES = {
     "ft": 304.8,
 }
 """Millimetres in each unit of a capture."""
+LARGEST_MM = 1e12
+"""Largest coordinate: a million kilometres, beyond the frame of any capture."""
 
 
 def label_trajectories(
@@ -75,15 +80,15 @@ def label_trajectories(
         raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")
     if unit not in MILLIMETRES:
         raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
-    values = np.asarray(values, dtype=float) * MILLIMETRES[unit]
+    values = as_floats(values, "Positions must be real numbers") * MILLIMETRES[unit]
     time = start_s + np.arange(len(values) if values.ndim else 0) / rate_hz
     return trajectories_at(time, values, markers)
 
 
 def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) -> xr.DataArray:
     """Return positions (time, marker, axis) in mm, at times in seconds, as trajectories."""
-    time = np.asarray(time, dtype=float)
-    values = np.asarray(values, dtype=float)
+    time = as_floats(time, "Times must be real numbers")
+    values = as_floats(values, "Positions must be real numbers")
     names = [str(marker) for marker in markers]
     problems: list[str] = []
     if values.shape != (len(time), len(names), 3):
@@ -98,6 +103,8 @@ def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) 
         problems.append("a marker has an empty name")
     if np.isinf(values).any():
         problems.append("some values are infinite; mark missing samples by NaN")
+    elif (largest := np.abs(values).max(initial=0, where=~np.isnan(values))) > LARGEST_MM:
+        problems.append(f"a position of {largest:.4g} mm is none; mark missing samples by NaN")
     if not np.isfinite(time).all():
         problems.append("some times are not finite")
     if problems:
@@ -117,9 +124,12 @@ def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.Data
     If they are to be complete, missing samples are refused too.
     """
     if not isinstance(walk, xr.DataArray):  # pyright: ignore[reportUnnecessaryIsInstance] - callers err
+        make = "label_trajectories()"
+        if isinstance(walk, str | os.PathLike):
+            make = "read_mocap()"
         raise TypeError(
-            f"Expected trajectories (a DataArray with dims {DIMS}), got "
-            f"{type(walk).__name__}; make them with label_trajectories()."
+            f"Expected trajectories (a DataArray with dims {DIMS}), got {described(walk)}; "
+            f"make them with {make}."
         )
     coords = sorted(map(str, walk.coords))  # pyright: ignore[reportUnknownMemberType, reportUnknownArgumentType]
     if set(walk.dims) != set(DIMS) or not set(DIMS) <= set(coords):
@@ -136,11 +146,23 @@ def check_trajectories(walk: xr.DataArray, *, complete: bool = False) -> xr.Data
             f"Expected millimetres, got units={walk.attrs['units']!r}; "
             "convert with label_trajectories(..., unit=...)."
         )
+    if walk.dtype != float:
+        walk = walk.copy(data=as_floats(walk.values, "Positions must be real numbers"))
+    names: list[object] = walk["marker"].values.tolist()
+    if len(set(names)) < len(names):
+        twice = sorted({str(name) for name in names if names.count(name) > 1})
+        raise ValueError(
+            f"Markers need names of their own; these come more than once: {twice[:6]}."
+        )
     values = walk.values
-    if values.size and np.isfinite(values.min()) and np.isfinite(values.max()):
+    if not values.size:
+        raise ValueError(f"Expected frames and markers; got shape {values.shape}, which has none.")
+    if values.min() >= -LARGEST_MM and values.max() <= LARGEST_MM:
         return walk
     if np.isinf(values).any():
         raise ValueError("Some positions are infinite; mark missing samples by NaN.")
+    if (largest := np.nanmax(np.abs(values), initial=0)) > LARGEST_MM:
+        raise ValueError(f"A position of {largest:.4g} mm is none; mark missing samples by NaN.")
     if complete and (missing := np.isnan(values).any(axis=(0, 2))).any():
         raise ValueError(
             f"Samples are missing for {walk.marker.values[missing].tolist()}; "

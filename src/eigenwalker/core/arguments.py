@@ -1,0 +1,77 @@
+"""Checks of what a public function is given: what was expected, and what came."""
+
+from __future__ import annotations
+
+import os
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+LARGEST = 1e60
+"""Size of a number up to which its fourth power, and sums of them, are finite."""
+
+
+def described(value: object) -> str:
+    """Return what an argument is, in a few words."""
+    if isinstance(value, str | os.PathLike):
+        return f"the text {str(os.fspath(value))[:60]!r}"
+    if value is None or isinstance(value, bool | Real):
+        return repr(value)[:60]
+    kind = type(value).__name__
+    article = "an" if kind[:1] in "AEIOaeio" else "a"
+    if isinstance(value, np.ndarray | xr.DataArray):
+        return f"{article} {kind} of {value.dtype} of shape {value.shape}"
+    size = f" of {len(value)}" if isinstance(value, list | tuple | set | dict) else ""
+    return f"{article} {kind}{size}"
+
+
+def check_kind(value: object, kind: type[Any] | tuple[type[Any], ...], expected: str) -> None:
+    """Raise a TypeError that says what was expected and what came, unless a value is of a kind."""
+    if not isinstance(value, kind):
+        raise TypeError(f"Expected {expected}, got {described(value)}.")
+
+
+def check_numbers(
+    values: ArrayLike, name: str, *dims: str, missing: bool = False, least: int = 1
+) -> np.ndarray:
+    """Return an argument as an array of float64 of these dimensions; any, where none are named.
+
+    Refused are other shapes, fewer than `least` along the first dimension, what is no real number,
+    infinity, numbers beyond `LARGEST`, and NaN unless samples may be `missing`.
+    """
+    shape = f" of shape ({', '.join(dims)}{',' * (len(dims) == 1)})" if dims else ""
+    expected = f"{name} must be real numbers{shape}"
+    array = as_floats(values, expected)
+    if dims and (array.ndim != len(dims) or len(array) < least):
+        more = f", {least} or more of the first" if least > 1 else ""
+        raise ValueError(f"{expected}{more}; got shape {array.shape}.")
+    sizes = np.abs(array)
+    largest = float(sizes.max(initial=0, where=~np.isnan(sizes)))
+    if largest > LARGEST:
+        came = "infinity" if np.isinf(largest) else f"{largest:.4g}"
+        raise ValueError(f"{expected}, finite and up to {LARGEST:g} in size; got {came}.")
+    if not missing and (n_missing := int(np.isnan(sizes).sum())):
+        raise ValueError(f"{expected}, and {n_missing} of {array.size} are missing (NaN).")
+    return array
+
+
+def as_floats(values: ArrayLike, expected: str) -> np.ndarray:
+    """Return real numbers as float64; raise a TypeError if they are something else."""
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError) as error:
+        raise TypeError(f"{expected}; got rows of different length.") from error
+    objects = array.dtype.kind == "O" and all(isinstance(each, Real) for each in array.flat)
+    if array.dtype.kind not in "fiub" and not objects:
+        what = f"{described(values)}, with other things than numbers"
+        raise TypeError(
+            f"{expected}; got {what if isinstance(values, list) else described(values)}."
+        )
+    try:
+        with np.errstate(over="ignore"):  # of longer floats: they become infinite
+            return array.astype(float, copy=False)
+    except OverflowError:  # of whole numbers
+        return np.full(array.shape, np.inf)
