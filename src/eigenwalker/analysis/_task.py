@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.analysis.discriminant import refuse_missing, two_classes
 from eigenwalker.analysis.walker_space import constant_features
+from eigenwalker.core.arguments import check_labels, check_numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +51,7 @@ class Task:
 
 def task_of(X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, *, least_folds: int = 3) -> Task:
     """Return the task that a trait stands for: classes if it is text or has two values."""
-    values = pd.Series(np.asarray(y))
+    values = pd.Series(check_labels(y, "y"))
     is_number = pd.api.types.is_numeric_dtype(values) and values.nunique() != 2
     return (number_task if is_number else class_task)(X, y, groups, least_folds=least_folds)
 
@@ -59,8 +60,8 @@ def class_task(
     X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, *, least_folds: int = 3
 ) -> Task:
     """Return the task of telling two classes apart; raise if it cannot be done."""
-    refuse_missing(y)
-    classes = np.asarray(y)
+    classes = check_labels(y, "y")
+    refuse_missing(classes)
     walkers, folds = _walkers_and_folds(X, classes, groups, least_folds)
     names, which = two_classes(classes)
     task = Task(walkers, 2.0 * which - 1, folds, is_number=False)
@@ -80,8 +81,8 @@ def number_task(
     X: ArrayLike, y: ArrayLike, groups: ArrayLike | None, *, least_folds: int = 3
 ) -> Task:
     """Return the task of predicting a trait that is a number; raise if it cannot be done."""
-    refuse_missing(y)
-    trait = np.asarray(y, dtype=float)
+    refuse_missing(check_labels(y, "y"))
+    trait = check_numbers(y, "y", "walker")
     walkers, folds = _walkers_and_folds(X, trait, groups, least_folds)
     if np.ptp(trait) == 0:
         raise ValueError(f"The trait is {trait[0]:g} for all {len(trait)} walkers; it must vary.")
@@ -91,8 +92,8 @@ def number_task(
 def _walkers_and_folds(
     X: ArrayLike, y: np.ndarray, groups: ArrayLike | None, least_folds: int
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    walkers = np.asarray(X, dtype=float)
-    if walkers.ndim != 2 or y.shape != walkers.shape[:1]:
+    walkers = check_numbers(X, "X", "walker", "feature", missing=True)
+    if y.shape != walkers.shape[:1]:
         raise ValueError(
             f"X must be (walker, feature) and y (walker,); got shapes {walkers.shape} "
             f"and {y.shape}."
@@ -109,8 +110,8 @@ def _walkers_and_folds(
             "there is nothing to tell them apart by."
         )
     if groups is not None:
-        refuse_missing(groups, "group")
-    group = np.arange(len(walkers)) if groups is None else np.asarray(groups)
+        refuse_missing(check_labels(groups, "groups"), "group")
+    group = np.arange(len(walkers)) if groups is None else check_labels(groups, "groups")
     if group.shape != y.shape:
         raise ValueError(
             f"groups must say who each of the {len(y)} walkers is; got shape {group.shape}."

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from eigenwalker.population.population import FLAG, Population
+from eigenwalker.population.population import FLAG, Population, check_population
 
 PERSON = "person"
 """Column of the traits that names the person of each walk."""
@@ -96,6 +96,7 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     >>> trait_contrast(ew.load_population(), "weight").positive
     'heavy'
     """
+    check_population(population)
     name, _, pair = trait.partition("=")
     column = trait_column(population.traits, name)
     values = population.traits[column]

@@ -9,7 +9,8 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from eigenwalker.analysis.walker_space import WalkerSpace
-from eigenwalker.population.population import Population
+from eigenwalker.core.arguments import check_numbers
+from eigenwalker.population.population import Population, check_population
 
 LIMBS = {
     "upper arms": ("shoulder", "elbow"),
@@ -72,6 +73,7 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     >>> bool(plausibility(people, people.average).limb_change.abs().max() < 1e-9)
     True
     """
+    check_population(population)
     walkers = population.X[population.in_average]
     space = WalkerSpace().fit(walkers)
     own, average = (_limb_lengths(population, each) for each in (vector, population.average))
@@ -165,7 +167,7 @@ def position_in_space(
     >>> report.z_scores.round(2).tolist(), report.percentile
     ([3.4], 100.0)
     """
-    vector = np.asarray(vector, dtype=float)
+    vector = check_numbers(vector, "vector", "feature")
     if vector.shape != space.average_walker_.shape:
         raise ValueError(
             f"A walker in this space is a vector of {len(space.average_walker_)} features; got an "
@@ -176,7 +178,8 @@ def position_in_space(
     average, percentile = space.average_walker_, float("nan")
     squared = _squared(space, vector[None] - average)[0]
     if walkers is not None:
-        nearer = _squared(space, np.asarray(walkers, dtype=float) - average) < squared
+        others = check_numbers(walkers, "walkers", "walker", "feature")
+        nearer = _squared(space, others - average) < squared
         percentile = 100 * float(nearer.mean())
     total_variance = space.explained_variance_[0] / space.explained_variance_ratio_[0]
     residual = _squared(space, vector - space.inverse_transform(scores))

@@ -15,7 +15,7 @@ from eigenwalker.analysis.plausibility import Plausibility, plausibility
 from eigenwalker.analysis.trait_axis import trait_axis
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.core.walker import Walker
-from eigenwalker.population.population import Population
+from eigenwalker.population.population import Population, check_population
 
 ALPHAS = (-6, -3, 0, 3, 6)
 """Standard deviations along the trait at which walkers are shown, up to the paper's 6."""
@@ -97,6 +97,7 @@ def study_trait(population: Population, result: Classification | Regression) -> 
     >>> list(study_trait(people, result).views["discriminant"].walkers)
     ['female 6 SD', 'female 3 SD', 'average', 'male 3 SD', 'male 6 SD']
     """
+    check_population(population)
     contrast = result.contrast
     trait = contrast.trait
     if contrast.two_classes:

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Sized
 from numbers import Real
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 LARGEST = 1e60
 """Size of a number up to which its fourth power, and sums of them, are finite."""
 
 
-def described(value: object) -> str:
+def described(value: Any) -> str:
     """Return what an argument is, in a few words."""
-    if isinstance(value, str | os.PathLike):
-        return f"the text {str(os.fspath(value))[:60]!r}"
-    if value is None or isinstance(value, bool | Real):
+    if isinstance(value, str) or hasattr(value, "__fspath__"):
+        return f"the text {str(value)[:60]!r}"
+    if value is None or isinstance(value, Real):
         return repr(value)[:60]
     kind = type(value).__name__
     article = "an" if kind[:1] in "AEIOaeio" else "a"
-    if isinstance(value, np.ndarray | xr.DataArray):
+    if hasattr(value, "dtype") and hasattr(value, "shape"):
         return f"{article} {kind} of {value.dtype} of shape {value.shape}"
-    size = f" of {len(value)}" if isinstance(value, list | tuple | set | dict) else ""
+    size = f" of {len(value)}" if isinstance(value, Sized) else ""
     return f"{article} {kind}{size}"
 
 
@@ -45,9 +44,12 @@ def check_numbers(
     shape = f" of shape ({', '.join(dims)}{',' * (len(dims) == 1)})" if dims else ""
     expected = f"{name} must be real numbers{shape}"
     array = as_floats(values, expected)
-    if dims and (array.ndim != len(dims) or len(array) < least):
+    few = array.size < least if not array.ndim else len(array) < least or (least and not array.size)
+    if few or (dims and array.ndim != len(dims)):
         more = f", {least} or more of the first" if least > 1 else ""
         raise ValueError(f"{expected}{more}; got shape {array.shape}.")
+    if not array.size or max(array.max(), -array.min()) <= LARGEST:  # NaN is not
+        return array
     sizes = np.abs(array)
     largest = float(sizes.max(initial=0, where=~np.isnan(sizes)))
     if largest > LARGEST:
@@ -56,6 +58,20 @@ def check_numbers(
     if not missing and (n_missing := int(np.isnan(sizes).sum())):
         raise ValueError(f"{expected}, and {n_missing} of {array.size} are missing (NaN).")
     return array
+
+
+def check_labels(values: ArrayLike, name: str) -> np.ndarray:
+    """Return an argument of words or numbers, one each, as an array of one dimension."""
+    try:
+        labels = np.asarray(values)
+    except (ValueError, TypeError):
+        labels = np.empty((0, 0))
+    if labels.ndim != 1 or not labels.size or labels.dtype.kind not in "OUSTfiub":
+        raise TypeError(
+            f"{name} must be words or numbers, of which there is one or more in a row; got "
+            f"{described(values)}."
+        )
+    return as_floats(labels, name) if labels.dtype == np.longdouble else labels
 
 
 def as_floats(values: ArrayLike, expected: str) -> np.ndarray:

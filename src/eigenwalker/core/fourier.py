@@ -10,6 +10,8 @@ from typing import cast
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_numbers
+
 
 def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     r"""Return the constant, and sine and cosine of each harmonic, at the given moments.
@@ -36,6 +38,7 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     >>> harmonic_basis(np.array([0, 0.25]), 1).round(9).tolist()
     [[1.0, 0.0, 1.0], [1.0, 1.0, 0.0]]
     """
+    cycles = check_numbers(cycles, "cycles", "time")
     angles = 2 * np.pi * np.multiply.outer(cycles, np.arange(1, n_harmonics + 1))
     basis = np.ones((len(cycles), 1 + 2 * n_harmonics))
     basis[:, 1::2] = np.sin(angles)
@@ -117,6 +120,9 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     >>> round(share_explained(movement[:, None], cycles, 2), 9)
     0.5
     """
+    movement = check_numbers(movement, "movement", "time", "feature", least=2)
+    if len(movement) != len(cycles):
+        raise ValueError(f"movement has {len(movement)} moments and cycles {len(cycles)}.")
     centred = movement - movement.mean(axis=0)
     basis = harmonic_basis(cycles, n_harmonics)
     residual = centred - basis @ fit_basis(basis, centred)
@@ -153,6 +159,12 @@ def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
     >>> shift_origin(np.array([1.0, 0.0]), np.pi / 2).round(9).tolist()
     [0.0, 1.0]
     """
+    coefficients = check_numbers(coefficients, "coefficients")
+    if not coefficients.ndim or not coefficients.size or len(coefficients) % 2:
+        raise ValueError(
+            "coefficients must be of sin 1, cos 1, sin 2, cos 2 ..., two for each harmonic; got "
+            f"shape {coefficients.shape}."
+        )
     harmonics = np.arange(1, len(coefficients) // 2 + 1)
     turn = (harmonics * angle).reshape(-1, *[1] * (coefficients.ndim - 1))
     sine, cosine = coefficients[0::2], coefficients[1::2]

@@ -81,6 +81,8 @@ def label_trajectories(
     if unit not in MILLIMETRES:
         raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
     values = as_floats(values, "Positions must be real numbers") * MILLIMETRES[unit]
+    if not values.size:
+        raise ValueError(f"There are no positions in values of shape {values.shape}.")
     time = start_s + np.arange(len(values) if values.ndim else 0) / rate_hz
     return trajectories_at(time, values, markers)
 

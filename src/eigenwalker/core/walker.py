@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
 from typing import Literal
@@ -10,11 +11,21 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import AXES, trajectories_at
 from eigenwalker.core.walker_svg import N_FRAMES, beside, html_table, stride_svg
 
 Form = Literal["eigenposture", "fourier"]
+
+
+def check_walkers(walkers: Iterable[object]) -> None:
+    """Raise an error unless there is one walker or more, and nothing else."""
+    walkers = list(walkers)
+    if not walkers:
+        raise ValueError("Expected one walker or more, got none.")
+    for walker in walkers:
+        check_kind(walker, Walker, "a walker, as decompose_pca() returns it")
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +143,7 @@ class Walker:
         set_field = object.__setattr__
         set_field(self, "markers", tuple(str(marker) for marker in self.markers))
         for name, kind in (("p0", float), ("p", float), ("harmonics", int), ("phases", float)):
-            values = np.array(getattr(self, name), dtype=kind)
+            values = check_numbers(getattr(self, name), name, missing=True).astype(kind)
             values.flags.writeable = False
             set_field(self, name, values)
         for name in ("frequency_hz", "speed_mm_s", "time_origin_s"):
@@ -249,7 +260,7 @@ class Walker:
         DataArray of shape (time, marker, axis)
             Positions in millimetres, walking in place.
         """
-        time = np.atleast_1d(np.asarray(time, dtype=float))
+        time = np.atleast_1d(check_numbers(time, "time"))
         cycle = 2 * np.pi * self.frequency_hz * (time - self.time_origin_s)
         return trajectories_at(time, self.positions(cycle), self.markers)
 
@@ -287,6 +298,7 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
     >>> fourier_coefficients(walker, 1)[:, 0, 0].round(9).tolist()
     [0.0, 200.0]
     """
+    check_walkers([walker])
     coefficients = np.zeros((2 * n_harmonics, *walker.p0.shape))
     for posture, harmonic, phase in zip(walker.p, walker.harmonics, walker.phases, strict=True):
         if harmonic <= n_harmonics:

@@ -17,6 +17,7 @@ import xarray as xr
 from scipy.linalg.blas import dsyrk  # pyright: ignore[reportAttributeAccessIssue] - untyped
 from scipy.linalg.lapack import dsyevr  # pyright: ignore[reportAttributeAccessIssue] - untyped
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.fourier import centred_harmonics, fit_harmonics, shift_origin
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.core.walker import CaptureFit, Form, Walker
@@ -98,6 +99,7 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
     ----------
     Troje (2002), Decomposing biological motion, eq. 1 and 2, figs. 2 and 3.
     """
+    postures = check_numbers(postures, "postures", "time", "feature", least=2)
     mean, scatter = _mean_and_scatter(postures)
     power, axes = _largest_eigenpairs(scatter, min(2 * n_harmonics, postures.shape[1]))
     scores = postures @ axes

@@ -14,7 +14,7 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
 from eigenwalker.explorer.model_traits import model_traits, rounded_vectors, significant
 from eigenwalker.population.features import FeatureLayout
-from eigenwalker.population.population import FLAG, Population
+from eigenwalker.population.population import FLAG, Population, check_population
 
 N_EIGENWALKERS = 10
 MAX_WALKERS = 100
@@ -63,6 +63,7 @@ def page_model(
     >>> len(model["average"]), len(model["walkers"]), model["traits"][0]["positive"]
     (229, 40, 'male')
     """
+    check_population(population)
     rows = np.flatnonzero(~population.flagged)
     if not len(rows):
         rows = np.arange(len(population))

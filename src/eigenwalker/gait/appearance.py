@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.gait.heading import N_MOMENTS, ground_speed
 
 
@@ -49,6 +49,7 @@ def walker_measures(walker: Walker) -> pd.Series:
     >>> bool(he["shoulder_width_mm"] > she["shoulder_width_mm"])
     True
     """
+    check_walkers([walker])
     stride = walker.trajectories(np.arange(N_MOMENTS) * walker.period_s / N_MOMENTS)
     trunk = ["pelvis"] if "pelvis" in walker.markers else ["left_hip", "right_hip"]
 

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.fourier import centred_harmonics, share_explained
 from eigenwalker.core.smoothing import parabola_vertex
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
@@ -126,6 +127,7 @@ def frequency_of_scores(
     >>> round(2 * np.pi * frequency_of_scores(scores, 50), 9)
     5.0
     """
+    scores = check_numbers(scores, "scores", "time", "component", least=0)
     n_frames = len(scores)
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.gait.body_points import SIDES, facing_by_names, legs_of, paths_of
 
 STANCE_SHARE = 0.35
@@ -189,6 +189,7 @@ def ground_speed(walker: Walker) -> float:
     >>> ground_speed(walker) == walker.speed_mm_s
     True
     """
+    check_walkers([walker])
     if np.isfinite(walker.speed_mm_s):
         return walker.speed_mm_s
     return stance_speed(walker.trajectories(np.linspace(0, 2 * walker.period_s, N_MOMENTS)))

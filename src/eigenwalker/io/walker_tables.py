@@ -13,9 +13,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.axes import FORWARD_LEFT_UP, Layout, axes_matrix, from_rows, to_rows
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.walker import Walker, fourier_coefficients
+from eigenwalker.core.walker import Walker, check_walkers, fourier_coefficients
 from eigenwalker.gait.body_points import find_origin
 from eigenwalker.gait.heading import ground_speed
 
@@ -88,7 +89,7 @@ def walker_from_table(
     >>> walker.trajectories([0.25]).values.tolist()
     [[[200.0, 0.0, 50.0]]]
     """
-    values = np.asarray(table, dtype=float)
+    values = check_numbers(table, "table", "3 * marker", "column")
     places = _column_places(columns)
     turn = axes_matrix(axes)
     if values.shape != (3 * len(markers), len(columns)):
@@ -148,6 +149,7 @@ def walker_to_table(
     >>> walker_to_table(walker, columns=["mean", "cos1", "sin1"]).tolist()
     [[0.0, 0.0, 200.0], [0.0, 0.0, 0.0], [50.0, 0.0, 0.0]]
     """
+    check_walkers([walker])
     places, turn = _column_places(columns), axes_matrix(axes)
     n_harmonics = len(columns) // 2
     lost = sorted({int(h) for h in walker.harmonics if h > n_harmonics})
@@ -200,8 +202,8 @@ def walker_from_mm(
     >>> foot.frequency_hz, foot.speed_mm_s
     (1.0, 1200.0)
     """
-    values = np.asarray(matrix, dtype=float)
-    if values.ndim != 2 or values.shape[1] < 3 or not values.shape[1] % 2 or not len(values):
+    values = check_numbers(matrix, "matrix", "3 * marker + 1", "column")
+    if values.shape[1] < 3 or not values.shape[1] % 2 or not len(values):
         raise ValueError(
             "Expected a matrix of a mean, cosines and sines in columns, 3, 5, 7 ... of them, got "
             f"shape {values.shape}."
@@ -240,6 +242,7 @@ def walker_to_mm(
     --------
     walker_from_mm, walker_to_table
     """
+    check_walkers([walker])
     if markers is None and set(walker.markers) == set(JOINTS.markers):
         markers = JOINTS.markers
     n_harmonics = int(walker.harmonics.max(initial=1))

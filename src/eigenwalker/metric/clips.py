@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+from eigenwalker.core.arguments import check_numbers, described
 from eigenwalker.core.quaternions import quaternions_at, vectors_of
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate, trajectories_at
 from eigenwalker.core.walker import Walker
@@ -76,7 +77,7 @@ class Loop:
         DataArray of shape (time, marker, axis)
             Positions in mm, interpolated by periodic cubic splines.
         """
-        time = np.atleast_1d(np.asarray(time, dtype=float))
+        time = np.atleast_1d(check_numbers(time, "time"))
         values = positions_at(self.cycle, time, periodic=True)
         return trajectories_at(time, values, self.cycle.marker.values)
 
@@ -114,6 +115,14 @@ def as_trajectories(clip: Clip) -> xr.DataArray:
     if isinstance(clip, Loop | PreparedClip):
         return clip.cycle if isinstance(clip, Loop) else clip.clip
     return check_trajectories(clip)
+
+
+def check_clips(clips: Clips) -> Clips:
+    """Return clips by name or in order; of a population its walkers."""
+    clips = getattr(clips, "walkers", clips)
+    if isinstance(clips, str) or not isinstance(clips, Mapping | Sequence):
+        raise TypeError(f"Expected clips by name, or a list of them; got {described(clips)}.")
+    return clips
 
 
 def duration_s(clip: xr.DataArray) -> float:

@@ -8,6 +8,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.metric.joint_groups import GROUPS, By, group_points
 
 Shape = Literal["absolute", "squared", "sigmoid", "power"]
@@ -183,4 +184,7 @@ def shape_parameter(metric: Metric) -> float:
 
 def shaped(metric: Metric, distances: np.ndarray) -> np.ndarray:
     """Return F(d) of a metric, elementwise."""
+    distances = check_numbers(distances, "distances", missing=True)
+    if not distances.size or np.nanmin(distances) < 0:
+        raise ValueError(f"distances must be 0 or more; got {distances.ravel()[:5].tolist()}.")
     return SHAPES[metric.shape](distances, shape_parameter(metric))

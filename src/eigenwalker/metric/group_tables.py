@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.progress import Progress
 from eigenwalker.metric.clips import Clips
 from eigenwalker.metric.frame_metrics import Metric
@@ -79,6 +80,7 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
     >>> missing_groups(pd.DataFrame(columns=[group for group in GROUPS if group != "toe"]))
     ['toe']
     """
+    check_kind(table, pd.DataFrame, "a table of pairs by groups, as group_table() returns it")
     prefixes = dict.fromkeys(str(name).rpartition(" ")[0] for name in table.columns)
     names = [f"{prefix} {group}".strip() for prefix in prefixes for group in GROUPS]
     return [name for name in names if name not in table.columns]
@@ -108,6 +110,9 @@ def collinear_groups(table: pd.DataFrame) -> pd.DataFrame:
     >>> collinear_groups(table).round(6).values.tolist()
     [['thigh', 'calf', 1.0]]
     """
+    check_kind(table, pd.DataFrame, "a table of pairs by groups, as group_table() returns it")
+    if not len(table):
+        raise ValueError("The table has no pairs.")
     varied = table.loc[:, np.ptp(table.to_numpy(), axis=0) > 0]
     rows: list[tuple[str, str, float]] = []
     if len(varied) >= 3 and varied.shape[1] >= 2:

@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.kinematics import shortest_turn
 from eigenwalker.metric.clips import Clip, as_trajectories
 from eigenwalker.metric.joint_groups import BONES
@@ -244,7 +245,10 @@ def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") 
     """
     if kind not in get_args(AngleDistance):
         raise ValueError(f"kind={kind!r} is not known; give one of {get_args(AngleDistance)}.")
-    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    a, b = (check_numbers(each, "quaternions", missing=True) for each in (a, b))
+    pairs = zip(a.shape[::-1], b.shape[::-1], strict=False)
+    if {*a.shape[-1:], *b.shape[-1:]} != {4} or any(m != n and 1 not in (m, n) for m, n in pairs):
+        raise ValueError(f"Quaternions have four parts; got shapes {a.shape} and {b.shape}.")
     if kind == "angle":
         difference, total = np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)
         return 4 * np.arctan2(np.minimum(difference, total), np.maximum(difference, total))

@@ -10,14 +10,24 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
+from functools import cache, partial
+from typing import Any
 
 import numba
 import numpy as np
 
 from eigenwalker.metric.frame_metrics import Shape
 
-compiled = numba.njit(nogil=True, cache=True, error_model="numpy", fastmath={"contract", "nsz"})
+_njit = partial(numba.njit, nogil=True, error_model="numpy", fastmath={"contract", "nsz"})
+
+
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function compiled, and cached on disk where there is a folder for that."""
+    try:
+        return _njit(cache=os.path.expanduser("~") != "~")(function)
+    except RuntimeError:  # neither the installation nor a folder of this user can be written
+        return _njit(function)
+
 
 SHAPE_CODES: dict[Shape, int] = {"absolute": 0, "squared": 1, "sigmoid": 2, "power": 3}
 

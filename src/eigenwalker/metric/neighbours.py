@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.metric.clip_distances import clip_distance
 from eigenwalker.metric.clips import Clip
@@ -45,6 +46,7 @@ def nearest_walks(
     >>> nearest_walks(walks["walk 2"], walks).index[0]
     'walk 2'
     """
+    check_kind(walks, Mapping, "walks by name")
     if not walks:
         raise ValueError("There is no walk to compare with.")
     prepared = prepare(query)
@@ -81,7 +83,10 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     >>> labels.loc["slow"].tolist()
     [2.0, 1.0, 9.0, 1.0, 0.3333333333333333]
     """
+    check_kind(table, pd.DataFrame, "a table of walks by walks, as pair_table() returns it")
     names = [name for name in table.index if name in labels]
+    if not names:
+        raise ValueError(f"None of the {len(table)} walks of the table has a label.")
     values = table.loc[names, names].to_numpy()
     label_of = np.array([labels[name] for name in names])
     nearest = label_of[(values + np.diag(np.full(len(values), np.inf))).argmin(axis=1)]

@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.progress import Progress, ticked
-from eigenwalker.metric.clips import Clips, PreparedClip
+from eigenwalker.metric.clips import Clips, PreparedClip, check_clips
 from eigenwalker.metric.cycles import mean_distances, register_pairs
 from eigenwalker.metric.frame_metrics import POSITIONS, Metric, shaped
 from eigenwalker.metric.joint_groups import By
@@ -164,7 +164,7 @@ def pair_components(
     >>> pair_components(walks).shape
     (3, 15)
     """
-    if len(clips) < 2:
+    if len(check_clips(clips)) < 2:
         raise ValueError(f"Pairs need two clips or more; got {len(clips)}.")
     n_steps = len(clips) + len(clips) * (len(clips) - 1) // 2
     n_done = 0

@@ -12,7 +12,7 @@ import xarray as xr
 from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.gait.frequency import NoStrideError
 from eigenwalker.gait.gaps import fill_short_gaps
-from eigenwalker.metric.clips import Clip, Clips, Loop, PreparedClip, as_trajectories
+from eigenwalker.metric.clips import Clip, Clips, Loop, PreparedClip, as_trajectories, check_clips
 from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.loops import loop
 from eigenwalker.metric.points import common_names, refuse_duplicate_names
@@ -65,7 +65,7 @@ def prepare_together(
 
     Clips in a sequence are named "0", "1" and so on; `done` is called after each clip.
     """
-    clips = getattr(clips, "walkers", clips)
+    clips = check_clips(clips)
     if not isinstance(clips, Mapping):
         clips = {str(number): clip for number, clip in enumerate(clips)}
     known = {

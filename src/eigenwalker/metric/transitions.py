@@ -103,10 +103,12 @@ def _separate_minima(cells: np.ndarray, threshold: float, half: int) -> np.ndarr
     lowest = (cells == minimum_filter(cells, size=3, mode="nearest")) & (inside <= threshold)
     frames = np.argwhere(lowest & np.isfinite(inside))
     frames = frames[np.argsort(cells[tuple(frames.T)], kind="stable")]
-    minima: list[np.ndarray] = []
-    for frame in frames:
-        if all(np.abs(frame - other).max() >= max(half, 1) for other in minima):
-            minima.append(frame)
+    near, reach = np.zeros(cells.shape, dtype=bool), max(half, 1)
+    minima: list[tuple[int, int]] = []
+    for i, j in frames.tolist():  # many where nothing moves
+        if not near[i, j]:
+            minima.append((i, j))
+            near[max(i - reach + 1, 0) : i + reach, max(j - reach + 1, 0) : j + reach] = True
     return np.reshape(minima, (len(minima), 2)).astype(int)
 
 

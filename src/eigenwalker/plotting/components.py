@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from eigenwalker.core.trajectories import check_trajectories
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.plotting.style import (
     BLUE,
     INK,
@@ -51,6 +51,7 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     ----------
     Troje (2002), fig. 2.
     """
+    check_walkers(walkers)
     shares = [walker.fit.variance_share for walker in walkers if walker.fit is not None]
     if not shares:
         raise ValueError("None of the walkers has a fit; decompose captures with decompose_pca().")
@@ -96,6 +97,7 @@ def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) ->
     ----------
     Troje (2002), fig. 3 and eq. 8.
     """
+    check_walkers([walker])
     walk = check_trajectories(walk, complete=True).sel(marker=list(walker.markers))
     scores, sines = scores_of(walk, walker)
     r2 = 1 - ((scores - sines) ** 2).sum(axis=0) / ((scores - scores.mean(axis=0)) ** 2).sum(axis=0)

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.plotting.difference_tables import short_names
 from eigenwalker.plotting.projection import project
@@ -103,6 +104,10 @@ def picture_of_strides(
     ----------
     Pražák et al. (2010), figure 1.
     """
+    values = check_numbers(values, "values", "time_a", "time_b", missing=True)
+    times_a = check_numbers(times_a, "times_a", "time", least=2)
+    times_b = check_numbers(times_b, "times_b", "time", least=2)
+    path = check_numbers(path, "path", "step", "2")
     length_a, length_b = (len(clock) * (clock[1] - clock[0]) for clock in (times_a, times_b))
     lengths = np.array([length_a, length_b])
     path = path - np.floor(path.min(axis=0) / lengths) * lengths
@@ -224,6 +229,10 @@ def figure_two_walks(
         Seen from the side above, from the front below; the first walk blue, the second red, their
         left limbs paler.
     """
+    first, second = (
+        check_numbers(each, name, "time", "marker", "axis", missing=True)
+        for name, each in (("first", first), ("second", second))
+    )
     frames = np.linspace(0, len(first), n_moments, endpoint=False).astype(int)
     views = (90.0, 0.0)
     seen = {

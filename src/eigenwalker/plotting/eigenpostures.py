@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 from eigenwalker.core.skeleton import LINKS, Skeleton
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
     BLUE,
@@ -73,6 +73,7 @@ def figure_eigenpostures(
     >>> figure_eigenpostures(hop).axes[0].texts[1].get_text()
     'harmonic 2, 20-fold'
     """
+    check_walkers([walker])
     gains = [_gain(posture) for posture in walker.p]
     extremes = [
         (walker.p0 + gain * p, walker.p0 - gain * p)

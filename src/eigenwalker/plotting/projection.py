@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_numbers
+
 
 def project(
     positions: ArrayLike,
@@ -56,8 +58,8 @@ def project(
     >>> project([0, 300, 1000], azimuth_deg=90).round(9).tolist()
     [0.0, 1000.0]
     """
-    positions = np.asarray(positions, dtype=float)
-    if positions.ndim == 0 or positions.shape[-1] != 3:
+    positions = check_numbers(positions, "positions", missing=True)
+    if not positions.size or positions.shape[-1] != 3:
         raise ValueError(
             f"Expected positions with x, y, z along the last axis, got {positions.shape}."
         )

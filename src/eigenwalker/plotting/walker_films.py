@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Walker
@@ -110,7 +111,10 @@ def write_film(
     True
     """
     path = Path(path)
+    check_kind(walks, (Walker, xr.DataArray, list, tuple), "walkers or trajectories")
     shown = [walks] if isinstance(walks, Walker | xr.DataArray) else list(walks)
+    for walk in shown:
+        check_kind(walk, (Walker, xr.DataArray), "a walker or trajectories")
     form = film_format(path, rate_hz)
     _check(shown, duration_s, n_strides, style, background, titles)
     delays, seconds = _moments(shown, duration_s, n_strides, rate_hz or form.rate_hz, form)

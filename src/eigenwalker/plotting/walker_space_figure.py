@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_labels, check_numbers
 from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, note, panel
 
 
@@ -57,10 +58,13 @@ def figure_space(
     -------
     Figure
     """
-    X, across = np.asarray(X, dtype=float), [component - 1 for component in components]
+    X = check_numbers(X, "X", "walker", "feature")
+    across = [component - 1 for component in components]
     scores = space.transform(X)[:, across]
     figure, axes = panel(3.9, 3.2)
-    values = np.asarray(trait)
+    values = check_labels(trait, "trait")
+    if len(values) != len(X):
+        raise ValueError(f"X has {len(X)} walkers, and trait {len(values)} values.")
     if values.dtype.kind in "OUS":
         _draw_classes(axes, scores, values.astype(str))
         figure.legend(
@@ -73,7 +77,9 @@ def figure_space(
         scale.ax.tick_params(labelsize=SMALL, width=0.6, length=2.5)
         scale.outline.set_visible(False)
     if step is not None:
-        moved = space.transform((space.average_walker_ + np.asarray(step))[None])[0, across]
+        moved = space.transform(
+            (space.average_walker_ + check_numbers(step, "step", "feature"))[None]
+        )[0, across]
         _draw_direction(axes, moved, np.linalg.norm(scores, axis=1).max(), poles)
     axes.axhline(0, color=PALE, lw=0.6, zorder=0)
     axes.axvline(0, color=PALE, lw=0.6, zorder=0)

@@ -10,8 +10,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.skeleton import LINKS, Skeleton
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import GREY, INK, PALE, SMALL, USUAL, bare, panel
 
@@ -56,7 +57,10 @@ def draw_body(
     --------
     project, figure_walkers
     """
-    places = dict(zip(markers, np.asarray(seen) + at, strict=True))
+    seen = check_numbers(seen, "seen", "marker", "2", missing=True)
+    if seen.shape != (len(markers), 2):
+        raise ValueError(f"seen has shape {seen.shape}; there are {len(markers)} markers.")
+    places = dict(zip(markers, seen + at, strict=True))
     left = {one for one, other in skeleton.pairs if {one, other} <= places.keys()}
     for link in skeleton.segments:
         if not set(link) <= places.keys():
@@ -116,6 +120,7 @@ def figure_joints(
     >>> [text.get_text() for text in figure_joints(still, azimuths_deg=[0]).axes[0].texts]
     ['head', 'front']
     """
+    check_walkers([walker])
     pictures = [project(walker.p0, azimuth_deg=view) for view in azimuths_deg]
     reach = max(np.abs(picture[:, 0]).max() for picture in pictures) + HEAD_MM
     pitch, names = 2 * reach + 120, 620.0
@@ -221,8 +226,8 @@ def figure_walkers(
     >>> [text.get_text() for text in figure.axes[0].texts]
     ['woman', 'man']
     """
-    if not walkers:
-        raise ValueError("There is no walker to draw; give one or more, by title.")
+    check_kind(walkers, Mapping, "walkers by title")
+    check_walkers(walkers.values())
     strides = {title: _one_stride(walker, phase) for title, walker in walkers.items()}
     pictures = [[project(s, azimuth_deg=view) for s in strides.values()] for view in azimuths_deg]
     seen = np.concatenate([picture.reshape(-1, 2) for row in pictures for picture in row])

@@ -23,8 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.fourier import shift_origin
-from eigenwalker.core.walker import Form, Walker, fourier_coefficients
+from eigenwalker.core.walker import Form, Walker, check_walkers, fourier_coefficients
 from eigenwalker.decomposition.fourier import origin_angle
 from eigenwalker.decomposition.pca import is_negative
 from eigenwalker.population.features import FeatureLayout, wrap_phase
@@ -172,6 +173,8 @@ def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, n
     ----------
     As `correspond`.
     """
+    check_walkers([walker])
+    check_kind(reference, ReferenceWalker, "population.correspondence.reference")
     if walker.markers != reference.markers or walker.form != reference.form:
         raise ValueError(
             f"The walker has {len(walker.markers)} markers in the {walker.form} form, the "
@@ -212,6 +215,7 @@ def posture_correlations(postures: np.ndarray) -> np.ndarray:
     >>> posture_correlations(same).round(6).tolist()
     [1.0]
     """
+    postures = check_numbers(postures, "postures", "walker", "component", "marker", "axis", least=2)
     n_walkers, n_components = postures.shape[:2]
     flat = postures.reshape(n_walkers, n_components, -1)
     centred = flat - flat.mean(axis=-1, keepdims=True)
@@ -244,6 +248,7 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
     ----------
     Troje (2002), correlations of eigenpostures.
     """
+    check_walkers(walkers)
     postures: list[np.ndarray] = []
     for walker in walkers:
         p, harmonics = walker.p, walker.harmonics
@@ -262,8 +267,7 @@ def match_sign_and_order(walkers: Sequence[Walker]) -> np.ndarray:
 
 
 def _check_comparable(walkers: Sequence[Walker]) -> None:
-    if not walkers:
-        raise ValueError("A population needs one walker or more, got none.")
+    check_walkers(walkers)
     first = FeatureLayout.of(walkers[0])
     for number, walker in enumerate(walkers):
         same = walker.markers == first.markers and walker.form == first.form

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import Form, Walker
 
@@ -143,7 +144,7 @@ class FeatureLayout:
 
     def walker(self, vector: np.ndarray) -> Walker:
         """Return the walker that a feature vector describes."""
-        vector = np.asarray(vector, dtype=float)
+        vector = check_numbers(vector, "vector", "feature")
         if vector.shape != (len(self),):
             raise ValueError(
                 f"Expected a vector of {len(self)} features, got shape {vector.shape}."

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.walker import Walker
+from eigenwalker.core.arguments import check_kind, check_numbers
+from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.core.walker_svg import beside, html_table
 from eigenwalker.gait.heading import ground_speed
 from eigenwalker.population.correspondence import (
@@ -22,7 +23,12 @@ from eigenwalker.population.correspondence import (
     posture_correlations,
 )
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
-from eigenwalker.population.population_file import Stored, read_population, write_population
+from eigenwalker.population.population_file import (
+    Stored,
+    check_traits,
+    read_population,
+    write_population,
+)
 
 FLAG = "flag"
 """Column of the traits that says why a walker is left out of averages and curves; empty if not."""
@@ -77,7 +83,8 @@ class Population:
     provenance: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def __post_init__(self) -> None:
-        walkers, traits = tuple(self.walkers), pd.DataFrame(self.traits).reset_index(drop=True)
+        check_kind(self.walkers, Sequence, "walkers in a list")
+        walkers, traits = tuple(self.walkers), check_traits(self.traits)
         if len(walkers) != len(traits):
             raise ValueError(
                 f"There are {len(walkers)} walkers and {len(traits)} rows of traits; "
@@ -267,8 +274,9 @@ class Population:
         True
         """
         columns = self.layout.columns("structure")
-        mixed = np.array(dynamics, dtype=float)
-        mixed[columns] = np.asarray(structure)[columns]
+        mixed = check_numbers(dynamics, "dynamics", "feature", least=len(self.layout)).copy()
+        structure = check_numbers(structure, "structure", "feature", least=len(self.layout))
+        mixed[columns] = structure[columns]
         return mixed
 
     def size_normalised(self) -> Population:
@@ -321,9 +329,10 @@ class Population:
         """
         if not walkers:
             return self
+        check_walkers(walkers)
         before = self._correspondence
         aligned = [correspond_to(walker, before.reference) for walker in walkers]
-        traits = pd.DataFrame(traits).reset_index(drop=True)
+        traits = check_traits(traits)
         if len(traits) != len(aligned):
             raise ValueError(f"There are {len(aligned)} walkers and {len(traits)} rows of traits.")
         flags = [flag for _, _, flag in aligned]
@@ -410,6 +419,11 @@ def _summary(values: pd.Series) -> str:
 def _read_only(values: np.ndarray) -> np.ndarray:
     values.flags.writeable = False
     return values
+
+
+def check_population(population: object) -> None:
+    """Raise a TypeError unless this is a population."""
+    check_kind(population, Population, "a population, as load_population() returns it")
 
 
 def flags_of(traits: pd.DataFrame) -> list[str]:

@@ -17,6 +17,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker._version import __version__
+from eigenwalker.core.arguments import LARGEST, check_kind, check_numbers
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import CaptureFit, Walker
@@ -137,6 +138,21 @@ def _dataset(
     return xr.Dataset(variables, coords)
 
 
+def check_traits(given: Any) -> pd.DataFrame:
+    """Return a table of traits, if no number in it is one that statistics cannot be made of."""
+    check_kind(given, (pd.DataFrame, Mapping), "a table of traits, one row a walker")
+    traits = pd.DataFrame(given).reset_index(drop=True)
+    for name in traits.select_dtypes("number"):
+        wrong = np.flatnonzero(traits[name].abs() > LARGEST)
+        if wrong.size:
+            row = int(wrong[0])
+            raise ValueError(
+                f"The trait {str(name)!r} of row {row + 1} is {traits[name].iloc[row]:g}; give "
+                f"numbers up to {LARGEST:g} in size, and leave empty what is not known."
+            )
+    return traits
+
+
 def _storable(column: pd.Series) -> np.ndarray:
     if pd.api.types.is_bool_dtype(column) or not pd.api.types.is_numeric_dtype(column):
         texts = column.astype(object).where(column.notna(), "")
@@ -176,6 +192,7 @@ def _stored(dataset: xr.Dataset) -> Stored:
             for number in range(sum(str(name).startswith("trait_") for name in dataset))
         }
     )
+    check_traits(traits)
     reference = ReferenceWalker(
         dataset["reference_axes"].values, dataset["reference_average"].values, form, markers
     )
@@ -206,8 +223,7 @@ def _check_layout(
     numbers = ["reference_axes", "reference_average", "similarity"]
     numbers += [name for name in map(str, dataset) if name.startswith("fit_")]
     for name in numbers:
-        if not np.isfinite(dataset[name].values).all():
-            raise ValueError(f"{name} holds values that are not finite")
+        check_numbers(dataset[name].values, name)
     if form == "eigenposture" and np.any(dataset["phases"].values[:, 0] != 0):
         raise ValueError("the first phase of a walker is not 0")
     traits = [dataset[name].attrs.get("trait") for name in map(str, dataset) if "trait_" in name]

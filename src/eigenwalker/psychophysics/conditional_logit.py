@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.psychophysics.perceptual_metric import relative_weights
 from eigenwalker.psychophysics.reliability import Bootstrap, draw_counts
@@ -104,9 +105,10 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     >>> fit_choices([[1.0], [2.0]], trials).weights.round(4), np.log(3).round(4)
     (array([1.0986]), np.float64(1.0986))
     """
-    times = np.ones(len(trials.chosen)) if counts is None else np.asarray(counts, dtype=float)
-    plain = times.shape == trials.chosen.shape and np.isfinite(times).all()
-    if not plain or times.min(initial=0) < 0 or not times.sum() > 0:
+    if counts is None:
+        counts = np.ones(len(trials.chosen))
+    times = check_numbers(counts, "counts", "trial")
+    if times.shape != trials.chosen.shape or times.min(initial=0) < 0 or not times.sum() > 0:
         raise ValueError(
             f"counts must be one number a trial, 0 or more and not all zero; got shape "
             f"{times.shape} for {len(trials.chosen)} trials, {times[~(times >= 0)][:5]} among them."
@@ -168,7 +170,7 @@ def bootstrap_choices(
 
 def choice_probabilities(distances: ArrayLike, shown: np.ndarray) -> np.ndarray:
     """Return the probability, of shape (trial, 6), that each pair shown is chosen."""
-    return _softmax(np.asarray(distances, dtype=float)[shown])[0]
+    return _softmax(np.asarray(distances)[shown])[0]
 
 
 def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
@@ -186,8 +188,9 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     array of shape (pair,)
         Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
     """
-    probability = choice_probabilities(distances, trials.shown)
     n_pairs = len(trials.pairs)
+    distances = check_numbers(distances, "distances", "pair", least=n_pairs)
+    probability = choice_probabilities(distances, trials.shown)
     return share_not_chosen(
         np.bincount(trials.shown.ravel(), probability.ravel(), n_pairs),
         np.bincount(trials.shown.ravel(), minlength=n_pairs),
@@ -205,14 +208,12 @@ class ChoiceProblem(NamedTuple):
     @classmethod
     def from_trials(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
         """Return the problem of fitting weights of a table to trials."""
-        table = np.asarray(X, dtype=float)
-        if table.ndim != 2 or len(table) != len(trials.pairs):
+        table = check_numbers(X, "X", "pair", "group")
+        if len(table) != len(trials.pairs):
             raise ValueError(
                 f"Expected a table of {len(trials.pairs)} pairs by groups, as the answers have "
                 f"pairs; got shape {table.shape}."
             )
-        if not np.isfinite(table).all():
-            raise ValueError("The table of pairs by groups has numbers that are not finite.")
         differences = table[trials.shown] - table[trials.chosen_pairs][:, None]
         spread = np.sqrt((differences**2).mean(axis=(0, 1)))
         spread[spread <= _CONSTANT * np.abs(table).max(axis=0)] = np.inf

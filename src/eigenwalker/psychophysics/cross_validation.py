@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.stats import rankdata
 from sklearn.model_selection import cross_val_predict
 
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.psychophysics.conditional_logit import (
     ChoiceProblem,
@@ -43,7 +44,10 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
     >>> round(goodness([0.2, 0.4, 0.9], [0.3, 0.4, 0.8])["rss"], 6)
     0.02
     """
-    observed, predicted = np.asarray(observed, dtype=float), np.asarray(predicted, dtype=float)
+    observed = check_numbers(observed, "observed", "pair", least=0)
+    predicted = check_numbers(predicted, "predicted", "pair", least=0)
+    if len(observed) != len(predicted):
+        raise ValueError(f"observed has {len(observed)} pairs, and predicted {len(predicted)}.")
     error = observed - predicted
     if not error.size:
         return {"rss": 0.0, "rms": np.nan, "pearson": np.nan, "spearman": np.nan}
@@ -127,11 +131,12 @@ def compare_metrics(
     ----------
     Pražák et al. (2010), figure 5.
     """
-    y = np.asarray(y, dtype=float)
+    _check_tables(tables)
+    y = check_numbers(y, "y", "pair")
     splits = leave_walkers_out(pairs)
     rows = {}
     for name, table in tables.items():
-        X = np.asarray(table, dtype=float).reshape(len(y), -1)
+        X = _of_pairs(name, table, len(y))
         metric = PerceptualMetric().fit(X, y)
         left_out = goodness(y, np.asarray(cross_val_predict(PerceptualMetric(), X, y, cv=splits)))
         rows[name] = {
@@ -165,7 +170,7 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     compare_by_choices : Several metrics, compared in this way.
     leave_walkers_out : The same split for `PerceptualMetric`.
     """
-    table = np.asarray(X, dtype=float)
+    table = check_numbers(X, "X", "pair", "group")
     problem = ChoiceProblem.from_trials(table, trials)
     start = problem.fit(np.ones(len(trials.chosen)))[1]
     names = np.array([[*map(str, pair)] for pair in trials.pairs])
@@ -216,11 +221,12 @@ def compare_by_choices(
     --------
     compare_metrics : The same by differences of pairs.
     """
+    _check_tables(tables)
     observed = count_pairs(trials).differences.to_numpy()
     seen = np.isfinite(observed)
     rows = {}
     for name, table in ticked(tables.items(), len(tables), progress):
-        X = np.asarray(table, dtype=float).reshape(len(observed), -1)
+        X = _of_pairs(name, table, len(observed))
         problem = ChoiceProblem.from_trials(X, trials)
         weights, _, loss = problem.fit(np.ones(len(trials.chosen)))
         expected = expected_differences(X @ weights, trials)
@@ -233,3 +239,17 @@ def compare_by_choices(
             "cv_pearson": goodness(observed[known], left_out[known])["pearson"],
         }
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("metric")
+
+
+def _check_tables(tables: Mapping[str, ArrayLike]) -> None:
+    check_kind(tables, Mapping, "a table for each metric, by name")
+    if not tables:
+        raise ValueError("There is no metric to compare.")
+
+
+def _of_pairs(name: str, table: ArrayLike, n_pairs: int) -> np.ndarray:
+    """Return the table of a metric, or its column, of shape (pair, column)."""
+    values = check_numbers(table, f"The table of {name!r}")
+    if not values.ndim or len(values) != n_pairs:
+        raise ValueError(f"The table of {name!r} has shape {values.shape}, for {n_pairs} pairs.")
+    return values.reshape(n_pairs, -1)

@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike
 from sklearn.cluster import KMeans
 from sklearn.decomposition import PCA
 
+from eigenwalker.core.arguments import check_numbers
+
 
 def order_of_walks(table: ArrayLike) -> np.ndarray:
     """Return walks in the order of the first principal component of the table's rows.
@@ -107,7 +109,12 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     >>> cluster_memberships(table, clusters_of_walks(table))[0].round(3).tolist()
     [0.971, 0.029]
     """
-    rows, clusters = _check_table(table), np.asarray(clusters)
+    rows, clusters = _check_table(table), check_numbers(clusters, "clusters", "walk").astype(int)
+    if clusters.shape != (len(rows),) or not np.isin(np.arange(clusters.max() + 1), clusters).all():
+        raise ValueError(
+            f"clusters must number the cluster of each of {len(rows)} walks, from 0; got "
+            f"{clusters.tolist()[:20]}."
+        )
     centres = np.stack([rows[clusters == each].mean(axis=0) for each in range(clusters.max() + 1)])
     squared = ((rows[:, None] - centres) ** 2).sum(axis=2)
     nearness = 1 / np.maximum(squared, 1e-12 * max(squared.max(), 1e-300))
@@ -157,12 +164,10 @@ def map_of_walks(table: ArrayLike, n_dimensions: int = 2) -> np.ndarray:
 
 
 def _check_table(table: ArrayLike) -> np.ndarray:
-    values = np.asarray(table, dtype=float)
-    if values.ndim != 2 or values.shape[0] != values.shape[1] or len(values) < 2:
-        raise ValueError(
-            f"Expected a table of walks by walks, two or more; got shape {values.shape}."
-        )
-    if not np.isfinite(values).all():
+    values = check_numbers(table, "The table", "walk", "walk", least=2, missing=True)
+    if values.shape[0] != values.shape[1]:
+        raise ValueError(f"Expected a table of walks by walks; got shape {values.shape}.")
+    if np.isnan(values).any():
         raise ValueError(
             "Some differences are missing; leave out walks that were never shown together."
         )

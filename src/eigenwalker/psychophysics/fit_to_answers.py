@@ -11,6 +11,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from sklearn.model_selection import cross_val_predict
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.progress import Progress
 from eigenwalker.metric.clips import Clip
 from eigenwalker.metric.group_tables import group_table
@@ -121,6 +122,7 @@ def fit_to_answers(
     >>> fit.by_choices.index.tolist()
     ['head', 'clavicle', 'upper_arm', 'forearm', 'hand', 'thigh', 'calf', 'toe']
     """
+    check_kind(walks, Mapping, "walks by name")
     names = list(walks)
     trials = read_trials(answers, walkers=names)
     counts = count_pairs(trials)

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 from sklearn.base import BaseEstimator, RegressorMixin
-from sklearn.utils import Tags, check_consistent_length, column_or_1d
+from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.sklearn_validation import validate_data
 
 
@@ -86,7 +87,7 @@ class PerceptualMetric(RegressorMixin, BaseEstimator):
         self.weights_, self.constant_ = non_negative_fit(
             table,
             differences,
-            sample_weight=None if sample_weight is None else _counts(sample_weight, table),
+            sample_weight=sample_weight,
             fit_constant=self.fit_constant,
         )
         self.relative_weights_ = relative_weights(self.weights_)
@@ -125,12 +126,11 @@ def _is_plain(values: ArrayLike, n_dimensions: int) -> bool:
 
 
 def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
-    counts = column_or_1d(np.asarray(sample_weight, dtype=float))
-    check_consistent_length(counts, X)
-    if counts.ndim != 1 or counts.min() < 0 or not counts.sum() > 0:
+    counts = check_numbers(sample_weight, "sample_weight", "pair")
+    if len(counts) != len(X) or counts.min() < 0 or not counts.sum() > 0:
         raise ValueError(
-            f"sample_weight must be one number a pair, 0 or more and not all zero; got shape "
-            f"{counts.shape}, from {counts.min():g} to {counts.max():g}."
+            f"sample_weight must be one number for each of {len(X)} pairs, 0 or more and not all "
+            f"zero; got shape {counts.shape}, from {counts.min():g} to {counts.max():g}."
         )
     return counts
 
@@ -146,7 +146,7 @@ def non_negative_fit(
     X: np.ndarray,
     y: np.ndarray,
     *,
-    sample_weight: np.ndarray | None = None,
+    sample_weight: ArrayLike | None = None,
     fit_constant: bool = True,
 ) -> Weights:
     r"""Return the weights, none below 0, and the free constant with the least squared error.
@@ -158,8 +158,7 @@ def non_negative_fit(
     Parameters
     ----------
     X, y, sample_weight, fit_constant
-        As `PerceptualMetric` takes them, which checks them: finite arrays of shape (pair, column)
-        and (pair,).
+        As `PerceptualMetric` takes them: of shape (pair, column), (pair,) and (pair,).
 
     Returns
     -------
@@ -180,12 +179,16 @@ def non_negative_fit(
     >>> fit.weights.round(6).tolist(), round(fit.constant, 6)
     ([2.0], 1.0)
     """
+    X, y = check_numbers(X, "X", "pair", "column"), check_numbers(y, "y", "pair")
+    if len(X) != len(y):
+        raise ValueError(f"X has {len(X)} pairs, and y {len(y)}.")
     x_mean, y_mean = np.zeros(X.shape[1]), 0.0
     if sample_weight is None:
         if fit_constant:
             x_mean, y_mean = X.sum(axis=0) / len(y), y.sum() / len(y)
         design, target = X - x_mean, y - y_mean
     else:
+        sample_weight = _counts(sample_weight, X)
         total, root = sample_weight.sum(), np.sqrt(sample_weight)
         if fit_constant:
             x_mean, y_mean = sample_weight @ X / total, sample_weight @ y / total

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit, relative_weights
 from eigenwalker.psychophysics.trials import share_not_chosen
 
@@ -92,8 +93,8 @@ def bootstrap_weights(
     >>> samples.intervals(["calf"])[["low", "high"]].round(6).values.tolist()
     [[0.2, 0.2]]
     """
-    X, chosen, shown = (np.asarray(each, dtype=float) for each in (X, chosen, shown))
-    _check_counts(chosen, shown, n_pairs=len(X))
+    X = check_numbers(X, "X", "pair", "group")
+    chosen, shown = _check_counts(chosen, shown, n_pairs=len(X))
     rng = np.random.default_rng(random_state)
     fits: list[Weights] = []
     for _ in range(_MAX_ROUNDS):
@@ -178,8 +179,7 @@ def split_half(
     >>> round(split_half([[6, 4, 2]] * 4, shown, n_splits=5).ceiling, 6)
     1.0
     """
-    chosen, shown = np.asarray(chosen, dtype=float), np.asarray(shown, dtype=float)
-    _check_counts(chosen, shown)
+    chosen, shown = _check_counts(chosen, shown)
     rng = np.random.default_rng(random_state)
     half = len(shown) // 2
     correlations = []
@@ -204,9 +204,13 @@ def split_half(
     return Reliability(halves, whole, float(np.sqrt(whole)))
 
 
-def _check_counts(chosen: np.ndarray, shown: np.ndarray, n_pairs: int | None = None) -> None:
+def _check_counts(
+    chosen: ArrayLike, shown: ArrayLike, n_pairs: int | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    chosen = check_numbers(chosen, "chosen", "observer", "pair", missing=True)
+    shown = check_numbers(shown, "shown", "observer", "pair", missing=True)
     problem = ""
-    if chosen.ndim != 2 or chosen.shape != shown.shape:
+    if chosen.shape != shown.shape:
         problem = f"chosen has shape {chosen.shape} and shown {shown.shape}"
     elif not (np.isfinite(chosen) & np.isfinite(shown) & (chosen >= 0) & (chosen <= shown)).all():
         problem = "some pairs were chosen more often than shown, or counts are below 0 or NaN"
@@ -218,3 +222,4 @@ def _check_counts(chosen: np.ndarray, shown: np.ndarray, n_pairs: int | None = N
         raise ValueError(
             f"Expected counts of shape (observer, pair), of two observers or more: {problem}."
         )
+    return chosen, shown

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize, minimize_scalar
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.psychophysics.perceptual_metric import Weights, non_negative_fit
 
@@ -79,7 +80,7 @@ def search_shape(
             f"bounds={bounds} and n_grid={n_grid}: expected two numbers above 0, the least first, "
             "and 3 values or more."
         )
-    y = np.asarray(y, dtype=float)
+    y = check_numbers(y, "y", "pair")
     tried = np.geomspace(*bounds, n_grid)
     rss = np.array([_fit(columns(value), y)[1] for value in tried])
     best = int(rss.argmin())
@@ -142,7 +143,9 @@ def fit_from_random_starts(
     >>> descent.weights.round(3).tolist(), round(descent.constant, 3)
     ([0.5, 0.0, 0.1], 0.2)
     """
-    X, y = np.asarray(X, dtype=float), np.asarray(y, dtype=float)
+    X, y = check_numbers(X, "X", "pair", "group"), check_numbers(y, "y", "pair")
+    if len(X) != len(y):
+        raise ValueError(f"X has {len(X)} pairs, and y {len(y)}.")
     rng = np.random.default_rng(random_state)
     size = np.linalg.norm(X, axis=0)
     size[size == 0] = 1.0

@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.arguments import check_kind
+
 SHOWN = ["a", "b", "c", "d"]
 CHOSEN = ["chosen_1", "chosen_2"]
 COLUMNS = ["observer", *SHOWN, *CHOSEN]
@@ -197,6 +199,7 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
     >>> trials.pairs[trials.chosen_pairs].tolist()
     [('w2', 'w4')]
     """
+    check_kind(answers, pd.DataFrame, "a table of answers (read_answers) or Trials")
     if missing := [name for name in COLUMNS if name not in answers]:
         raise ValueError(
             f"Answers need the columns {COLUMNS}; {missing} are missing from {list(answers)}."

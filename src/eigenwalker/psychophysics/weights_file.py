@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.atomic_write import write_table
 from eigenwalker.metric.frame_metrics import GroupMetric
 from eigenwalker.metric.published import PUBLISHED
@@ -44,6 +45,9 @@ def save_weights(weights: pd.DataFrame, path: str | Path, *, metric: str) -> Pat
     ...     load_metric(path).group_weights
     {'head': 0.2, 'forearm': 0.8}
     """
+    check_kind(weights, pd.DataFrame, "a table of groups with a column weight")
+    if "weight" not in weights or not len(weights):
+        raise ValueError(f"Expected a column weight of one group or more; got {list(weights)}.")
     return write_table(weights.assign(metric=metric), Path(path), index_label="group")
 
 

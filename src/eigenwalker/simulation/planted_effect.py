@@ -15,6 +15,7 @@ import xarray as xr
 
 from eigenwalker.core.fourier import harmonic_basis
 from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.trajectories import check_trajectories
 
 _N_JOINTS = len(JOINTS.markers)
 
@@ -130,6 +131,7 @@ def add_effect(walk: xr.DataArray, effect: PlantedEffect, amount: float) -> xr.D
     >>> round(float((add_effect(walk, lower, 2.0) - walk).min()))
     -20
     """
+    walk = check_trajectories(walk)
     if tuple(walk["marker"].values) != JOINTS.markers:
         raise ValueError("Effects are of the 15 joints; simulate the walk with markers='joints'.")
     waves = harmonic_basis(walk["phase"].values, 2)[:, [2, 1, 4, 3]]

@@ -12,7 +12,7 @@ import pandas as pd
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
-from eigenwalker.population.population import Population
+from eigenwalker.population.population import Population, check_population
 from eigenwalker.simulation.person import PARAMETERS
 from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
 from eigenwalker.simulation.provenance import KEY, read_provenance
@@ -86,6 +86,7 @@ def truth_of(population: Population) -> Truth:
     >>> bool(truth.effects.loc["obliquity_factor", "sex"] < 0)
     True
     """
+    check_population(population)
     if KEY not in population.provenance:
         raise ValueError(
             "This population was not simulated, so nobody knows its truth; "

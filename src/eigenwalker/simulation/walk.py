@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
-from eigenwalker.core.trajectories import label_trajectories
+from eigenwalker.core.trajectories import check_trajectories, label_trajectories
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF
 from eigenwalker.simulation.body import body_of
 from eigenwalker.simulation.body_markers import skin_markers
@@ -176,6 +176,7 @@ def true_events(walk: xr.DataArray) -> pd.DataFrame:
     >>> events[events["event"] == "heel_strike"]["side"].tolist()
     ['left', 'right', 'left', 'right', 'left']
     """
+    walk = check_trajectories(walk)
     phase, time = walk["phase"].values, walk["time"].values
     kinds = ((HEEL_STRIKE, 0.0, "heel"), (TOE_OFF, walk.attrs["stance_of_stride"], "toe"))
     rows = []

@@ -10,9 +10,10 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.layout import DEFAULT_DURATION_S, DOT_MM
-from eigenwalker.population.population import Population
+from eigenwalker.population.population import Population, check_population
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
 from eigenwalker.stimulus.stimulus import Stimulus
@@ -78,7 +79,11 @@ def make_stimulus(
     >>> shown.play([0.25]).positions[0, 0].round(6).tolist()
     [0.0, 0.0, 10.0]
     """
-    several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else figures
+    kinds, expected = (Walker, xr.DataArray, Figure), "walkers, trajectories or figures"
+    check_kind(figures, (*kinds, Iterable), expected)
+    several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else list(figures)
+    for item in several:
+        check_kind(item, kinds, expected)
     whole = [item if isinstance(item, Figure) else Figure(item) for item in several]
     if not whole:
         raise ValueError("There is no figure to show; give one or more.")
@@ -158,6 +163,7 @@ def with_information(
     >>> bool(shown.frequency_hz == people.average[people.feature_names.index("frequency_hz")])
     True
     """
+    check_population(population)
     same_size = population.size_normalised()
     if isinstance(walker, int | np.integer):
         if not 0 <= walker < len(population):
@@ -166,7 +172,7 @@ def with_information(
             )
         own = same_size.X[walker]
     else:
-        own = _normalised(population, np.asarray(walker, dtype=float))
+        own = _normalised(population, check_numbers(walker, "walker", "feature"))
     match information:
         case "full":
             return same_size.walker(own)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
@@ -170,8 +171,8 @@ class Stimulus:
         Played
             ``dots``, ``figures``, ``positions`` in the scene, ``visible``, ``picture`` in mm.
         """
-        seconds = self.frame_times if time is None else np.atleast_1d(np.asarray(time, float))
-        if not np.isfinite(seconds).all() or np.abs(seconds).max(initial=0) > 1e5:
+        seconds = self.frame_times if time is None else np.atleast_1d(check_numbers(time, "time"))
+        if np.abs(seconds).max(initial=0) > 1e5:
             raise ValueError("Times to play must be finite seconds, 100000 at most.")
         return play(self.scene, self.view, seconds)
 

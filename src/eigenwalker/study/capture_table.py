@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.io.read import SUFFIXES, is_capture
+from eigenwalker.population.population_file import check_traits
 
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
@@ -49,6 +50,7 @@ def capture_table(
     else:
         names = sorted(captures_in(folder))
         table = pd.DataFrame({FILE: names})
+    check_traits(table)
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
     if not trait_from_name:

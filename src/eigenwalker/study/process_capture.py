@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Form, Walker
@@ -143,6 +144,7 @@ def process_capture(
             raise TypeError(f"{list(reading)} are for files; this capture is read already.")
         capture = check_trajectories(path_or_capture)
     else:
+        check_kind(path_or_capture, (str, Path), "a path or trajectories")
         capture = read_mocap(path_or_capture, **reading)
     if "speed_mm_s" in capture.coords:  # it is in place already
         speed = known_speed(capture)

@@ -15,7 +15,7 @@ from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.metric.clips import PreparedClip, as_trajectories
 from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.retargeting import retarget
-from eigenwalker.population.population import Population, flags_of
+from eigenwalker.population.population import Population, check_population, flags_of
 from eigenwalker.study.body_warnings import retargeting_warnings
 from eigenwalker.study.capture_table import FILE, capture_table
 from eigenwalker.study.messages import capture_remark, flag_of
@@ -222,6 +222,7 @@ def walks_of_population(
     >>> walks.labels["walker 0"], list(walks.clips)
     ('female', ['walker 0', 'walker 1', 'walker 2', 'walker 3'])
     """
+    check_population(population)
     labels = [] if trait is None else _labels(population, trait)
     names, flags = population.names, flags_of(population.traits)
     clips, flagged = {}, {}
