@@ -153,6 +153,12 @@ def fetch_captures(
             f"{name} is not fetched before its licence is accepted, with accept_licence=True:\n"
             f"{collection.notice()}"
         )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(
+            f"The folder {folder} cannot be made ({error.strerror}); name another one."
+        ) from error
     base_url = base_url or os.environ.get(SOURCE_VARIABLE) or SOURCE_URL
     n_files = len(collection.files)
     for done, file in enumerate(missing, start=n_files - len(missing)):
@@ -166,7 +172,10 @@ def fetch_captures(
 
 def folder_of(name: str) -> Path:
     """Return the folder in this user's cache that a collection is kept in."""
-    return Path(pooch.os_cache("eigenwalker")) / name
+    cache = Path(pooch.os_cache("eigenwalker"))
+    if not cache.is_absolute():
+        raise ValueError("This user has no home, and so no cache; name a folder for the captures.")
+    return cache / name
 
 
 def missing_files(collection: Collection, folder: Path) -> list[PublishedFile]:
