@@ -66,5 +66,5 @@ def test_without_a_home_captures_need_a_folder(monkeypatch):
 def test_a_cache_that_cannot_be_made_is_named(monkeypatch):
     monkeypatch.setenv("HOME", os.devnull)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    with pytest.raises(OSError, match="cannot be made .*; name another one"):
+    with pytest.raises(OSError, match=r"cannot be made .*; name another one"):
         fetch_captures("cmu", accept_licence=True)

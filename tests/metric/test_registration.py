@@ -1,5 +1,6 @@
 """Registration: planted warps of time, turns and ways found again; paths against brute force."""
 
+import time
 from functools import cache
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.core.trajectories import sampling_rate, trajectories_at
+from eigenwalker.core.trajectories import label_trajectories, sampling_rate, trajectories_at
 from eigenwalker.core.walker import Walker
 from eigenwalker.metric import (
     FrameMetric,
@@ -262,6 +263,15 @@ def test_transitions_to_another_walk_are_where_both_have_the_same_phase():
     assert good.any()
     assert np.abs(apart[good]).max() < 0.08
     np.testing.assert_allclose(found.angle_deg[good], -30, atol=12)
+
+
+def test_time_grows_with_the_map_where_nothing_moves():
+    still = label_trajectories(np.ones((400, 2, 3)), markers=["head", "pelvis"], rate_hz=60)
+    begin = time.process_time()
+    found = find_transitions(still)
+    assert time.process_time() - begin < 20  # 130 s and more where each minimum met each other one
+    assert (found.distance == 0).all()
+    assert len(found) > 1000
 
 
 @pytest.mark.parametrize("window_s", [0.1, 1 / 3])

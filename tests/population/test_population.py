@@ -151,9 +151,9 @@ def test_a_population_of_a_newer_version_asks_for_an_update(people, tmp_path) ->
     ("name", "spoil", "said"),
     [
         ("harmonics", lambda values: values * 0 + 1, "not 1, 1, 2, 2"),
-        ("reference_axes", lambda values: values * np.nan, "reference_axes holds"),
+        ("reference_axes", lambda values: values * np.nan, "reference_axes must"),
         ("phases", lambda values: values + 1, "first phase"),
-        ("fit_fourier", lambda values: values * np.inf, "fit_fourier holds"),
+        ("fit_fourier", lambda values: values * np.inf, "fit_fourier must"),
         ("frequency_hz", lambda values: values * 0, "must be above 0"),
     ],
 )
@@ -166,6 +166,24 @@ def test_a_population_file_with_a_spoilt_part_is_refused(
         warnings.simplefilter("ignore")
         variable = file.variables[name]
         variable[:] = spoil(variable[:].copy())
+    with pytest.raises(UnreadableFile, match=said):
+        Population.load(path)
+
+
+@pytest.mark.parametrize("number", [np.inf, -np.inf, 1e300])
+def test_traits_that_no_statistics_can_be_made_of_are_refused(people, tmp_path, number) -> None:
+    traits = people.traits.assign(age_years=20.0)
+    traits.loc[1, "age_years"] = number
+    said = "trait 'age_years' of row 2 is"
+    with pytest.raises(ValueError, match=said):
+        Population(people.walkers, traits)
+    path = replace(people, traits=people.traits.assign(age_years=20.0)).save(tmp_path / "people.nc")
+    with warnings.catch_warnings(), netcdf_file(path, "a", mmap=False) as file:
+        warnings.simplefilter("ignore")
+        (column,) = [
+            each for each in file.variables.values() if getattr(each, "trait", b"") == b"age_years"
+        ]
+        column[1] = number
     with pytest.raises(UnreadableFile, match=said):
         Population.load(path)
 

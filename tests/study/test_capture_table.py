@@ -85,3 +85,12 @@ def test_hidden_files_are_no_captures_of_a_folder(folder) -> None:
         (folder / name).touch()
     names = [unicodedata.normalize("NFC", name) for name in capture_table(folder)["file"]]
     assert names == ["M\u00fcller_1.c3d", "c.c3d", "d.c3d", "sub/B.c3d"]
+
+
+def test_infinite_traits_are_refused_before_a_capture_is_read(folder) -> None:
+    (folder / "people.csv").write_text("file,weight_kg\nc.c3d,80\nd.c3d,inf\n")
+    with pytest.raises(ValueError, match="trait 'weight_kg' of row 2 is inf"):
+        capture_table(folder, folder / "people.csv")
+    (folder / "c.c3d").rename(folder / "c-1e999.c3d")
+    with pytest.raises(ValueError, match="is inf"):
+        capture_table(folder, trait_from_name="-(?P<weight_kg>.*).c3d")

@@ -19,7 +19,7 @@ def described(value: Any) -> str:
         return f"the text {str(value)[:60]!r}"
     if value is None or isinstance(value, Real):
         return repr(value)[:60]
-    kind = type(value).__name__
+    kind = type(value).__name__.removeprefix("nd")
     article = "an" if kind[:1] in "AEIOaeio" else "a"
     if hasattr(value, "dtype") and hasattr(value, "shape"):
         return f"{article} {kind} of {value.dtype} of shape {value.shape}"

@@ -50,15 +50,14 @@ def capture_table(
     else:
         names = sorted(captures_in(folder))
         table = pd.DataFrame({FILE: names})
-    check_traits(table)
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
     if not trait_from_name:
-        return table
+        return check_traits(table)
     named = _named_traits(table[FILE], trait_from_name)
     if both := [str(name) for name in named if name in table]:
         raise ValueError(f"Both the traits table and the pattern name {both}; let one do so.")
-    return table.join(named)
+    return check_traits(table.join(named))
 
 
 def captures_in(folder: Path) -> list[str]:
