@@ -41,6 +41,8 @@ METHODS = {
     "population.Population.vector": ew.Population.vector,
     "population.Population.hybrid": ew.Population.hybrid,
     "population.Population.add": ew.Population.add,
+    "psychophysics.Trials": ew.psychophysics.Trials,
+    "simulation.PlantedEffect": ew.simulation.PlantedEffect,
     "stimulus.Stimulus.play": ew.Stimulus.play,
 }
 """Classes that are made of arrays, and methods that take some."""
@@ -151,6 +153,14 @@ CALLS = {
         "self": people(),
         "walkers": list(people().walkers[:2]),
         "traits": people().traits[:2],
+    },
+    "psychophysics.Trials": lambda: {
+        name: getattr(trials(), name)
+        for name in ("pairs", "observers", "observer", "shown", "chosen")
+    },
+    "simulation.PlantedEffect": lambda: {
+        "structure": numbers(15, 3),
+        "movement": numbers(4, 15, 3),
     },
     "stimulus.Stimulus.play": lambda: {"self": ew.make_stimulus(walkers()[0]), "time": STRIDE},
     "analysis.classify": lambda: {"population": people(), "trait": "sex", "n_permutations": 0},
@@ -534,9 +544,26 @@ def test_real_numbers_of_any_kind_are_taken(name, tmp_path):
         if not re.search("ArrayLike|ndarray", annotation) or not isinstance(value, np.ndarray):
             continue
         for kind in (np.float16, np.longdouble, object):
-            exact = value.astype(np.float16).astype(float) if key != "harmonics" else value
+            exact = value.astype(np.float16).astype(float) if value.dtype == float else value
             if "table" in key:
                 exact = np.round(value, 2)
             arguments = right | {key: exact.astype(kind)}
             problem = problem_of(function, arguments, tmp_path)
             assert problem == "is taken", f"{key} of {np.dtype(kind)}: {problem or 'is refused'}"
+
+
+@pytest.mark.parametrize(
+    "estimator",
+    [ew.WalkerSpace, ew.DiscriminantRegressor, ew.PerceptualMetric, ew.DiscriminantClassifier],
+)
+@pytest.mark.parametrize("number", [1e150, "long"])
+def test_estimators_refuse_numbers_whose_squares_cannot_be_summed(estimator, number):
+    with pytest.raises(ValueError, match=r"1e\+150|infinity"):
+        estimator().fit(with_one(numbers(12, 3), number), Y)
+
+
+@pytest.mark.parametrize("number", [np.inf, 1e150])
+def test_maps_with_infinite_cells_are_not_drawn(number):
+    picture = ew.plotting.MapPicture(with_one(numbers(10, 10), number), STRIDE, STRIDE, "map")
+    with pytest.raises(ValueError, match="values must be real numbers"):
+        ew.plotting.figure_maps([picture])

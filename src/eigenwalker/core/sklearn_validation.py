@@ -1,12 +1,22 @@
-"""scikit-learn's validation of arrays, with types."""
+"""scikit-learn's validation of arrays, with types and a limit of size."""
 
-# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, cast
 
+import numpy as np
 from sklearn.utils import validation
 
-validate_data: Callable[..., Any] = cast("Any", validation).validate_data
-"""Its default values make type checkers take X for a str."""
+from eigenwalker.core.arguments import check_numbers
+
+
+def validate_data(estimator: Any, X: Any, y: Any = "no_validation", **checks: Any) -> Any:
+    """Return what scikit-learn's function of that name does, if squares of it can be summed."""
+    with np.errstate(over="ignore"):  # of longer floats: they become infinite
+        checked = cast("Any", validation).validate_data(estimator, X, y, **checks)
+    for name, values in zip(
+        "Xy", checked if isinstance(checked, tuple) else [checked], strict=False
+    ):
+        if values.dtype.kind == "f":
+            check_numbers(values, name, least=0)
+    return checked

@@ -149,6 +149,8 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
     >>> figure.axes[0].get_title(loc="left")
     'a sine and itself'
     """
+    if not pictures:
+        raise ValueError("There is no map to draw.")
     n_columns = min(n_columns, len(pictures))
     n_rows = -(-len(pictures) // n_columns)
     wide = 2.7 if n_columns < 3 else 2.2
@@ -171,10 +173,10 @@ def _slope(picture: MapPicture) -> float:
 
 
 def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
-    a, b = picture.times_a, picture.times_b
+    a, b = (check_numbers(t, "times", "time") for t in (picture.times_a, picture.times_b))
     half_a, half_b = (0.5 * (t[-1] - t[0]) / max(len(t) - 1, 1) for t in (a, b))
     drawn = axes.imshow(
-        picture.values,
+        check_numbers(picture.values, "values", "time_a", "time_b", missing=True),
         cmap="gray",
         origin="lower",
         extent=(b[0] - half_b, b[-1] + half_b, a[0] - half_a, a[-1] + half_a),

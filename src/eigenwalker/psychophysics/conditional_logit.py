@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.psychophysics.perceptual_metric import relative_weights
 from eigenwalker.psychophysics.reliability import Bootstrap, draw_counts
@@ -105,6 +105,7 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
     >>> fit_choices([[1.0], [2.0]], trials).weights.round(4), np.log(3).round(4)
     (array([1.0986]), np.float64(1.0986))
     """
+    problem = ChoiceProblem.from_trials(X, trials)
     if counts is None:
         counts = np.ones(len(trials.chosen))
     times = check_numbers(counts, "counts", "trial")
@@ -113,7 +114,6 @@ def fit_choices(X: ArrayLike, trials: Trials, *, counts: ArrayLike | None = None
             f"counts must be one number a trial, 0 or more and not all zero; got shape "
             f"{times.shape} for {len(trials.chosen)} trials, {times[~(times >= 0)][:5]} among them."
         )
-    problem = ChoiceProblem.from_trials(X, trials)
     weights, scaled, loss = problem.fit(times)
     if unbounded := problem.unbounded(scaled, loss, times):
         warnings.warn(
@@ -153,12 +153,12 @@ def bootstrap_choices(
     Bootstrap
         Its constants are 0: a model of choices has none.
     """
+    problem = ChoiceProblem.from_trials(X, trials)
     if len(trials.observers) < 2:
         raise ValueError(
             f"Intervals come from how observers differ; there are answers of "
             f"{len(trials.observers)} observer."
         )
-    problem = ChoiceProblem.from_trials(X, trials)
     start = problem.fit(np.ones(len(trials.chosen)))[1]
     draws = draw_counts(np.random.default_rng(random_state), len(trials.observers), n_samples)
     samples = [
@@ -188,6 +188,7 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     array of shape (pair,)
         Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
     """
+    check_kind(trials, Trials, "Trials, as read_trials() returns them")
     n_pairs = len(trials.pairs)
     distances = check_numbers(distances, "distances", "pair", least=n_pairs)
     probability = choice_probabilities(distances, trials.shown)
@@ -208,6 +209,7 @@ class ChoiceProblem(NamedTuple):
     @classmethod
     def from_trials(cls, X: ArrayLike, trials: Trials) -> ChoiceProblem:
         """Return the problem of fitting weights of a table to trials."""
+        check_kind(trials, Trials, "Trials, as read_trials() returns them")
         table = check_numbers(X, "X", "pair", "group")
         if len(table) != len(trials.pairs):
             raise ValueError(

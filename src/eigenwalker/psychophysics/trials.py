@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.arguments import check_kind
+from eigenwalker.core.arguments import check_kind, check_numbers
 
 SHOWN = ["a", "b", "c", "d"]
 CHOSEN = ["chosen_1", "chosen_2"]
@@ -84,17 +84,18 @@ class Trials:
     chosen: np.ndarray
 
     def __post_init__(self) -> None:
+        for name, *dims in (("observer", "trial"), ("shown", "trial", "pair"), ("chosen", "trial")):
+            numbers = check_numbers(getattr(self, name), name, *dims)
+            object.__setattr__(self, name, numbers.astype(int))
         n_trials = len(self.shown)
         problems = []
-        if self.shown.ndim != 2 or not n_trials:
-            problems.append(f"shown has shape {self.shown.shape}")
         for name, length in (("observer", len(self.observers)), ("chosen", self.shown.shape[-1])):
             numbers = getattr(self, name)
             if numbers.shape != (n_trials,):
                 problems.append(f"{name} has shape {numbers.shape}")
-            elif n_trials and not 0 <= numbers.min() <= numbers.max() < length:
+            elif not 0 <= numbers.min() <= numbers.max() < length:
                 problems.append(f"{name} goes from {numbers.min()} to {numbers.max()} of {length}")
-        if n_trials and not 0 <= self.shown.min() <= self.shown.max() < len(self.pairs):
+        if not 0 <= self.shown.min() <= self.shown.max() < len(self.pairs):
             problems.append(f"shown names the pairs {self.shown.min()} to {self.shown.max()}")
         if problems:
             raise ValueError(

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.fourier import harmonic_basis
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories
@@ -49,6 +50,8 @@ class PlantedEffect:
     frequency_hz: float = 0.0
 
     def __post_init__(self) -> None:
+        for name in ("structure", "movement"):
+            object.__setattr__(self, name, check_numbers(getattr(self, name), name))
         shapes = np.shape(self.structure), np.shape(self.movement)
         if shapes != ((_N_JOINTS, 3), (4, _N_JOINTS, 3)):
             raise ValueError(
