@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
 import matplotlib as mpl
@@ -129,7 +130,7 @@ def test_a_trait_that_nothing_tells_leaves_the_panel_and_leaves_words():
 
 def test_bars_are_mean_and_sd_of_the_variance_shares(walker):
     share = np.array(walker.fit.variance_share)
-    other = SimpleNamespace(fit=SimpleNamespace(variance_share=share * 0.9))
+    other = replace(walker, fit=replace(walker.fit, variance_share=share * 0.9))
     figure = figure_variance([walker, other], n_components=4)
     heights = [bar.get_height() for bar in figure.axes[0].patches]
     np.testing.assert_allclose(heights, 95 * share[:4])

@@ -269,7 +269,7 @@ def test_read_trials_hold_what_answers_say():
     ("X", "counts", "said"),
     [
         (np.ones((3, 2)), None, "table of 210 pairs"),
-        (np.full((210, 2), np.nan), None, "finite"),
+        (np.full((210, 2), np.nan), None, "420 of 420 are missing"),
         (np.ones((210, 2)), np.ones(4), r"got shape \(4,\)"),
         (np.ones((210, 2)), np.zeros(29 * 63), "not all zero"),
     ],

@@ -21,7 +21,6 @@ from eigenwalker.gait.frequency import BOUNDS_HZ, NoStrideError
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import closes, closing_step
 from eigenwalker.metric.clips import Clip, Loop, as_trajectories
-from eigenwalker.metric.points import refuse_duplicate_names
 from eigenwalker.metric.retargeting import is_mannequin
 
 REPEATS_BELOW = 0.4
@@ -102,7 +101,6 @@ def loop(clip: Clip, *, already_in_place: bool = False) -> Loop:
     if isinstance(clip, Loop):
         return clip
     clip = check_trajectories(as_trajectories(clip), complete=already_in_place)
-    refuse_duplicate_names(clip.marker.values.tolist())
     rate_hz = sampling_rate(clip)
     if clip.sizes["time"] < _MIN_FRAMES or rate_hz < _MIN_RATE_HZ:
         raise NoStrideError(

@@ -66,8 +66,6 @@ def select_points(names: list[str], values: np.ndarray, selected: list[str]) -> 
 
 def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
     """Return the names in both, sorted, so that neither order matters."""
-    for names in (first, second):
-        refuse_duplicate_names(names)
     names = sorted({str(name) for name in first} & {str(name) for name in second})
     if not names:
         raise ValueError(
@@ -82,16 +80,6 @@ def common_names(first: Sequence[str], second: Sequence[str]) -> list[str]:
             stacklevel=2,
         )
     return names
-
-
-def refuse_duplicate_names(names: Sequence[str]) -> None:
-    """Raise a ValueError if points share a name."""
-    names = [str(name) for name in names]
-    if duplicates := sorted({name for name in names if names.count(name) > 1}):
-        raise ValueError(
-            f"Points need names of their own; {_abbreviated(duplicates)} come more than once. "
-            "Rename them or leave them out."
-        )
 
 
 def _abbreviated(names: Sequence[str], n_shown: int = 6) -> str:

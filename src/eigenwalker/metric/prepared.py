@@ -15,7 +15,7 @@ from eigenwalker.gait.gaps import fill_short_gaps
 from eigenwalker.metric.clips import Clip, Clips, Loop, PreparedClip, as_trajectories, check_clips
 from eigenwalker.metric.cycles import common_clock
 from eigenwalker.metric.loops import loop
-from eigenwalker.metric.points import common_names, refuse_duplicate_names
+from eigenwalker.metric.points import common_names
 
 
 def prepare(clip: Clip) -> PreparedClip:
@@ -91,7 +91,6 @@ def _seen(clip: xr.DataArray) -> xr.DataArray:
     """Return a clip without the markers that were never seen."""
     if not clip.sizes["time"] or not np.isnan(clip.values[0]).any():
         return clip
-    refuse_duplicate_names(clip.marker.values.tolist())
     clip = clip.dropna("marker", how="all")
     if not clip.sizes["marker"]:
         raise ValueError("No marker of this clip was ever seen, so there is nothing to compare.")
