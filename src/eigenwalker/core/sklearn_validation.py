@@ -1,5 +1,6 @@
 """scikit-learn's validation of arrays, with types and a limit of size."""
 
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 from __future__ import annotations
 
 from typing import Any, cast
@@ -13,10 +14,9 @@ from eigenwalker.core.arguments import check_numbers
 def validate_data(estimator: Any, X: Any, y: Any = "no_validation", **checks: Any) -> Any:
     """Return what scikit-learn's function of that name does, if squares of it can be summed."""
     with np.errstate(over="ignore"):  # of longer floats: they become infinite
-        checked = cast("Any", validation).validate_data(estimator, X, y, **checks)
-    for name, values in zip(
-        "Xy", checked if isinstance(checked, tuple) else [checked], strict=False
-    ):
+        checked: Any = cast("Any", validation).validate_data(estimator, X, y, **checks)
+    arrays: Any = (checked,) if hasattr(checked, "dtype") else checked
+    for name, values in zip("Xy", arrays, strict=False):
         if values.dtype.kind == "f":
             check_numbers(values, name, least=0)
     return checked

@@ -80,7 +80,7 @@ def looks_like_population(path: Path) -> bool:
     """Return whether a file is meant as a population."""
     with path.open("rb") as file:
         beginning = file.read(100_000)
-    return looks_like_netcdf(beginning) and FORMAT.encode() in beginning
+    return bool(looks_like_netcdf(beginning)) and FORMAT.encode() in beginning
 
 
 def read_population(path: Path) -> Stored:
