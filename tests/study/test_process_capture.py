@@ -81,7 +81,8 @@ def test_all_joints_have_the_walker_and_the_quality_of_the_fifteen(person):
     full, usual = process_capture(person, joints="full"), process_capture(person)
     assert set(ew.JOINTS.markers) < set(full.walk.marker.values.tolist())
     assert full.walker.markers == usual.walker.markers
-    assert full.quality.bone_length_variation == pytest.approx(usual.quality.bone_length_variation)
+    of_walker = usual.quality.bone_length_variation  # whose steady walk can end a frame later
+    assert full.quality.bone_length_variation == pytest.approx(of_walker, rel=0.01)
 
 
 def test_a_capture_without_a_walk_says_what_is_known_of_it(person):
