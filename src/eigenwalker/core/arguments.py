@@ -1,4 +1,4 @@
-"""Checks of what a public function is given: what was expected, and what came."""
+"""Checks of what a public function is given: what was expected, and what was given instead."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def check_numbers(
     sizes = np.abs(array)
     largest = float(sizes.max(initial=0, where=~np.isnan(sizes)))
     if largest > LARGEST:
-        came = "infinity" if np.isinf(largest) else f"{largest:.4g}"
-        raise ValueError(f"{expected}, finite and up to {LARGEST:g} in size; got {came}.")
+        number = "infinity" if np.isinf(largest) else f"{largest:.4g}"
+        raise ValueError(f"{expected}, finite and up to {LARGEST:g} in size; got {number}.")
     if not missing and (n_missing := int(np.isnan(sizes).sum())):
         raise ValueError(f"{expected}, and {n_missing} of {array.size} are missing (NaN).")
     return array
