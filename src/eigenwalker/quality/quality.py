@@ -199,6 +199,21 @@ class Quality:
         return tuple(code for code, holds in checks.items() if holds and code not in follow)
 
     @property
+    def upright(self) -> bool:
+        """Whether the head is above the feet."""
+        return not np.isnan(self.height_mm) and self.lean_deg <= MOST_LEAN_DEG
+
+    @property
+    def size_mm(self) -> float:
+        """Height of an upright body, else the diagonal of the box about it.
+
+        Joints under skin are made with lengths in mm, so in a wrong unit the box is large; the
+        height then tells more.
+        """
+        tiny = self.height_mm < HEIGHTS_MM[0] and self.extent_mm < EXTENTS_MM[0]
+        return self.height_mm if self.upright or tiny else self.extent_mm
+
+    @property
     def level(self) -> bool:
         """Whether the walk neither falls nor climbs."""
         return not (abs(self.climb) >= LEVEL_CLIMB or abs(self.climb_mm) >= LEVEL_MM)
@@ -242,15 +257,13 @@ def _of_body(quality: Quality) -> dict[str, bool]:
         return {"flat": True}
     if np.isnan(quality.lean_deg):
         return {}
-    upright = not np.isnan(quality.height_mm) and quality.lean_deg <= MOST_LEAN_DEG
-    size, (least, most) = quality.extent_mm, EXTENTS_MM
-    if upright:
-        size, (least, most) = quality.height_mm, HEIGHTS_MM
-    if not least <= size <= most:
+    least, most = HEIGHTS_MM if quality.upright else EXTENTS_MM
+    if not least <= quality.size_mm <= most:
         return {"impossible_height": True}
     if np.isnan(quality.height_mm):
         return {"head_below_feet": True}
-    return {"leaning": not upright, "small_body": upright and quality.height_mm < CHILD_MM}
+    small = quality.upright and quality.height_mm < CHILD_MM
+    return {"leaning": not quality.upright, "small_body": small}
 
 
 def _of_walk(quality: Quality) -> dict[str, bool]:

@@ -122,10 +122,8 @@ def _beside(value: float, *limits: float, digits: int) -> str:
 def _values(quality: Quality) -> dict[str, object]:
     """Return what the sentences on findings name."""
     variation = quality.bone_length_variation
-    least, most = limit.HEIGHTS_MM
-    of_person = least <= quality.height_mm <= most  # as by chance, where one marker is far off
-    size = quality.extent_mm if of_person or np.isnan(quality.height_mm) else quality.height_mm
-    raw = max(size, 1e-9) / UNITS.get(quality.unit, 1.0)
+    raw = max(quality.size_mm, 1e-9) / UNITS.get(quality.unit, 1.0)
+    others = [unit for unit in UNITS if unit != (quality.unit or "mm")]
     form = _words()["wrong_joints"]
     wrong = [
         form[each.kind].format(*each.points, value=each.value) for each in quality.wrong_joints
@@ -138,8 +136,8 @@ def _values(quality: Quality) -> dict[str, object]:
         "q": quality,
         "limit": limit,
         "height": _length(quality.height_mm),
-        "size": _length(size),
-        "likely_unit": min(UNITS, key=lambda unit: abs(np.log(raw * UNITS[unit] / PERSON_MM))),
+        "size": _length(quality.size_mm),
+        "likely_unit": min(others, key=lambda unit: abs(np.log(raw * UNITS[unit] / PERSON_MM))),
         "slope": np.degrees(np.arctan(abs(quality.standing_slope))),
         "roll": abs(quality.roll_deg),
         "speed": quality.speed_mm_s / 1000,
