@@ -43,7 +43,10 @@ _LEAST_PROGRESS_MM = 600.0
 def assess(trajectories: xr.DataArray) -> Quality:
     """Return what is known of a capture, however bad it is, and the verdict on it.
 
-    Labels are repaired and the walk is brought in place first, as in `in_place`.
+    Labels are repaired and the walk is brought in place first, as in `in_place`. Joints are held
+    to the proportions of people: lengths, left beside right, heights, breadth, places, and links
+    that hold. Backward walking, captures in two dimensions, frames that are tilted or drift, and
+    speeds at which nobody walks are flagged.
 
     Parameters
     ----------
@@ -65,6 +68,11 @@ def assess(trajectories: xr.DataArray) -> Quality:
     --------
     eigenwalker.study.process_capture : judges the very walk that is decomposed.
     eigenwalker.study.reasons : the findings in sentences.
+
+    References
+    ----------
+    Winter (2009), Biomechanics and Motor Control of Human Movement, fig. 4.1: lengths of segments.
+    Alexander (1989), Physiol Rev 69, 1199-1227: the greatest speed of walking.
 
     Examples
     --------
