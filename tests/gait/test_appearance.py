@@ -67,7 +67,7 @@ def test_up_and_down_is_that_of_the_gait_parameters():
 
 
 def test_men_are_wider_at_the_shoulders_and_elbows_than_at_the_hips():
-    people = ew.load_population()
+    people = ew.load_population().size_normalised()
     step = ew.trait_axis(people, "sex").step
     she, he = (walker_measures(people.walker(people.average + a * step)) for a in (-3, 3))
     assert he["shoulder_width_mm"] > she["shoulder_width_mm"]
