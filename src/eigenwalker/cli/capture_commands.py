@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
+from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import Rate, Unit, option
-from eigenwalker.cli.wording import in_options
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from eigenwalker.cli.exit_codes import EXIT_PARTIAL
+from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
     Rate,
     ReportFolder,
@@ -21,7 +22,6 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
-from eigenwalker.cli.wording import in_options
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:

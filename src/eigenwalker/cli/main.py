@@ -9,7 +9,6 @@ from typing import Any
 
 from eigenwalker.cli.exit_codes import EXIT_FAILED
 from eigenwalker.cli.printing import print_without_fail, printing_error
-from eigenwalker.cli.wording import in_options, speak_of
 
 COMMANDS = {
     "demo": ("classify_command", "Classify a trait, and write a page to play with the walkers."),
@@ -71,6 +70,8 @@ def _run(name: str, words: list[str]) -> None:
     elif name not in COMMANDS:
         sys.exit(_explain_unknown(name))
     else:
+        from eigenwalker.cli.option_names import speak_of
+
         command = load_command(name)
         speak_of(command)
         warnings.showwarning = lambda message, *_, **__: _say(message)
@@ -109,4 +110,6 @@ def _explain_unknown(word: str) -> int:
 
 
 def _say(message: object) -> None:
+    from eigenwalker.cli.option_names import in_options
+
     print(f"eigenwalker: {in_options(str(message))}", file=sys.stderr)

@@ -15,7 +15,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from eigenwalker.explorer.wording import in_fields
+from eigenwalker.explorer.field_names import in_fields
 
 SETTINGS = "task.json"
 PEOPLE = "people.nc"

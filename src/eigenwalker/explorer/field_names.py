@@ -28,10 +28,10 @@ def in_fields(sentence: str) -> str:
     masked = _CALL.sub("\0", sentence)
     if "\0" not in masked:
         return sentence
-    kept = ""
+    plain = ""
     texts = _PARTS.split(masked)
     for before, text in zip(["", *texts[1::2]], texts[::2], strict=True):
         advice, call, _ = text.partition("\0")
-        said = advice.rpartition(", or ")[0] if call else text
-        kept += (before if kept else "") + said if said else ""
-    return f"{kept.rstrip('.')}. More can be done with it in Python.".lstrip(". ")
+        part = advice.rpartition(", or ")[0] if call else text
+        plain += (before if plain else "") + part if part else ""
+    return f"{plain.rstrip('.')}. More can be done with it in Python.".lstrip(". ")
