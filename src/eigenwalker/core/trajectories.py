@@ -7,6 +7,7 @@ seconds; x points forward, y to the walker's left, z up. Missing samples are NaN
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,6 +18,8 @@ from eigenwalker.core.arguments import as_floats, described
 
 DIMS = ("time", "marker", "axis")
 AXES = ("x", "y", "z")
+MAX_NAMES = 20
+"""Names that a message lists."""
 MILLIMETRES = {
     "um": 1e-3,
     "mm": 1.0,
@@ -99,7 +102,7 @@ def trajectories_at(time: ArrayLike, values: ArrayLike, markers: Sequence[str]) 
             f"ask for {(len(time), len(names), 3)}, that is (time, marker, axis)"
         )
     if len(set(names)) < len(names):
-        twice = sorted({name for name in names if names.count(name) > 1})
+        twice = sorted(name for name, count in Counter(names).items() if count > 1)[:MAX_NAMES]
         problems.append(f"marker names must differ from each other, and these come twice: {twice}")
     if not all(names):
         problems.append("a marker has an empty name")

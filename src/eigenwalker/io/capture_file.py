@@ -13,6 +13,10 @@ from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
 from eigenwalker.io.up_axis_and_unit import Unit
 
 MAX_BYTES = 2**31
+MAX_POSITIONS = 4_000_000
+"""Joints times frames that a skeleton may have, however few numbers move it."""
+MAX_COLUMNS = 100_000
+"""More columns are no table of a body's points."""
 _KEEP_PARTIAL = (
     f'{EXPORT_AGAIN}, or take the frames that are there: read_mocap(..., partial="keep")'
 )
@@ -54,8 +58,13 @@ class CaptureFile:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The lines of a text."""
-        return lines_of(self.content, self.name)
+        """The lines of a text, none of more than `MAX_COLUMNS` columns."""
+        lines = lines_of(self.content, self.name)
+        widest = max((line.count(mark) for line in lines for mark in "\t,; "), default=0) + 1
+        if widest > MAX_COLUMNS:
+            expected = f"{MAX_COLUMNS} columns at most"
+            raise self.error(expected, f"{widest}", "keep those of the body")
+        return lines
 
     def error(self, expected: str, got: str, advice: str = EXPORT_AGAIN) -> UnreadableFile:
         """Return the error to raise when the file does not hold what is expected."""
@@ -75,6 +84,13 @@ class CaptureFile:
         if self.keep_partial and n_frames:
             return {"n_frames_cut": n_declared - n_frames}
         raise self.error(expected, f"{n_frames}: the file is cut short", _KEEP_PARTIAL)
+
+    def check_size(self, n_points: int, n_frames: int) -> None:
+        """Refuse more positions than `MAX_POSITIONS` that the file does not hold one by one."""
+        most = max(MAX_POSITIONS, len(self.content) // 4)
+        if n_points * n_frames > most:
+            got = f"{n_points} joints in {n_frames} frames"
+            raise self.error(f"{most} positions at most", got, "cut it into shorter captures")
 
     def frame_rate(
         self, declared_hz: float | None, *, usual_hz: float, reason: str

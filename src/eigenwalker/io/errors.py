@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+MAX_PART = 300
+"""Letters of each part of a message: no file makes it longer than some 1200."""
 EXPORT_AGAIN = "export or copy the file again"
 
 
@@ -41,9 +43,12 @@ class UnreadableFile(ValueError):  # noqa: N818 - the name says what is wrong
         self.advice = advice
 
     def __str__(self) -> str:
-        return printable(
-            f"{self.source}: expected {self.expected}, but got {self.got}; {self.advice}."
-        )
+        source, expected, got = map(_shortened, (self.source, self.expected, self.got))
+        return printable(f"{source}: expected {expected}, but got {got}; {self.advice}.")
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= MAX_PART else f"{text[: MAX_PART - 4]} ..."
 
 
 def printable(text: str) -> str:

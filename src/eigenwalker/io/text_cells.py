@@ -6,20 +6,33 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Sequence
+from datetime import UTC, datetime
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import EXPORT_AGAIN
+from eigenwalker.io.missing_codes import is_code
+from eigenwalker.io.number_marks import N_SAMPLED, NumberMarks, number_marks
 
 MAX_SIZE = 1e9
 """No length, angle or time in a sound file is larger than this, whatever its unit."""
 MISSING = frozenset(
-    ("", "nan", "-nan", "na", "n/a", "null", "none", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind")
+    (
+        *("", "nan", "-nan", "na", "n/a", "<na>", "null", "(null)", "none", "undefined", "missing"),
+        *("nan(ind)", "-nan(ind)", "1.#qnan", "-1.#qnan", "1.#snan", "1.#ind", "-1.#ind"),
+        *("1.#inf", "-1.#inf", "inf", "+inf", "-inf", "infinity", "-infinity"),
+        *("#n/a", "#na", "#num!", "#value!", "#div/0!", "#ref!", "#null!", "#name?"),
+        *("-", "--", "---", ".", "..", "?", "*"),
+    )
 )
 """What programs write in a cell where nothing was measured, in lower case."""
 
+MAX_CLOCK = 1e20
+"""No time is larger, be it in nanoseconds since 1970."""
+_TIME_OF_DAY = re.compile(r"((?P<h>\d{1,2}):)?(?P<m>\d{1,2}):(?P<s>\d{1,2}(\.\d*)?)", re.ASCII)
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 _UNIT = re.compile(r"[ _]*[\[(](mm|cm|m)[\])]$|_(mm|cm|m)$")
@@ -54,15 +67,20 @@ def number(word: str, where: str, file: CaptureFile) -> float:
     return value
 
 
-def plain_numbers(words: Sequence[str]) -> np.ndarray | None:
-    """Return words as numbers, NaN included; None if one is no number, infinite or absurd."""
+def plain_numbers(words: Sequence[str], clock: int | None = None) -> np.ndarray | None:
+    """Return words as numbers, NaN included; None if one is no number, infinite or absurd.
+
+    The number in the place `clock` is a time, which may be large.
+    """
     try:
         row = np.array(list(map(float, words)))
     except ValueError:
         return None
     text = "".join(words)
-    sound = text.isascii() and "_" not in text  # 1_0 is not 10 here
-    return row if sound and np.all(np.isnan(row) | (np.abs(row) < MAX_SIZE)) else None
+    sound = np.isnan(row) | (np.abs(row) < MAX_SIZE)
+    if clock is not None:
+        sound[clock] = abs(row[clock]) < MAX_CLOCK
+    return row if sound.all() and text.isascii() and "_" not in text else None  # 1_0 is not 10
 
 
 def table_of(
@@ -73,22 +91,26 @@ def table_of(
     separator: str | None,
     first: int = 1,
     short_by: int = 0,
-    columns: Sequence[int] | None = None,
+    columns: Sequence[int],
+    clock: int | None = None,
 ) -> np.ndarray:
-    """Return lines of numbers as an array, with NaN for empty cells.
+    """Return columns of lines of numbers as an array, with NaN for empty cells.
 
-    Where cells are not separated by commas, numbers may have decimal commas. Only the named
-    `columns` are returned, and others may hold anything. Any line but the last may lack a multiple
-    of `short_by` cells at its end, which are then empty: some editors strip blanks from the ends of
-    lines. `first` is the number of the first line in the file, for messages.
+    Other columns may hold anything. `clock` is the column of times, which comes last. Numbers may
+    have decimal commas where these do not separate cells, or marks between thousands
+    (`number_marks`). Any line but the last may lack a multiple of `short_by` cells at its end,
+    which are then empty: some editors strip blanks from the ends of lines. `first` is the number of
+    the first line in the file, for messages.
     """
     if not lines:
         raise file.error("a line of numbers or more", "none")
-    comma = separator != "," and any(re.search(r"\d,\d", line) for line in lines[:20])
-    rows: list[np.ndarray] = []
+    marks = _marks(lines, separator, columns)
+    wanted = list(columns) if clock is None else [*columns, clock]
+    take = None if wanted == list(range(n_columns)) else itemgetter(*wanted, wanted[0])
+    rows = np.empty((len(lines), len(wanted)))
     room = sum(map(len, lines)) + n_columns
     for at, line in enumerate(lines):
-        plain = line.replace(",", ".") if comma else line
+        plain = line if separator == "," else marks.plain(line)
         words = cells(plain, separator) if '"' in plain else plain.split(separator)
         if len(words) > n_columns:
             words = [*words[:n_columns], *(word for word in words[n_columns:] if word.strip())]
@@ -99,16 +121,69 @@ def table_of(
         if len(words) != n_columns:
             reason = ": the file is cut short" if lack > 0 and at == len(lines) - 1 else ""
             raise file.error(f"{n_columns} cells in line {first + at}", f"{len(words)}{reason}")
-        if columns is not None:
-            words = [words[column] for column in columns]
-        row = plain_numbers(words)
-        rows.append(np.array([_cell(w, first + at, file) for w in words]) if row is None else row)
-    return np.array(rows).reshape(len(rows), n_columns if columns is None else len(columns))
+        if take:
+            words = take(words)[:-1]
+        row = plain_numbers(words, None if clock is None else -1)
+        rows[at] = _cells(words, first + at, file, marks, clock) if row is None else row
+    return rows
+
+
+def _marks(lines: Sequence[str], separator: str | None, columns: Sequence[int]) -> NumberMarks:
+    """Return the marks in the numbers of a table."""
+    if separator == ",":
+        has_commas = any('"' in line for line in lines)
+    else:
+        has_commas = any(re.search(r"\d,\d", line) for line in lines)
+    if not has_commas and not any("." in line for line in lines[:N_SAMPLED]):
+        return NumberMarks()
+    rows = (cells(line, separator) for line in lines)
+    coordinates = ([row[at] for at in columns if at < len(row)] for row in rows)
+    marks = number_marks(coordinates, has_commas=has_commas)
+    return NumberMarks() if separator == "," and not marks.thousands else marks
+
+
+def _cells(
+    words: Sequence[str], line: int, file: CaptureFile, marks: NumberMarks, clock: int | None
+) -> list[float]:
+    """Return the numbers in the cells of a line one by one."""
+    *words, last = [marks.plain(word.strip()) for word in words] if marks.thousands else words
+    if clock is None:
+        return [_cell(word, line, file) for word in (*words, last)]
+    return [*(_cell(word, line, file) for word in words), clock_time(last, line, file)]
 
 
 def _cell(word: str, line: int, file: CaptureFile) -> float:
     word = word.strip()
-    return np.nan if word.lower() in MISSING else number(word, f"line {line}", file)
+    missing = word.lower() in MISSING or is_code(word)
+    return np.nan if missing else number(word, f"line {line}", file)
+
+
+def clock_time(word: str, line: int, file: CaptureFile) -> float:
+    """Return a time as it is written: a number, or seconds since 1970 or midnight of a date."""
+    word = word.strip()
+    if word.lower() in MISSING:
+        return np.nan
+    if _NUMBER.fullmatch(word) and abs(float(word)) < MAX_CLOCK:
+        return float(word)
+    seconds = seconds_of_date(word)
+    if seconds is None and file.rate_hz is None and file.default_rate_hz is None:
+        raise file.error(
+            f"a number or a date (ISO 8601) as the time in line {line}",
+            repr(word[:40]),
+            "if it is a date, name the rate instead: read_mocap(..., rate_hz=...)",
+        )
+    return np.nan if seconds is None else seconds
+
+
+def seconds_of_date(word: str) -> float | None:
+    """Return a date as ISO 8601 writes it in seconds since 1970, a time of day since midnight."""
+    try:
+        moment = datetime.fromisoformat(word)
+    except ValueError:
+        hit = _TIME_OF_DAY.fullmatch(word)
+        hours, minutes, seconds = (hit[part] or 0 for part in ("h", "m", "s")) if hit else (0,) * 3
+        return 3600 * int(hours) + 60 * int(minutes) + float(seconds) if hit else None
+    return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()
 
 
 def cut_number(file: CaptureFile, lines: Sequence[str]) -> str:

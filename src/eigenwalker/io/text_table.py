@@ -14,10 +14,13 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.missing_codes import without_codes
 from eigenwalker.io.text_cells import cells, cut_number, refuse_cut_number, table_of
 from eigenwalker.io.timestamps import Clocked, on_clock
 from eigenwalker.io.to_trajectories import FileFrame, labelled_points, own_name, trajectories_of
 
+MAX_START_S = 1e7
+"""Captures whose clock shows a later time than this are counted from their first frame."""
 _COUNT = re.compile(r"\d{1,9}", re.ASCII)
 _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
 
@@ -37,8 +40,6 @@ class TextTable:
     time_column: int | None = None
     n_frames: int | None = None
     """Frames that the file declares."""
-    only_these: bool = False
-    """Whether other columns may hold anything."""
     short_by: int = 0
     """As `table_of` takes it."""
     ends_file: bool = True
@@ -71,9 +72,6 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
     """Return the positions and times in a table; NaN where a cell is empty."""
     rows = _whole_rows(file, table)
     attrs = {} if table.n_frames is None else file.check_frames(table.n_frames, len(rows))
-    wanted = [column for triple in table.columns for column in triple]
-    if table.time_column is not None:
-        wanted.append(table.time_column)
     values = table_of(
         file,
         rows,
@@ -81,12 +79,11 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
         separator=table.separator,
         first=table.first_line,
         short_by=table.short_by,
-        columns=wanted if table.only_these else None,
+        columns=[column for triple in table.columns for column in triple],
+        clock=table.time_column,
     )
     if table.ends_file and len(rows) == len(table.rows):
         refuse_cut_number(file, rows)
-    if not table.only_these:
-        values = values[:, wanted]
     n_points = len(table.names)
     return TableValues(
         values[:, : 3 * n_points].reshape(len(values), n_points, 3),
@@ -121,10 +118,15 @@ def table_trajectories(
     frame: FileFrame,
 ) -> xr.DataArray:
     """Return the labelled points of a table as trajectories."""
-    clocked = Clocked(values.positions, rate_hz or 0.0, start_s)
-    if values.time is not None:
-        clocked = on_clock(file, values.positions, values.time, rate_hz)
-    positions, names, attrs = labelled_points(clocked.positions, names, _is_labelled)
+    positions, codes = without_codes(values.positions)
+    clocked = Clocked(positions, rate_hz or 0.0, start_s)
+    attrs = {**values.attrs, **({"missing_codes": codes} if codes else {})}
+    if (time := values.time) is not None:
+        if abs(time[0]) > MAX_START_S:  # of a clock that began long before the capture
+            attrs["clock_start_s"] = float(time[0])
+            time = time - time[0]
+        clocked = on_clock(file, positions, time, rate_hz)
+    positions, names, points = labelled_points(clocked.positions, names, _is_labelled)
     positions[np.isnan(positions).any(axis=2)] = np.nan
     if np.isnan(positions).all():
         got = f"{len(positions)} frames of {len(names)} labelled points that were never seen"
@@ -138,7 +140,7 @@ def table_trajectories(
         start_s=clocked.start_s,
         frame=frame,
     )
-    walk.attrs.update(attrs, **values.attrs)
+    walk.attrs.update(points, **attrs)
     return walk
 
 

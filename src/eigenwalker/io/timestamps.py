@@ -19,6 +19,8 @@ MAX_JITTER = 0.1
 MAX_GAPS = 10
 """A table with fewer than one in this many frames is no capture."""
 
+_TIME_UNITS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
+_USUAL_STEPS = ((1.0, 1.0), (1e3, 1e-3), (1e6, 1e-6))
 _RATE = re.compile(r"(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -53,6 +55,19 @@ def declared_rate(file: CaptureFile, word: str, where: str) -> float:
         if file.default_rate_hz is None:
             raise
         return file.default_rate_hz
+
+
+def in_seconds(time: np.ndarray, unit: str | None = None) -> np.ndarray:
+    """Return times in seconds; without a unit, the one whose steps are those of captures.
+
+    Steps below 1 are seconds, below 1000 milliseconds, below 10^6 microseconds, else nanoseconds.
+    """
+    if unit is not None:
+        scale = _TIME_UNITS.get(unit[:2].lower(), 1.0)
+    else:
+        step = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+        scale = next((scale for most, scale in _USUAL_STEPS if step < most), 1e-9)
+    return time[0] * scale + (time - time[0]) * scale if len(time) else time
 
 
 def on_clock(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
     Unit,
+    UpAxisCorrected,
     body_height,
     guess_unit,
     head_and_feet,
@@ -93,6 +95,8 @@ class FileFrame(NamedTuple):
     usual_unit: Unit | None = None
     up: str | None = None
     usual_up: str = "z"
+    up_is_sure: bool = False
+    """Whether a person named the axis, so that it counts even if the body stands otherwise."""
 
 
 def trajectories_of(
@@ -112,11 +116,16 @@ def trajectories_of(
     `positions` (time, marker, 3) and `quaternions` (time, marker, 4; x, y, z, w) are in the unit
     and frame of the file. The unit is the one that the caller or the file names, else the caller's
     default, else the usual one of the format, if head and feet are then as far apart as in people,
-    within a factor of 2. Otherwise it is guessed from the height of the body. Up is the axis that
-    the file names, else it is seen in the posture, else the usual one of the format.
+    within a factor of 2. Otherwise it is guessed from the height of the body. Up is the axis along
+    which the body stands, else the one that the file names, else the usual one of the format.
     """
-    unit, usual_unit, up, usual_up = frame
-    known_up = up or up_axis(positions, names)
+    unit, usual_unit, named_up, usual_up, _ = frame
+    body_up = None if frame.up_is_sure and named_up else up_axis(positions, names)
+    known_up = body_up or named_up
+    up_reason = ""
+    if named_up and known_up != named_up:
+        up_reason = f"the file names {named_up} as upward, but the body stands along {body_up}"
+        warnings.warn(f"{file.name}: {up_reason}, which counts.", UpAxisCorrected, stacklevel=4)
     turn = turn_upright(known_up or usual_up)
     positions = positions @ turn.T
     usual = usual_unit if usual_unit and _fits_a_body(positions, names, usual_unit) else None
@@ -134,6 +143,7 @@ def trajectories_of(
         format=format_name,
         up_axis=known_up or usual_up,
         up_axis_known=known_up is not None,
+        up_axis_reason=up_reason,
         unit=used.name,
         unit_guessed=known_unit is None,
         unit_reason=used.reason,

@@ -22,6 +22,8 @@ UNITS = {"mm": 1.0, "cm": 10.0, "in": 25.4, "asf": 25.4 / 0.45, "m": 1000.0}
 
 _HIGH = re.compile(r"head|hd$|skull|nose|vertex|glabella|^sgl$")
 _NEXT_HIGH = re.compile(r"neck|^c7$|cv7|clav")
+_HIPS = re.compile(r"hip|pelv|asis|psis|[lr](asi|psi|ias|ips)$|sacr|troch|gtr$|iliac|waist|upleg")
+_KNEES = re.compile(r"knee|kne$|kn[ei]$|[lr](fle|fme|kne)$|patella|lowerleg|shank|tib")
 _LOW = re.compile(r"foot|toe|heel|hee$|ankle|ank$|mt\d$|metatars|malle|^[lr]f(al|cc)$")
 
 
@@ -30,6 +32,13 @@ class UnitGuessed(UserWarning):
 
     Silence it with ``warnings.simplefilter("ignore", UnitGuessed)``, or name the unit:
     ``read_mocap(path, unit="cm")``.
+    """
+
+
+class UpAxisCorrected(UserWarning):
+    """The body stands along another axis than the one that its file names as upward.
+
+    Silence it with ``warnings.simplefilter("ignore", UpAxisCorrected)``.
     """
 
 
@@ -43,22 +52,45 @@ class Unit(NamedTuple):
 
 def head_and_feet(positions: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Return the points at the head and those at the feet, two arrays (time, some markers, 3)."""
-    plain = [re.sub(r"[^a-z0-9]", "", name.rsplit(":", 1)[-1].lower()) for name in names]
-    high = [i for i, name in enumerate(plain) if _HIGH.search(name)]
-    high = high or [i for i, name in enumerate(plain) if _NEXT_HIGH.search(name)]
-    low = [i for i, name in enumerate(plain) if _LOW.search(name)]
-    return positions[:, high], positions[:, low]
+    plain = _plain(names)
+    high = _matching(positions, plain, _HIGH)
+    high = high if high.size else _matching(positions, plain, _NEXT_HIGH)
+    return high, _matching(positions, plain, _LOW)
+
+
+def _plain(names: Sequence[str]) -> list[str]:
+    return [re.sub(r"[^a-z0-9]", "", name.rsplit(":", 1)[-1].lower()) for name in names]
+
+
+def _matching(
+    positions: np.ndarray, plain_names: Sequence[str], pattern: re.Pattern[str]
+) -> np.ndarray:
+    return positions[:, [i for i, name in enumerate(plain_names) if pattern.search(name)]]
 
 
 def up_axis(positions: np.ndarray, names: Sequence[str]) -> str | None:
-    """Return the axis along which the head is above the feet, such as ``"z"`` or ``"-y"``.
+    """Return the axis along which the body stands, such as ``"z"`` or ``"-y"``.
 
-    None where names or posture leave it open.
+    By where the head is above the feet; of half a body, neck or hips above knees or feet. In the
+    middle of frames and points, so that single wild samples do not count. None where names or
+    posture leave it open.
     """
-    high, low = (part[~np.isnan(part).any(axis=2)] for part in head_and_feet(positions, names))
-    if not len(high) or not len(low):
+    high, low = head_and_feet(positions, names)
+    plain = _plain(names)
+    if not high.size:
+        high = _matching(positions, plain, _HIPS)
+    if not low.size:
+        low = _matching(positions, plain, _KNEES)
+    if not high.size or not low.size:
         return None
-    rise = high.mean(axis=0) - low.mean(axis=0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # frames without a sample give NaN
+        rises = np.nanmedian(high, axis=1) - np.nanmedian(low, axis=1)
+        rise = np.nanmedian(rises, axis=0)
+        if np.isnan(rise).any():  # never seen in one frame
+            rise = np.nanmedian(high, axis=(0, 1)) - np.nanmedian(low, axis=(0, 1))
+    if np.isnan(rise).any():
+        return None
     axis = int(np.abs(rise).argmax())
     if abs(rise[axis]) <= UPRIGHT * np.abs(np.delete(rise, axis)).max():
         return None

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.text_cells import number
+from eigenwalker.io.text_cells import number, plain_numbers
 from eigenwalker.io.timestamps import parse_rate
 
 MAX_BONES = 2000
@@ -185,7 +185,7 @@ def _in_order(described: dict[str, Bone], links: _Lines, file: CaptureFile) -> l
     parents: dict[str, str] = {}
     for parent, *children in links:
         for name in children:
-            if name.lower() in (*parents, ROOT):
+            if name.lower() in parents or name.lower() == ROOT:
                 raise file.error("one parent a bone", f"several for {name!r}")
             parents[name.lower()] = parent.lower()
     if unknown := sorted({*parents, *parents.values()} - set(described)):
@@ -198,8 +198,9 @@ def _in_order(described: dict[str, Bone], links: _Lines, file: CaptureFile) -> l
         order += children_of.get(name, [])
     if loose := sorted(set(described) - set(order)):
         raise file.error("each bone in the hierarchy", f"none for {loose}")
+    places = {name: place for place, name in enumerate(order)}
     for name in order[1:]:
-        described[name].parent = order.index(parents[name])
+        described[name].parent = places[parents[name]]
     return [described[name] for name in order]
 
 
@@ -255,12 +256,13 @@ def _table(rows: _Lines, name: str, file: CaptureFile) -> np.ndarray:
     if ragged:
         got = f"{len(rows[ragged[0] - 1])} in its frame no. {ragged[0]}"
         raise file.error(f"{size} numbers of {name} in each frame", got)
-    return np.array(
-        [
-            [number(word, f"{name} in frame no. {frame}", file) for word in row]
-            for frame, row in enumerate(rows, 1)
-        ]
-    ).reshape(len(rows), size)
+    table = plain_numbers([word for row in rows for word in row])
+    if table is None or np.isnan(table).any():
+        where = [f"{name} in frame no. {frame}" for frame in range(1, len(rows) + 1)]
+        table = np.array(
+            [[number(word, at, file) for word in row] for row, at in zip(rows, where, strict=True)]
+        )
+    return table.reshape(len(rows), size)
 
 
 def _refuse_cut_number(lines: _Lines, file: CaptureFile) -> None:

@@ -34,8 +34,6 @@ from eigenwalker.markers.marker_sets import numbered
 CMU_RATE_HZ = 120.0
 """AMC files name no rate; the CMU collection, where nearly all of them come from, has this one."""
 INCH_MM = 25.4
-MAX_POSITIONS = 100_000_000
-"""More bones times frames are no capture of a person but a damaged file."""
 
 _FIRST_WORDS = rb"(?:\xef\xbb\xbf)?(?:\s*#[^\n]*\n)*\s*:"
 _OF_SKELETONS = rb"(version|name|units|documentation|root|bonedata|hierarchy)(?![a-z-])"
@@ -124,9 +122,7 @@ def _pose(
         got = f"{unknown}, which it lacks" if channels else "none"
         raise file.error(f"motions of the bones of {beside}", got, own_skeleton)
     n_frames = len(next(iter(channels.values())))
-    if n_frames * len(bones) > MAX_POSITIONS:
-        advice = "cut it into shorter files"
-        raise file.error("the capture of one person", f"{n_frames} frames", advice)
+    file.check_size(len(bones), n_frames)
     degrees = skeleton.degrees if motion.degrees is None else motion.degrees
     turns: list[np.ndarray] = []
     root = np.tile(skeleton.position, (n_frames, 1))

@@ -16,8 +16,6 @@ from eigenwalker.io.to_trajectories import FileFrame, trajectories_of
 from eigenwalker.markers.marker_sets import numbered
 
 looks_like_bvh = re.compile(rb"(\xef\xbb\xbf)?\s*HIERARCHY", re.IGNORECASE).match
-MAX_POSITIONS = 100_000_000
-"""More joints times frames than this do not fit into memory."""
 
 
 def read_bvh(file: CaptureFile) -> xr.DataArray:
@@ -27,10 +25,7 @@ def read_bvh(file: CaptureFile) -> xr.DataArray:
     frame is turned in the room.
     """
     joints, motion, attrs = parse_bvh(file)
-    n_frames = len(motion.values)
-    if len(joints) * n_frames > MAX_POSITIONS:
-        got = f"{len(joints)} joints in {n_frames} frames"
-        raise file.error("the capture of one person", got, "cut it into shorter files")
+    file.check_size(len(joints), len(motion.values))
     positions, orientations = _pose(joints, motion.values)
     walk = trajectories_of(
         file,

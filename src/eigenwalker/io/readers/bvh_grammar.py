@@ -20,6 +20,11 @@ from eigenwalker.io.timestamps import RATES_HZ
 
 MAX_JOINTS = 2000
 """More joints are no person's skeleton but a damaged file."""
+EXACT_HZ = (25, 50, 100, 200, 250, 500, 1000)
+"""Usual rates whose frame times have three decimals or fewer: 0.01 is not rounded."""
+MOST_USUAL_HZ = (120, 60, 30, 100, 240, 200, 50)
+MAX_ROUNDING = 0.01
+"""Frame times that are rounded by more than this share tell no rate."""
 USUAL_RATES_HZ = (
     *(24, 25, 30, 48, 50, 60, 72, 75, 80, 90, 96, 100, 120, 125, 128, 144, 150, 160, 180, 192),
     *(200, 240, 250, 256, 300, 360, 400, 480, 500, 512, 600, 960, 1000),
@@ -48,7 +53,7 @@ class Motion(NamedTuple):
     rate_hz: float
 
 
-def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, int]]:
+def parse_bvh(file: CaptureFile) -> tuple[list[Joint], Motion, dict[str, object]]:
     """Return the joints of a BVH file, parents before children, and their channels."""
     head, table = _split(file, file.text)
     joints = _hierarchy(file, head)
@@ -113,23 +118,21 @@ def _channels(file: CaptureFile, words: Iterator[str]) -> tuple[str, ...]:
     return plain
 
 
-def _motion(file: CaptureFile, text: str, n_channels: int) -> tuple[Motion, dict[str, int]]:
+def _motion(file: CaptureFile, text: str, n_channels: int) -> tuple[Motion, dict[str, object]]:
     """Return the table of channels and the rate, declared against delivered."""
     declared = _DECLARED.match(text)
     if not declared:
         raise file.error("the lines 'Frames:' and 'Frame Time:'", repr(text[:60].strip()))
     n_frames = int(declared[1])
     step = number(declared[2], "the frame time", file)
-    rows = [row for line in text[declared.end() :].splitlines() if (row := line.split())]
+    rows = [line for line in text[declared.end() :].splitlines() if line and not line.isspace()]
     cut = "" if text[-1].isspace() else _cut_number(rows)
     may_be_cut = file.keep_partial and len(rows) <= n_frames and not text.endswith("\n")
-    if may_be_cut and rows and (len(rows) < n_frames or len(rows[-1]) < n_channels or cut):
+    if may_be_cut and rows and (len(rows) < n_frames or len(rows[-1].split()) < n_channels or cut):
         rows.pop()  # the file may end within its last line
     attrs = file.check_frames(n_frames, len(rows))
-    ragged = [i for i, row in enumerate(rows) if len(row) != n_channels]
-    if not n_frames or ragged:
-        got = f"{len(rows[ragged[0]])} in frame {ragged[0] + 1}" if ragged else "no frames"
-        raise file.error(f"{n_channels} numbers a frame", got)
+    if not n_frames:
+        raise file.error(f"{n_channels} numbers a frame", "no frames")
     if cut and not attrs:
         expected = "as many decimals in the last number as in all others"
         raise file.error(expected, f"{cut} at its end: the file is cut short")
@@ -139,30 +142,45 @@ def _motion(file: CaptureFile, text: str, n_channels: int) -> tuple[Motion, dict
         expected = f"frames a second between {RATES_HZ[0]:g} and {RATES_HZ[1]:g}"
         got = f"{1 / step:.3g}, by the frame time {declared[2][:40]}"
         raise file.error(expected, got, "put the frame time right")
-    return Motion(_table(file, rows), _rate(declared[2])), attrs
+    rate_hz, assumed = _rate(file, declared[2])
+    return Motion(_table(file, rows, n_channels), rate_hz), {**attrs, **assumed}
 
 
-def _cut_number(rows: Sequence[Sequence[str]]) -> str:
+def _cut_number(rows: Sequence[str]) -> str:
     """Return the last number if it has fewer decimals than all others: the file ends within it."""
-    decimals = [len(word.partition(".")[2]) for row in rows for word in row]
+    decimals = [len(word.partition(".")[2]) for row in rows for word in row.split()]
     is_cut = len(set(decimals[:-1])) == 1 and decimals[-1] < decimals[0]
-    return repr(rows[-1][-1]) if is_cut else ""
+    return repr(rows[-1].split()[-1]) if is_cut else ""
 
 
-def _table(file: CaptureFile, rows: Sequence[Sequence[str]]) -> np.ndarray:
-    table = plain_numbers([word for row in rows for word in row])
-    if table is None or np.isnan(table).any():
-        table = np.array(
-            [number(word, f"frame {at}", file) for at, row in enumerate(rows, 1) for word in row]
-        )
-    return table.reshape(len(rows), -1)
+def _table(file: CaptureFile, rows: Sequence[str], n_channels: int) -> np.ndarray:
+    table = np.empty((len(rows), n_channels))
+    for at, line in enumerate(rows):
+        words = line.split()
+        if len(words) != n_channels:
+            raise file.error(f"{n_channels} numbers a frame", f"{len(words)} in frame {at + 1}")
+        row = plain_numbers(words)
+        if row is None or np.isnan(row).any():
+            row = [number(word, f"frame {at + 1}", file) for word in words]
+        table[at] = row
+    return table
 
 
-def _rate(written: str) -> float:
-    """Return the usual rate whose frame time, rounded as `written`, is the one in the file."""
+def _rate(file: CaptureFile, written: str) -> tuple[float, dict[str, object]]:
+    """Return the usual rate whose frame time, rounded as `written`, is the one in the file.
+
+    Where several are, it is said, and the most usual of them is taken.
+    """
     step = float(written)
     decimals = len(written.partition(".")[2]) if "e" not in written.lower() else 12
     rounding = max(0.5000001 * 10.0**-decimals, 1e-6 * step)
     near = [rate for rate in USUAL_RATES_HZ if abs(1 / rate - step) <= rounding]
     whole = [rate for rate in near if rate == int(rate)]
-    return float(min(whole or near or [1 / step], key=lambda rate: abs(1 / rate - step)))
+    nearest = float(min(whole or near or [1 / step], key=lambda rate: abs(1 / rate - step)))
+    is_exact = nearest in EXACT_HZ and abs(step * nearest - 1) < 1e-9
+    if file.rate_hz or len(whole) < 2 or is_exact or rounding < MAX_ROUNDING * step:
+        return nearest, {}
+    rate_hz = float(next((rate for rate in MOST_USUAL_HZ if rate in whole), nearest))
+    least, most = 1 / (step + rounding), 1 / max(step - rounding, 1e-9)
+    reason = f"as its frame time {written} is rounded and may mean {least:.4g} to {most:.4g}"
+    return file.frame_rate(file.default_rate_hz, usual_hz=rate_hz, reason=reason)

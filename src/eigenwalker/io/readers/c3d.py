@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.missing_codes import without_codes
 from eigenwalker.io.readers.c3d_sections import Header, Parameters, c3d_sections
 from eigenwalker.io.to_trajectories import (
     FileFrame,
@@ -18,7 +18,7 @@ from eigenwalker.io.to_trajectories import (
     unit_named,
     with_scalars,
 )
-from eigenwalker.io.up_axis_and_unit import Unit, up_axis
+from eigenwalker.io.up_axis_and_unit import Unit
 
 looks_like_c3d = re.compile(rb"[^\0]\x50", re.DOTALL).match
 _UNLABELLED = re.compile(
@@ -45,7 +45,9 @@ def read_c3d(file: CaptureFile) -> xr.DataArray:
     """
     header, parameters, samples, cut = c3d_sections(file)
     rate_hz = _rate(file, header, parameters)
+    samples, codes = without_codes(samples)
     positions, names, attrs = _markers(file, samples, parameters)
+    attrs |= {"missing_codes": codes} if codes else {}
     walk = trajectories_of(
         file,
         positions,
@@ -53,7 +55,7 @@ def read_c3d(file: CaptureFile) -> xr.DataArray:
         format_name="C3D",
         rate_hz=file.rate_hz or rate_hz,
         start_s=0.0 if file.rate_hz else max(header.first_frame - 1, 0) / rate_hz,
-        frame=FileFrame(_unit(parameters), up=_up(positions, names, parameters)),
+        frame=FileFrame(_unit(parameters), up=_screen_up(parameters)),
     )
     measures = _measures(parameters)
     return with_scalars(walk, measures).assign_attrs(**attrs, **measures, **cut)
@@ -93,13 +95,8 @@ def _markers(
     return positions, names, attrs
 
 
-def _up(positions: np.ndarray, names: Sequence[str], parameters: Parameters) -> str | None:
-    """Return the axis that points up: by the posture of the body, else the screen axes of the file.
-
-    Many programs fill in the screen axes without knowing them, so the body goes first.
-    """
-    if up := up_axis(positions, names):
-        return up
+def _screen_up(parameters: Parameters) -> str | None:
+    """Return the axis that points up on the screen, which programs fill in without knowing it."""
     screen = "".join(parameters.texts("POINT:Y_SCREEN")[:1]).replace("+", "").strip().lower()
     return screen if re.fullmatch(r"-?[xyz]", screen) else None
 

@@ -15,9 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.missing_codes import CODES
 from eigenwalker.io.text_cells import MAX_SIZE
 
 BLOCK = 512
+MAX_COUNT = 65535
+"""The largest number of a frame in the header."""
 MAX_PARAMETER_BLOCKS = 255
 MAX_CONTINUED = 30
 PROCESSORS = {84: "Intel", 85: "DEC", 86: "MIPS"}
@@ -184,7 +187,10 @@ def _samples(
     words = 4 * header.n_points + header.n_analog
     stride = words * (4 if scale < 0 else 2)
     start = (max(header.data_block, 1) - 1) * BLOCK
-    available = max(len(file.content) - start, 0)
+    end = len(file.content)
+    if header.parameter_block > header.data_block:
+        end = (header.parameter_block - 1) * BLOCK
+    available = max(end - start, 0)
     n_declared = _declared_frames(file, header, parameters, stride, available)
     n_frames = min(available // stride, n_declared)
     attrs = file.check_frames(n_declared, n_frames)
@@ -196,7 +202,11 @@ def _samples(
     points = table.reshape(n_frames, words)[:, : 4 * header.n_points]
     points = points.reshape(n_frames, header.n_points, 4)
     positions = points[..., :3] * (1.0 if scale < 0 else scale)
-    if (np.abs(positions) > MAX_SIZE).any():
+    with np.errstate(invalid="ignore"):
+        positions[np.abs(np.abs(positions) - CODES[0]) < 1e-6 * CODES[0]] = np.nan
+        absurd = np.abs(positions) > MAX_SIZE
+    absurd[points[..., 3] < 0] = False
+    if absurd.any():
         raise file.error("finite positions", "infinite or absurd ones")
     positions[(points[..., 3] < 0) | np.isnan(positions).any(axis=2)] = np.nan
     # Some programs put a marker that was not seen, and is elsewhere in other frames, at 0, 0, 0.
@@ -226,7 +236,7 @@ def _declared_frames(
 
     The header counts to 65535; longer files, and those of some programs, declare the number
     in parameters. Where declarations differ, that one counts which the length of the file bears
-    out.
+    out. Where a count ran over, and none is borne out, the length alone counts.
     """
     counts = [header.last_frame - header.first_frame + 1]
     fields = [parameters.get(f"TRIAL:ACTUAL_{which}_FIELD") for which in ("START", "END")]
@@ -239,6 +249,19 @@ def _declared_frames(
     counts = [count for count in counts if count > 0]
     fitting = [n for n in counts if 0 <= available - n * stride < BLOCK]
     declared = fitting[0] if fitting else max(counts, default=0)
+    if not fitting and declared and available // stride > MAX_COUNT:
+        by_length = range(max(available - BLOCK, 0) // stride + 1, available // stride + 1)
+        modulo = {count % (MAX_COUNT + 1) for count in counts}
+        wrapped = [n for n in by_length if n % (MAX_COUNT + 1) in modulo]
+        if wrapped or MAX_COUNT in (header.last_frame, declared):
+            declared = wrapped[0] if wrapped else _without_padding(file, stride, available)
     if not declared:
         raise file.error("one frame or more", "none")
     return declared
+
+
+def _without_padding(file: CaptureFile, stride: int, available: int) -> int:
+    """Return the number of frames in samples that end with the file, but for its last zeros."""
+    samples = file.content[-available:]
+    zeros = min(available - len(samples.rstrip(b"\0")), BLOCK - 1)
+    return -(-(available - zeros) // stride)

@@ -35,7 +35,7 @@ def looks_like_data3d(lines: Sequence[str]) -> bool:
 def read_data3d(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the 13 points of a ``data3d`` text."""
     lines = file.lines
-    table = table_of(file, lines, len(POINTS), separator=None)
+    table = table_of(file, lines, len(POINTS), separator=None, columns=range(len(POINTS)))
     refuse_cut_number(file, lines)
     positions = positions_of_rows(file, table)
     heights = dict(zip(POINTS, np.nanmedian(positions[..., 1], axis=0), strict=True))

@@ -78,7 +78,9 @@ def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
         names,
         format_name="described table",
         rate_hz=rate_hz,
-        frame=FileFrame(_unit(described), up=described.get("up") if axes is None else "z"),
+        frame=FileFrame(
+            _unit(described), up=described.get("up") if axes is None else "z", up_is_sure=True
+        ),
     )
     walk.attrs.update(description=described.file.name)
     walk.attrs.update({key: str(described[key]) for key in _WORDS if key in described})
@@ -185,7 +187,8 @@ def _table(file: CaptureFile, described: _Description) -> tuple[list[str], Table
         len(head),
         separator=separator,
         first=n_above + 1,
-        columns=[*columns.tolist(), *([at - 1] if at else [])],
+        columns=columns.tolist(),
+        clock=at - 1 if at else None,
     )
     refuse_cut_number(file, rows)
     if layout == "rows":

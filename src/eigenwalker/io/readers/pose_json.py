@@ -10,10 +10,14 @@ from __future__ import annotations
 import json
 import math
 import re
+import reprlib
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
+from types import NoneType
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -21,9 +25,11 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile, is_text
 from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.missing_codes import is_code
 from eigenwalker.io.readers.skeleton_table import body_trajectories
-from eigenwalker.io.text_cells import MAX_SIZE, points_of
+from eigenwalker.io.text_cells import MAX_CLOCK, MAX_SIZE, Points, points_of, seconds_of_date
 from eigenwalker.io.text_table import TableValues
+from eigenwalker.io.timestamps import in_seconds
 
 _TOML = files("eigenwalker.io.readers").joinpath("point_names.toml").read_text(encoding="utf-8")
 MEDIAPIPE, BODY_25 = (tuple(map(str, names)) for names in tomllib.loads(_TOML).values())
@@ -36,10 +42,16 @@ _POINTS = (
     *("pose_keypoints_3d", "landmarks", "pose_landmarks", "keypoints", "points", "joints"),
 )
 _TIMES = {
-    **dict.fromkeys(("time", "time_s", "timestamp", "timestamp_s", "t"), 1.0),
-    **dict.fromkeys(("time_ms", "timestamp_ms"), 1e-3),
+    **dict.fromkeys(("time", "timestamp", "t", "datetime", "utc"), None),
+    **dict.fromkeys(("time_s", "timestamp_s"), "s"),
+    **dict.fromkeys(("time_ms", "timestamp_ms"), "ms"),
+    **dict.fromkeys(("time_us", "timestamp_us"), "us"),
 }
 _RATES = ("rate_hz", "fps", "frame_rate", "framerate", "sampling_rate")
+MAX_MEMORY = 2**29
+"""Bytes that a document may take as Python's lists, dicts and numbers."""
+_MEMORY = {b"[": 88, b"{": 240, b",": 36}
+"""Bytes for each list, each dict, and each of their entries."""
 _WORDS = re.compile(rb'"(frames|[^"]{0,40}(landmarks|keypoints[^"]{0,9}|_z))" *:', re.IGNORECASE)
 _PICTURE = "export 3D points (world landmarks, in metres)"
 
@@ -56,12 +68,22 @@ def holds_poses(beginning: bytes, _path: Path) -> bool:
 
 def read_pose_json(file: CaptureFile) -> xr.DataArray:
     """Return the trajectories of the points in a JSON document, of one person."""
+    memory = sum(file.content.count(mark) * size for mark, size in _MEMORY.items())
+    if memory > MAX_MEMORY:
+        expected = f"JSON that takes {MAX_MEMORY / 2**20:.0f} MiB when it is read, at most"
+        got = f"one of some {memory / 2**20:.0f} MiB"
+        raise file.error(expected, got, "cut it into shorter captures, or write them as CSV")
     try:
-        data: Any = json.loads("\n".join(file.lines))
+        return _trajectories(file, json.loads(file.text))
     except UnreadableFile:
         raise
-    except (ValueError, RecursionError) as error:
+    except RecursionError as error:
+        raise file.error("JSON of frames and points", "lists in lists without end") from error
+    except ValueError as error:
         raise file.error("JSON", str(error)[:80]) from error
+
+
+def _trajectories(file: CaptureFile, data: Any) -> xr.DataArray:
     top = data if _is_dict(data) else {}
     keys = {"unit": "unit", "up": "up"} | dict.fromkeys(_RATES, "rate_hz")
     notes = {note: str(top[key])[:40] for key, note in keys.items() if key in top}
@@ -98,28 +120,32 @@ def _records(columns: dict[str, Any]) -> list[dict[str, Any]]:
 def _positions(
     file: CaptureFile, frames: Sequence[Any], top: dict[str, Any]
 ) -> tuple[list[str], np.ndarray]:
-    points_by_frame = [_points(file, frame) for frame in frames]
-    first = next((points for points in points_by_frame if points), points_by_frame[0])
+    first: list[str] = []
+    rows: list[np.ndarray | None] = []
+    for frame in frames:
+        points = _points(file, frame)
+        if points and first and list(points) != first:
+            raise file.error("the same points in each frame", "others in some")
+        first = first or list(points)
+        rows.append(_numbers(file, points.values()) if points else None)
     names = next((top[key] for key in ("names", "keypoint_names", "markers") if key in top), None)
     if names is not None and not (
         _is_list(names) and len(names) == len(first) and all(map(str, names))
     ):
-        raise file.error(f"{len(first)} names, one a point", f"{str(names)[:60]}")
+        raise file.error(f"{len(first)} names, one a point", repr(names)[:60])
     if names is None and first and all(key.isdecimal() for key in first):
         names = NAMES.get(len(first))
         if names is None:
             advice = 'add "names": ["nose", ...] at the top'
             raise file.error(f"names of the {len(first)} points", "none", advice)
     if len(first) < 3:
-        raise file.error("points x, y, z in each frame", f"{str(frames[0])[:60]}", _PICTURE)
-    if any(points and list(points) != list(first) for points in points_by_frame):
-        raise file.error("the same points in each frame", "others in some")
-    missing = [np.full(3, np.nan)] * len(first)
-    positions = [list(points.values()) or missing for points in points_by_frame]
-    return [str(name) for name in (names or first)], np.array(positions, dtype=float)
+        raise file.error("points x, y, z in each frame", reprlib.repr(frames[0])[:60], _PICTURE)
+    missing = np.full((len(first), 3), np.nan)
+    positions = np.array([missing if row is None else row for row in rows])
+    return [str(name) for name in (names or first)], positions
 
 
-def _points(file: CaptureFile, frame: Any) -> dict[str, np.ndarray]:
+def _points(file: CaptureFile, frame: Any) -> dict[str, Any]:
     """Return the points of a frame by name or number; none where no person was seen."""
     if _is_dict(frame) and "people" in frame:
         frame = _one_person(file, frame["people"])
@@ -131,17 +157,17 @@ def _points(file: CaptureFile, frame: Any) -> dict[str, np.ndarray]:
             return _points_of_record(file, frame)
         frame = frame[key]
     if _is_dict(frame):
-        return {str(name): _point(file, point) for name, point in frame.items()}
+        return {str(name): point for name, point in frame.items()}
     if not _is_list(frame):
         return {}
     if frame and all(isinstance(value, (int, float)) for value in frame) and len(frame) % 4 == 0:
-        return {str(i): _point(file, frame[i * 4 : i * 4 + 3]) for i in range(len(frame) // 4)}
+        return {str(i): frame[i * 4 : i * 4 + 3] for i in range(len(frame) // 4)}
     if frame and _is_list(frame[0]) and frame[0] and isinstance(frame[0][0], (list, dict)):
         return _points(file, _one_person(file, frame))
-    points: dict[str, np.ndarray] = {}
+    points: dict[str, Any] = {}
     for at, point in enumerate(frame):
         name = point.get("name", at) if _is_dict(point) else at
-        points[str(name)] = _point(file, point)
+        points[str(name)] = point
     if len(points) < len(frame):
         raise file.error("points of different names", "a name twice")
     return points
@@ -150,37 +176,53 @@ def _points(file: CaptureFile, frame: Any) -> dict[str, np.ndarray]:
 def _one_person(file: CaptureFile, people: Any) -> Any:
     """Return the only person of a frame; nothing if there is none."""
     if not _is_list(people) or len(people) > 1:
-        got = f"{len(people)}" if _is_list(people) else f"{str(people)[:40]}"
+        got = f"{len(people)}" if _is_list(people) else reprlib.repr(people)[:40]
         raise file.error("one person", got, "keep the points of one")
     return people[0] if people else {}
 
 
-def _points_of_record(file: CaptureFile, record: dict[str, Any]) -> dict[str, np.ndarray]:
+def _points_of_record(file: CaptureFile, record: dict[str, Any]) -> dict[str, Any]:
     """Return the points of a record: entries ``nose_x`` and so on, or entries with x, y and z."""
-    flat = points_of(list(record))
+    flat = _flat_points(tuple(record))
     values = list(record.values())
     points = {
-        name: _point(file, [values[column] for column in columns])
+        name: [values[column] for column in columns]
         for name, columns in zip(flat.names, flat.columns, strict=True)
     }
     return points or {
-        name: _point(file, point)
+        name: point
         for name, point in record.items()
         if _is_dict(point) and {"x", "y", "z"} <= set(point)
     }
 
 
-def _point(file: CaptureFile, point: Any) -> np.ndarray:
+@lru_cache(maxsize=8)
+def _flat_points(names: tuple[str, ...]) -> Points:
+    return points_of(names)  # the same in each frame
+
+
+def _numbers(file: CaptureFile, points: Iterable[Any]) -> np.ndarray:
+    """Return x, y, z of points, array (point, 3); NaN where one is null."""
+    values = [value for point in points for value in _coordinates(file, point)]
+    if set(map(type, values)) <= {int, float, NoneType}:
+        with suppress(OverflowError):
+            row = np.array(values, dtype=float)
+            if not (np.abs(row) > MAX_SIZE).any():
+                return row.reshape(-1, 3)
+    return np.array([_number(file, value) for value in values]).reshape(-1, 3)
+
+
+def _coordinates(file: CaptureFile, point: Any) -> Sequence[Any]:
     if point is None:
-        return np.full(3, np.nan)
+        return (None, None, None)
     values = [point.get(axis, math.inf) for axis in "xyz"] if _is_dict(point) else point
     if not _is_list(values) or len(values) < 3:
-        raise file.error("points x, y, z", f"{str(point)[:60]}", _PICTURE)
-    return np.array([_number(file, value) for value in values[:3]])
+        raise file.error("points x, y, z", reprlib.repr(point)[:60], _PICTURE)
+    return values[:3]
 
 
 def _number(file: CaptureFile, value: Any) -> float:
-    if value is None or (isinstance(value, float) and math.isnan(value)):
+    if value is None or value != value or (isinstance(value, float) and is_code(value)):
         return math.nan
     if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MAX_SIZE:
         got = "none" if value == math.inf else f"{str(value)[:40]!r}"
@@ -191,8 +233,9 @@ def _number(file: CaptureFile, value: Any) -> float:
 def _times(frames: Sequence[Any]) -> np.ndarray | None:
     for key, unit in _TIMES.items():
         times = [frame.get(key) if _is_dict(frame) else None for frame in frames]
-        if all(isinstance(t, (int, float)) and abs(t) < MAX_SIZE * 1e6 for t in times):
-            time = np.array(times, dtype=float) * unit
-            in_ms = unit == 1.0 and len(time) > 1 and np.median(np.diff(time)) >= 1
-            return time * 1e-3 if in_ms else time
+        if all(isinstance(time, (int, float)) and abs(time) < MAX_CLOCK for time in times):
+            return in_seconds(np.array(times, dtype=float), unit)
+        dates = [seconds_of_date(time) if isinstance(time, str) else None for time in times]
+        if None not in dates:
+            return np.array(dates, dtype=float)
     return None

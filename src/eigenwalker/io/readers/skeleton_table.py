@@ -18,7 +18,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
-from eigenwalker.io.timestamps import parse_rate
+from eigenwalker.io.timestamps import in_seconds, parse_rate
 from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
@@ -33,11 +33,11 @@ _KINDS = {
 """Names of points by which tables of a program are known."""
 
 _TIME = re.compile(
-    r"(?:time|timestamps?|t|seconds?|milliseconds?)"
-    r"(?:[ _]*[\[(]?(?P<unit>s|sec|seconds?|ms|us|µs)[\])]?)?",
+    r"(?:(?:local|unix|epoch|utc|system|camera|frame|host|date)[ _]?)?"
+    r"(?:time|timestamps?|stamp|epoch|utc|t|seconds?|milliseconds?)"
+    r"(?:[ _]*[\[(]?(?P<unit>s|sec|seconds?|ms|us|µs|ns|iso)[\])]?)?",
     re.IGNORECASE,
 )
-_TIME_UNITS = {"s": 1.0, "m": 1e-3, "u": 1e-6, "µ": 1e-6}
 _NOTE = re.compile(r"(\w+)\s*[:=]\s*([^;,]+)")
 
 
@@ -61,13 +61,12 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
         first_line=first + 1,
         time_column=times[0][0] if times else None,
         n_frames=_declared_frames(file, notes),
-        only_these=True,
     )
     values = table_values(file, table)
     if "frames" in notes and not values.attrs and file.content[-1:] not in (b"\n", b"\r"):
         raise file.error("an end of the last line", "none: the file is cut short")
     if values.time is not None:
-        values = replace(values, time=_seconds(values.time, times[0][1]["unit"]))
+        values = replace(values, time=in_seconds(values.time, times[0][1]["unit"]))
     return body_trajectories(file, values, points.names, notes)
 
 
@@ -137,14 +136,6 @@ def _no_points(file: CaptureFile, header: Sequence[str]) -> UnreadableFile:
             "(docs/formats.md)"
         )
     return file.error("columns such as nose_x, nose_y, nose_z", got[:200], advice)
-
-
-def _seconds(time: np.ndarray, unit: str | None) -> np.ndarray:
-    """Return times in seconds; without a unit, steps of 1 and more are milliseconds."""
-    if unit:
-        return time * _TIME_UNITS[unit[0].lower()]
-    steps = np.diff(time)
-    return time * 1e-3 if len(steps) and np.median(steps) >= 1 else time
 
 
 def _notes(lines: Sequence[str]) -> dict[str, str]:

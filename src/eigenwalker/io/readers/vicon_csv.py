@@ -58,25 +58,25 @@ def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
         wanted = "a block of Trajectories in lengths"
         raise file.error(wanted, "none", "tick Trajectories when exporting")
     whole = blocks[0]
-    for block in blocks[1:]:
-        if block.rate_hz == whole.rate_hz and np.array_equal(block.frames, whole.frames):
-            whole = whole._replace(
-                names=whole.names + block.names,
-                positions=np.concatenate([whole.positions, block.positions], axis=1),
-                units=whole.units | block.units,
-            )
-    if len(whole.units) > 1:
-        raise file.error("one unit of length", f"{sorted(whole.units)}")
+    same = [
+        block
+        for block in blocks
+        if block.rate_hz == whole.rate_hz and np.array_equal(block.frames, whole.frames)
+    ]
+    units = set[str]().union(*(block.units for block in same))
+    if len(units) > 1:
+        raise file.error("one unit of length", f"{sorted(units)}")
+    positions = np.concatenate([block.positions for block in same], axis=1)
     time = (whole.frames - 1) / whole.rate_hz
-    even = on_even_clock(file, whole.positions, time, whole.rate_hz)
+    even = on_even_clock(file, positions, time, whole.rate_hz)
     return table_trajectories(
         file,
         TableValues(even.positions),
-        whole.names,
+        [name for block in same for name in block.names],
         format_name="Vicon CSV",
         rate_hz=whole.rate_hz,
         start_s=even.start_s,
-        frame=FileFrame(unit_named(next(iter(whole.units)))),
+        frame=FileFrame(unit_named(units.pop())),
     )
 
 
