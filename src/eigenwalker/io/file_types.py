@@ -13,6 +13,10 @@ _SIGNATURES = (
     (rb"\x89HDF\r\n\x1a\n", "a NetCDF-4 or HDF5 file"),
     (rb"CDF[\x01\x02\x05]", "a NetCDF file"),
     (rb"MATLAB", "a MATLAB file"),
+    (
+        rb"\x93NUMPY|PK\x03\x04.{26}[^\0]{1,200}?\.npy",
+        "NumPy arrays, as AMASS and others have them",
+    ),
     (rb"PK[\x03\x05]", "a ZIP archive, such as a document or a spreadsheet is"),
     (rb"\x1f\x8b", "a file compressed with gzip"),
     (rb"BZh|7z\xbc\xaf|\xfd7zXZ|Rar!|\(\xb5/\xfd", "an archive"),

@@ -33,6 +33,11 @@ from eigenwalker.io.readers.vicon_csv import looks_like_vicon_csv, read_vicon_cs
 from eigenwalker.io.up_axis_and_unit import UNITS, Unit
 from eigenwalker.markers.marker_sets import subjects
 
+_ADVICE = {
+    "NumPy": "write the positions of joints as CSV or JSON (docs/formats.md)",
+    "HDF5": "if it is of movement, from_movement(xr.open_dataset(path)) reads it in Python",
+}
+"""What to do with files of some kinds that no reader takes."""
 BEGINNING = 100_000
 """Bytes of a file from which it is decided whether it is meant as a capture."""
 
@@ -205,6 +210,9 @@ def _unknown_file(file: CaptureFile) -> UnreadableFile:
             "read_walkers_mat(path) or read_mm(path)",
         )
     got = file_type_of(file.content)
+    for kind, advice in _ADVICE.items():
+        if kind in got:
+            return file.error("a capture that says what it is", got, advice)
     by_name = [r.name for r in READERS if suffix in r.suffixes and r.is_meant is None]
     if by_name:
         expected = f"{with_article(' or '.join(by_name))} file, as it is called"

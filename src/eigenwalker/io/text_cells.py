@@ -93,10 +93,11 @@ def table_of(
     short_by: int = 0,
     columns: Sequence[int],
     clock: int | None = None,
+    others: Sequence[int] = (),
 ) -> np.ndarray:
     """Return columns of lines of numbers as an array, with NaN for empty cells.
 
-    Other columns may hold anything. `clock` is the column of times, which comes last. Numbers may
+    In the columns `others` are numbers too, and anything in those that are not named. `clock` is the column of times, which comes last. Numbers may
     have decimal commas where these do not separate cells, or marks between thousands
     (`number_marks`). Any line but the last may lack a multiple of `short_by` cells at its end,
     which are then empty: some editors strip blanks from the ends of lines. `first` is the number of
@@ -105,7 +106,7 @@ def table_of(
     if not lines:
         raise file.error("a line of numbers or more", "none")
     marks = _marks(lines, separator, columns)
-    wanted = list(columns) if clock is None else [*columns, clock]
+    wanted = [*others, *columns] if clock is None else [*others, *columns, clock]
     take = None if wanted == list(range(n_columns)) else itemgetter(*wanted, wanted[0])
     rows = np.empty((len(lines), len(wanted)))
     room = sum(map(len, lines)) + n_columns
@@ -125,7 +126,7 @@ def table_of(
             words = take(words)[:-1]
         row = plain_numbers(words, None if clock is None else -1)
         rows[at] = _cells(words, first + at, file, marks, clock) if row is None else row
-    return rows
+    return rows[:, len(others) :]
 
 
 def _marks(lines: Sequence[str], separator: str | None, columns: Sequence[int]) -> NumberMarks:

@@ -40,6 +40,8 @@ class TextTable:
     time_column: int | None = None
     n_frames: int | None = None
     """Frames that the file declares."""
+    only_these: bool = False
+    """Whether other columns may hold anything."""
     short_by: int = 0
     """As `table_of` takes it."""
     ends_file: bool = True
@@ -72,6 +74,10 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
     """Return the positions and times in a table; NaN where a cell is empty."""
     rows = _whole_rows(file, table)
     attrs = {} if table.n_frames is None else file.check_frames(table.n_frames, len(rows))
+    coordinates = [column for triple in table.columns for column in triple]
+    others: list[int] = []
+    if not table.only_these:
+        others = sorted({*range(table.n_columns)} - {*coordinates, table.time_column})
     values = table_of(
         file,
         rows,
@@ -79,8 +85,9 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
         separator=table.separator,
         first=table.first_line,
         short_by=table.short_by,
-        columns=[column for triple in table.columns for column in triple],
+        columns=coordinates,
         clock=table.time_column,
+        others=others,
     )
     if table.ends_file and len(rows) == len(table.rows):
         refuse_cut_number(file, rows)

@@ -41,6 +41,9 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
     ``attrs["original_source"]`` is the name of the file from which they were first read.
     """
     dataset = dataset_of(file.content, file.name, expected=_EXPECTED)
+    if {"keypoints", "keypoint"} & set(map(str, dataset.sizes)):
+        got = "a dataset of poses, as movement writes them"
+        raise file.error(_EXPECTED, got, "read it in Python: from_movement(xr.open_dataset(path))")
     if str(dataset.attrs.get("format")) != FORMAT:
         raise file.error(_EXPECTED, "a NetCDF file that holds other things", _OPEN)
     if str(version := dataset.attrs.get("format_version")) != str(VERSION):
@@ -60,6 +63,9 @@ def read_netcdf(file: CaptureFile) -> xr.DataArray:
     for name, kind in TABLES.items():
         if rows := _rows(known.pop(name, ""), kind):
             known[name] = rows
+    if known.pop("units", "mm") != "mm":
+        expected = "positions in mm, as the format has them"
+        raise file.error(expected, "another unit in its attribute capture_units")
     if "source" in known:
         known.setdefault("original_source", known["source"])
     walk = with_scalars(walk, known)
@@ -81,7 +87,7 @@ def _rows(text: object, kind: type[Repair] | type[Rebuilt]) -> tuple[object, ...
     try:
         entries = json.loads(str(text))
         return tuple(kind(*map(_hashable, entry)) for entry in entries)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, RecursionError):
         return ()
 
 
@@ -89,9 +95,22 @@ def _hashable(value: object) -> Any:
     return tuple(map(str, cast("list[object]", value))) if isinstance(value, list) else value
 
 
+class _OnceOver(io.BytesIO):
+    """Bytes of a file of which no more is read than it has, some of it twice."""
+
+    n_read = 0
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        read = super().read(size)
+        self.n_read += len(read)
+        if self.n_read > 3 * self.getbuffer().nbytes + 10_000:
+            raise ValueError("several variables in one place of the file")
+        return read
+
+
 def dataset_of(content: bytes, source: str, *, expected: str) -> xr.Dataset:
     """Return what a NetCDF file of version 3 holds, by any program."""
-    file = io.BytesIO(content)
+    file = _OnceOver(content)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of what damage does to names and numbers

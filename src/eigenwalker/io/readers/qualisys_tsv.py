@@ -41,6 +41,9 @@ def read_qualisys_tsv(file: CaptureFile) -> xr.DataArray:
     kind = first_of.get("DATA_INCLUDED", "3D")
     if kind.upper() != "3D":
         raise file.error("3D data", repr(kind[:20]), "export the 3D data as TSV")
+    if segments := keys.get("SEGMENT_NAMES"):
+        got = f"a skeleton export of QTM: {len(segments)} segments"
+        raise file.error("3D data of markers", got, "export the 3D data as TSV, or C3D")
     names = keys.get("MARKER_NAMES", [])
     n_markers = declared_count(file, first_of.get("NO_OF_MARKERS", ""), "NO_OF_MARKERS")
     if n_markers != len(names) or not all(names):

@@ -61,6 +61,7 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
         first_line=first + 1,
         time_column=times[0][0] if times else None,
         n_frames=_declared_frames(file, notes),
+        only_these=True,
     )
     values = table_values(file, table)
     if "frames" in notes and not values.attrs and file.content[-1:] not in (b"\n", b"\r"):

@@ -22,6 +22,7 @@ from eigenwalker.io.to_trajectories import FileFrame, unit_named
 BLOCKS = ("trajectories", "model outputs")
 """The blocks that hold positions; devices, events and joints are passed over."""
 
+MAX_BLOCKS = 100
 _TITLE = re.compile(
     rb'^(?:\xef\xbb\xbf)?[ \t,;"]*(trajectories|model outputs)[ \t,;"]*$', re.I | re.M
 )
@@ -53,6 +54,9 @@ def read_vicon_csv(file: CaptureFile) -> xr.DataArray:
     """
     lines = file.lines
     starts = [at for at, line in enumerate(lines) if line.strip(_EDGES).lower() in BLOCKS]
+    if len(starts) > MAX_BLOCKS:
+        advice = "export the markers alone"
+        raise file.error(f"{MAX_BLOCKS} blocks at most", f"{len(starts)}", advice)
     blocks = [block for at in starts if (block := _block(file, lines, at))]
     if not blocks:
         wanted = "a block of Trajectories in lengths"
