@@ -83,6 +83,7 @@ def no_numbers() -> list[BadFile]:
         BadFile(f"{kind} with {what} for a number", changed(kind, pattern, word), said)
         for kind, (pattern, said) in TEXT.items()
         for what, word in words.items()
+        if "infinity" not in what or kind in ("bvh", "amc")  # tables write inf for a gap
     ]
     for what, word in {"text": '"abc"', "infinity": "Infinity", "1e308": "1e308"}.items():
         make = changed("pose_json", r"-?\d\.\d+(?=\]\]\}\]\Z)", word)

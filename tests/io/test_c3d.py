@@ -14,7 +14,7 @@ from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.readers.c3d import read_c3d
-from eigenwalker.io.up_axis_and_unit import Unit, UnitGuessed
+from eigenwalker.io.up_axis_and_unit import Unit, UnitGuessed, UpAxisAssumed
 
 LABELS = ["LFHD", "LASI", "LTOE"]
 MACHINES = {"Intel": 84, "DEC": 85, "MIPS": 86}
@@ -272,7 +272,8 @@ def test_the_body_tells_up_and_else_the_screen_of_the_file():
     machine = Machine("Intel")
     turned = _points()[..., [1, 2, 0]]  # what was z is y now
     wrong = [_texts(machine, 1, "Y_SCREEN", ["+Z"], width=2)]
-    walk = _read(_file(turned, extra=wrong))
+    with pytest.warns(UpAxisAssumed, match="names z as upward, but the body stands along y"):
+        walk = _read(_file(turned, extra=wrong))
     assert walk.attrs["up_axis"] == "y"
     np.testing.assert_allclose(walk.values, _points())
     nameless = ["a", "b", "c"]

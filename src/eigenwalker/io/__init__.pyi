@@ -8,7 +8,7 @@ from .interchange import (
 )
 from .read import is_capture as is_capture, read_mocap as read_mocap
 from .readers.mat import read_mat as read_mat
-from .up_axis_and_unit import UnitGuessed as UnitGuessed, UpAxisCorrected as UpAxisCorrected
+from .up_axis_and_unit import UnitGuessed as UnitGuessed, UpAxisAssumed as UpAxisAssumed
 from .walker_tables import (
     COS_FIRST as COS_FIRST,
     SIN_FIRST as SIN_FIRST,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-MAX_PART = 300
-"""Letters of each part of a message: no file makes it longer than some 1200."""
+MAX_PART = 400
+"""Letters of each part of a message: no file makes it longer than some 1500."""
 EXPORT_AGAIN = "export or copy the file again"
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import EXPORT_AGAIN
 from eigenwalker.io.missing_codes import is_code
-from eigenwalker.io.number_marks import N_SAMPLED, NumberMarks, number_marks
+from eigenwalker.io.number_format import N_SAMPLED, NumberMarks, number_marks
 
 MAX_SIZE = 1e9
 """No length, angle or time in a sound file is larger than this, whatever its unit."""
@@ -97,11 +97,11 @@ def table_of(
 ) -> np.ndarray:
     """Return columns of lines of numbers as an array, with NaN for empty cells.
 
-    In the columns `others` are numbers too, and anything in those that are not named. `clock` is the column of times, which comes last. Numbers may
-    have decimal commas where these do not separate cells, or marks between thousands
-    (`number_marks`). Any line but the last may lack a multiple of `short_by` cells at its end,
-    which are then empty: some editors strip blanks from the ends of lines. `first` is the number of
-    the first line in the file, for messages.
+    In the columns `others` are numbers too, and anything in those that are not named. `clock` is
+    the column of times, which comes last. Numbers may have decimal commas where these do not
+    separate cells, or marks between thousands (`number_marks`). Any line but the last may lack a
+    multiple of `short_by` cells at its end, which are then empty: some editors strip blanks from
+    the ends of lines. `first` is the number of the first line in the file, for messages.
     """
     if not lines:
         raise file.error("a line of numbers or more", "none")

@@ -15,7 +15,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.up_axis_and_unit import (
     PLAUSIBLE_MM,
     Unit,
-    UpAxisCorrected,
+    UpAxisAssumed,
     body_height,
     guess_unit,
     head_and_feet,
@@ -125,7 +125,7 @@ def trajectories_of(
     up_reason = ""
     if named_up and known_up != named_up:
         up_reason = f"the file names {named_up} as upward, but the body stands along {body_up}"
-        warnings.warn(f"{file.name}: {up_reason}, which counts.", UpAxisCorrected, stacklevel=4)
+        warnings.warn(f"{file.name}: {up_reason}, which counts.", UpAxisAssumed, stacklevel=4)
     turn = turn_upright(known_up or usual_up)
     positions = positions @ turn.T
     usual = usual_unit if usual_unit and _fits_a_body(positions, names, usual_unit) else None

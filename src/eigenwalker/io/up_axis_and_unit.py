@@ -35,10 +35,10 @@ class UnitGuessed(UserWarning):
     """
 
 
-class UpAxisCorrected(UserWarning):
+class UpAxisAssumed(UserWarning):
     """The body stands along another axis than the one that its file names as upward.
 
-    Silence it with ``warnings.simplefilter("ignore", UpAxisCorrected)``.
+    Silence it with ``warnings.simplefilter("ignore", UpAxisAssumed)``.
     """
 
 
@@ -72,8 +72,8 @@ def up_axis(positions: np.ndarray, names: Sequence[str]) -> str | None:
     """Return the axis along which the body stands, such as ``"z"`` or ``"-y"``.
 
     By where the head is above the feet; of half a body, neck or hips above knees or feet. In the
-    middle of frames and points, so that single wild samples do not count. None where names or
-    posture leave it open.
+    middle of the frames, so that single wild samples do not count. None where names or posture
+    leave it open.
     """
     high, low = head_and_feet(positions, names)
     plain = _plain(names)
@@ -85,7 +85,7 @@ def up_axis(positions: np.ndarray, names: Sequence[str]) -> str | None:
         return None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # frames without a sample give NaN
-        rises = np.nanmedian(high, axis=1) - np.nanmedian(low, axis=1)
+        rises = np.nanmean(high, axis=1) - np.nanmean(low, axis=1)
         rise = np.nanmedian(rises, axis=0)
         if np.isnan(rise).any():  # never seen in one frame
             rise = np.nanmedian(high, axis=(0, 1)) - np.nanmedian(low, axis=(0, 1))

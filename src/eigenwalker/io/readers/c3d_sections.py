@@ -249,7 +249,7 @@ def _declared_frames(
     counts = [count for count in counts if count > 0]
     fitting = [n for n in counts if 0 <= available - n * stride < BLOCK]
     declared = fitting[0] if fitting else max(counts, default=0)
-    if not fitting and declared and available // stride > MAX_COUNT:
+    if not fitting and 0 < declared <= MAX_COUNT < available // stride:
         by_length = range(max(available - BLOCK, 0) // stride + 1, available // stride + 1)
         modulo = {count % (MAX_COUNT + 1) for count in counts}
         wrapped = [n for n in by_length if n % (MAX_COUNT + 1) in modulo]

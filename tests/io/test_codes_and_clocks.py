@@ -1,0 +1,161 @@
+"""What programs write for missing samples, in numbers and as times, is read by what it is."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eigenwalker as ew
+from corpus.sound_files import c3d_file, walk_of
+from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.up_axis_and_unit import UpAxisAssumed
+
+WALK = walk_of(1.0, rate_hz=120)
+NAMES = [str(name) for name in WALK.marker.values]
+
+
+def _table(values=WALK.values, time=None, *, number="{:.2f}", separator=",", head="# unit: mm"):
+    time = [f"{each:.4f}" for each in WALK.time.values] if time is None else time
+    names = ["time", *(f"{name}_{axis}" for name in NAMES for axis in "xyz")]
+    rows = [
+        [moment, *(number.format(v) for v in frame.ravel())]
+        for moment, frame in zip(time, values, strict=True)
+    ]
+    lines = [separator.join(row) for row in (names, *rows)]
+    return "\n".join([head, *lines]) + "\n"
+
+
+def _read(tmp_path: Path, content: str | bytes, name: str = "a.csv", **given):
+    path = tmp_path / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return ew.read_mocap(path, **given)
+
+
+@pytest.mark.parametrize("code", ["-3.697314e+28", "#N/A", "-", ".", "inf", "-999999", "9999999"])
+def test_codes_are_missing_samples(tmp_path, code):
+    lines = _table().splitlines()
+    cells = lines[20].split(",")
+    cells[4:7] = [code] * 3
+    lines[20] = ",".join(cells)
+    walk = _read(tmp_path, "\n".join(lines) + "\n")
+    assert np.isnan(walk.values).any(axis=2).sum() == 1 + int(
+        np.isnan(WALK.values).any(axis=2).sum()
+    )
+    assert (walk.attrs["up_axis"], walk.attrs["unit"]) == ("z", "mm")
+
+
+def test_one_wild_sample_turns_no_frame(tmp_path):
+    values = WALK.values.copy()
+    values[30, 0] = [2e6, -1e6, 3e6]
+    walk = _read(tmp_path, _table(values, head="# table"))
+    assert (walk.attrs["up_axis"], walk.attrs["unit"]) == ("z", "mm")
+
+
+@pytest.mark.parametrize("scale", [1, 1e3, 1e6])
+def test_unix_times_are_read(tmp_path, scale):
+    time = [f"{(1606735971.123 + each) * scale:.6f}" for each in WALK.time.values]
+    walk = _read(tmp_path, _table(time=time))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-6)
+    assert walk.time.values[0] == 0
+    assert walk.attrs["clock_start_s"] == pytest.approx(1606735971.123)
+
+
+def test_dates_are_read_or_refused_with_the_way_out(tmp_path):
+    start = np.datetime64("2022-06-14T23:57:47.000000")
+    moments = start + (WALK.time.values * 1e6).astype("timedelta64[us]")
+    walk = _read(tmp_path, _table(time=[f"{each}Z" for each in moments]))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-6)
+    dates = ["14/06/2022 11:57 pm"] * len(WALK)
+    with pytest.raises(UnreadableFile, match=r"date.*rate_hz="):
+        _read(tmp_path, _table(time=dates))
+    assert len(_read(tmp_path, _table(time=dates), rate_hz=120)) == len(WALK)
+
+
+@pytest.mark.parametrize(("mark", "separator"), [(",", "\t"), (",", ";"), (".", "\t")])
+def test_marks_between_thousands_are_no_decimals(tmp_path, mark, separator):
+    text = _table(number="{:,.0f}", separator=separator)
+    walk = _read(tmp_path, text if mark == "," else text.replace(",", "."), default_rate_hz=120)
+    np.testing.assert_allclose(walk.values, WALK.values, atol=0.51)
+
+
+def test_three_decimals_behind_commas_stay_decimals(tmp_path):
+    walk = _read(tmp_path, _table(WALK.values / 1000, number="{:.3f}", separator=";",
+                                  head="# unit: m").replace(".", ","))  # fmt: skip
+    np.testing.assert_allclose(walk.values, WALK.values, atol=0.51)
+
+
+def test_utf_16_is_read_in_every_format(tmp_path):
+    for suffix in (".bvh", ".trc", ".csv"):
+        whole = WALK.interpolate_na("time", fill_value="extrapolate")
+        path = ew.write_mocap(whole, tmp_path / f"a{suffix}")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            plain = ew.read_mocap(path)
+            path.write_bytes(path.read_text().encode("utf-16"))
+            np.testing.assert_array_equal(ew.read_mocap(path).values, plain.values)
+
+
+def test_a_long_c3d_without_trial_parameters_is_read_whole(tmp_path):
+    long = ew.label_trajectories(
+        np.tile(WALK.values[:1, :3], (66000, 1, 1)), markers=NAMES[:3], rate_hz=100
+    )
+    for declared in (65535, 66000 - 65536):
+        content = c3d_file(long, n_frames=declared)
+        assert len(_read(tmp_path, content, "a.c3d")) == 66000
+
+
+def test_a_frame_time_that_is_rounded_is_said(tmp_path):
+    path = ew.write_mocap(WALK.interpolate_na("time", fill_value="extrapolate"), tmp_path / "a.bvh")
+    path.write_text(path.read_text().replace("0.0083333333", "0.008"))
+    with pytest.warns(ew.io.RateAssumed, match=r"0\.008 is rounded"):
+        walk = ew.read_mocap(path, unit="cm")
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120)
+
+
+def test_half_a_body_stands_on_its_feet_and_that_is_said(tmp_path):
+    lower = WALK.sel(
+        marker=[name for name in NAMES if name.split("_")[-1] in ("hip", "knee", "ankle")]
+    )
+    content = {"up": "x", "unit": "mm", "fps": 120, "frames": [
+        {str(m): [float(v) for v in p] for m, p in zip(lower.marker.values, frame, strict=True)}
+        for frame in np.nan_to_num(lower.values, nan=1.0)
+    ]}  # fmt: skip
+    content["frames"] = [{"landmarks": frame} for frame in content["frames"]]
+    with pytest.warns(UpAxisAssumed, match="names x as upward, but the body stands along z"):
+        walk = _read(tmp_path, json.dumps(content), "a.json")
+    assert walk.attrs["up_axis"] == "z"
+
+
+@pytest.mark.parametrize("depth", [500, 1500, 3000, 100_000])
+@pytest.mark.parametrize(("opened", "closed"), ["[]", ('{"frames":[', "]}")])
+def test_nested_json_is_refused(tmp_path, depth, opened, closed):
+    with pytest.raises(UnreadableFile, match="expected"):
+        _read(tmp_path, opened * depth + closed * depth, "a.json")
+
+
+def _sparse_bvh() -> str:
+    joints = "JOINT j\n{\nOFFSET 0 1 0\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 0\n}\n}\n" * 900
+    head = f"HIERARCHY\nROOT a\n{{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\n{joints}}}\n"
+    return f"{head}MOTION\nFrames: 20000\nFrame Time: 0.01\n" + "0\n" * 20000
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.csv", "," * 1_000_000 + "\n" + "1," * 1_000_000 + "\n"),
+        ("a.trc", "PathFileType\t4\n" + "\t" * 1_000_000 + "\n1\n2\n3\n"),
+        ("a.json", '{"frames":[' + "[]," * 7_000_000 + "[]]}"),
+        ("a.bvh", _sparse_bvh()),
+    ],
+)
+def test_limits_are_checked_before_the_work_is_done(tmp_path, name, content):
+    with pytest.raises(UnreadableFile, match="at most"):
+        _read(tmp_path, content, name)
+
+
+def test_no_message_is_long():
+    assert len(str(UnreadableFile("a" * 9999, "b" * 9999, "c" * 9999))) < 1500
