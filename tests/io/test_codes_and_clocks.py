@@ -48,6 +48,7 @@ def test_codes_are_missing_samples(tmp_path, code):
     assert (walk.attrs["up_axis"], walk.attrs["unit"]) == ("z", "mm")
 
 
+@pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
 def test_one_wild_sample_turns_no_frame(tmp_path):
     values = WALK.values.copy()
     values[30, 0] = [2e6, -1e6, 3e6]
