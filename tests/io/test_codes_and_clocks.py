@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import eigenwalker as ew
 from corpus.sound_files import c3d_file, walk_of
@@ -160,3 +161,19 @@ def test_limits_are_checked_before_the_work_is_done(tmp_path, name, content):
 
 def test_no_message_is_long():
     assert len(str(UnreadableFile("a" * 9999, "b" * 9999, "c" * 9999))) < 1500
+
+
+def test_codes_in_c3d_files_are_missing(tmp_path):
+    coded = WALK.copy(data=np.where(np.isnan(WALK.values), 1.0, WALK.values))
+    coded.values[5:9, 2] = -3.697314e28
+    walk = _read(tmp_path, c3d_file(coded), "a.c3d")
+    assert np.isnan(walk.values).any(axis=2).sum() == 4
+
+
+def test_an_attribute_does_not_change_the_unit(tmp_path):
+    path = ew.write_mocap(WALK, tmp_path / "a.nc")
+    dataset = xr.load_dataset(path, engine="scipy")
+    dataset.attrs["capture_units"] = "m"
+    dataset.to_netcdf(path, engine="scipy")
+    with pytest.raises(UnreadableFile, match="capture_units"):
+        ew.read_mocap(path)
