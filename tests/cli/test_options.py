@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import pytest
+import xarray as xr
 
 from eigenwalker.cli import exit_codes
 from eigenwalker.cli.exit_codes import EXIT_FAILED
 from eigenwalker.cli.main import COMMANDS, load_command
 from eigenwalker.cli.options import parse_trait_steps, progress_bar
-from eigenwalker.simulation import simulate_population
+from eigenwalker.simulation import simulate_population, simulate_walk
 
 
 @pytest.mark.parametrize("text", ["sex", "sex=", "sex=much", "sex=nan", "sex=inf", "=3", ""])
@@ -83,3 +84,19 @@ def test_exit_codes_are_apart():
     assert (
         len({exit_codes.EXIT_PARTIAL, exit_codes.EXIT_FAILED, exit_codes.EXIT_INTERRUPTED, 0}) == 4
     )
+
+
+def test_ways_out_that_a_message_names_are_options(run_command, write_c3d, tmp_path):
+    walk = simulate_walk(seed=1, duration_s=4, markers="skin", rate_hz=60)
+    names = walk.marker.values
+    two = xr.concat(
+        [walk.assign_coords(marker=[f"{who}:{name}" for name in names]) for who in ("Ann", "Ben")],
+        "marker",
+    )
+    file = write_c3d(tmp_path / "two.c3d", two)
+    file = file or tmp_path / "two.c3d"
+    code, printed, errors = run_command("info", file)
+    assert "--subject" in printed + errors
+    code, printed, _ = run_command("info", file, "--subject", "Ann")
+    assert code == 0
+    assert "use" in printed.splitlines()[1]

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import textwrap
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from eigenwalker.cli.option_names import in_options
-from eigenwalker.cli.options import Rate, Unit, option
+from eigenwalker.cli.options import Partial, Rate, Subject, Unit, option
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
@@ -21,18 +21,26 @@ def info(
     as_json: Annotated[bool, option("Print JSON.", "--json")] = False,
     unit: Unit = None,
     rate: Rate = None,
+    partial: Partial = "refuse",
+    subject: Subject = None,
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.study.inspect import file_facts, inspect_file
     from eigenwalker.study.messages import inspection_in_words
 
+    reading: dict[str, Any] = {
+        "unit": unit,
+        "rate_hz": rate,
+        "partial": partial,
+        "subject": subject,
+    }
     if as_json:
-        facts = inspect_file(file, unit=unit, rate_hz=rate)
+        facts = inspect_file(file, **reading)
         if isinstance(problems := facts.get("problems"), list):
             facts["problems"] = [in_options(each) for each in problems]
         print(json.dumps(facts, indent=2, ensure_ascii=False, allow_nan=False))
         return
-    facts = inspection_in_words(file_facts(file, unit=unit, rate_hz=rate))
+    facts = inspection_in_words(file_facts(file, **reading))
     lines = {name: _in_options(value) for name, value in facts.items()}
     width = max(len(name) for name in lines) + 2
     for name, value in lines.items():
@@ -47,13 +55,16 @@ def convert(
     ] = False,
     unit: Unit = None,
     rate: Rate = None,
+    partial: Partial = "refuse",
+    subject: Subject = None,
 ) -> None:
     """Write a capture in another format."""
     from eigenwalker.io.read import read_mocap
     from eigenwalker.io.write import write_mocap
     from eigenwalker.markers.virtual_markers import virtual_markers
 
-    walk = read_mocap(capture, unit=unit, rate_hz=rate)
+    reading: dict[str, Any] = {"partial": partial, "subject": subject}
+    walk = read_mocap(capture, unit=unit, rate_hz=rate, **reading)
     if joints or output.suffix.lower() == ".bvh":
         walk = virtual_markers(walk, joints="full")
     print(f"Written: {write_mocap(walk, output)}")

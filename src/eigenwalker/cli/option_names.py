@@ -22,6 +22,8 @@ ARGUMENTS = {
     "n_men": "--men {value}",
     "n_permutations": "--permutations {value}",
     "n_women": "--women {value}",
+    "partial": "--partial {value}",
+    "subject": "--subject {value}",
     "part": "--part {value}",
     "rate_hz": "--rate {value}",
     "size_px": "--size {value}",

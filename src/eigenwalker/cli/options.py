@@ -35,6 +35,10 @@ Unit = Annotated[
     str | None, option("Unit of length, for files that name none: mm, cm, m, in, asf.")
 ]
 Rate = Annotated[float | None, option("Frames a second, for files that name none.")]
+Partial = Annotated[
+    str, option("'keep' takes the whole frames of files that are cut short, and flags them.")
+]
+Subject = Annotated[str | None, option("One person of files that hold several.")]
 PopulationFile = Annotated[Path, option("Population file to write (.nc).", "-o", "--output")]
 ReportFolder = Annotated[Path | None, option("Folder to write a report into.", "-o", "--output")]
 TraitFromName = Annotated[

@@ -13,9 +13,11 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    Partial,
     PopulationFile,
     Rate,
     Seed,
+    Subject,
     TraitFromName,
     Unit,
     check_choice,
@@ -46,6 +48,8 @@ def fit(
     jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
     unit: Unit = None,
     rate: Rate = None,
+    partial: Partial = "refuse",
+    subject: Subject = None,
     table: Annotated[
         Path | None, option("CSV to write all into that is known of each capture.")
     ] = None,
@@ -83,6 +87,8 @@ def fit(
             n_harmonics=harmonics,
             unit=unit,
             rate_hz=rate,
+            partial=partial,  # pyright: ignore[reportArgumentType] - checked when a file is read
+            subject=subject,
             low_pass_hz=low_pass,
             n_jobs=jobs,
             checkpoint=checkpoint,

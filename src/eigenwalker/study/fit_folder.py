@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import joblib
 import numpy as np
@@ -73,6 +73,8 @@ def fit_folder(
     n_harmonics: int = 2,
     unit: str | None = None,
     rate_hz: float | None = None,
+    partial: Literal["refuse", "keep"] = "refuse",
+    subject: str | None = None,
     low_pass_hz: float | None = None,
     n_jobs: int = -1,
     checkpoint: str | Path | None = None,
@@ -90,8 +92,20 @@ def fit_folder(
     trait_from_name : str, optional
         A regular expression with named groups, searched in each file's name, such as
         ``r"walk_(?P<style>[a-z]+)_"``.
-    form, n_harmonics, unit, rate_hz, low_pass_hz
-        See `process_capture`.
+    form : {"eigenposture", "fourier"}
+        Decomposition: principal components or a Fourier series.
+    n_harmonics : int
+        Multiples of the stride frequency.
+    unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
+        Unit of length of all captures, in place of what they say.
+    rate_hz : float, optional
+        Frames a second of all captures, in place of what they say.
+    partial : {"refuse", "keep"}
+        "keep" takes the whole frames of captures that are cut short, and flags them.
+    subject : str, optional
+        The person to take of captures that hold several.
+    low_pass_hz : float, optional
+        Cut-off of a low-pass filter, for noisy captures.
     n_jobs : int
         Processes to read with; -1 uses all cores.
     checkpoint : str or Path, optional
@@ -137,6 +151,8 @@ def fit_folder(
         "n_harmonics": n_harmonics,
         "unit": unit,
         "rate_hz": rate_hz,
+        "partial": partial,
+        "subject": subject,
         "low_pass_hz": low_pass_hz,
     }
     earlier = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -33,7 +34,12 @@ _MARKER_SET = ("marker_set", "marker_set_share", "marker_set_runner_up", "approx
 
 
 def inspect_file(
-    path: str | Path, *, unit: str | None = None, rate_hz: float | None = None
+    path: str | Path,
+    *,
+    unit: str | None = None,
+    rate_hz: float | None = None,
+    partial: Literal["refuse", "keep"] = "refuse",
+    subject: str | None = None,
 ) -> dict[str, Fact]:
     """Return what is in a capture or a population file, and what is wrong with it.
 
@@ -41,8 +47,14 @@ def inspect_file(
     ----------
     path : str or Path
         A capture of any format that `read_mocap` reads, or a population (``.nc``).
-    unit, rate_hz
-        As `read_mocap` takes them, for captures that name none.
+    unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
+        Unit of length, in place of what the capture says.
+    rate_hz : float, optional
+        Frames a second, in place of what the capture says.
+    partial : {"refuse", "keep"}
+        "keep" takes the whole frames of a capture that is cut short.
+    subject : str, optional
+        One person of a capture that holds several.
 
     Returns
     -------
@@ -70,16 +82,16 @@ def inspect_file(
     >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
     ('C3D', 'use', 10, [])
     """
-    facts = file_facts(Path(path), unit=unit, rate_hz=rate_hz)
+    facts = file_facts(Path(path), unit=unit, rate_hz=rate_hz, partial=partial, subject=subject)
     return {name: plain_fact(value) for name, value in facts.items()}
 
 
-def file_facts(path: Path, *, unit: str | None, rate_hz: float | None) -> dict[str, object]:
+def file_facts(path: Path, **reading: Any) -> dict[str, object]:
     """Return what `inspect_file` does, with mappings, tuples and NaN as they are."""
     with suppress(OSError):  # reading it gives the reason
         if path.is_file() and looks_like_population(path):
             return _of_population(Population.load(path))
-    return _of_capture(path, unit, rate_hz)
+    return _of_capture(path, **reading)
 
 
 def _of_population(population: Population) -> dict[str, object]:
@@ -111,10 +123,10 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
     return f"{name}: {shown}{', ...' if len(counts) > 8 else ''}"
 
 
-def _of_capture(path: Path, unit: str | None, rate_hz: float | None) -> dict[str, object]:
+def _of_capture(path: Path, **reading: Any) -> dict[str, object]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        capture = read_mocap(path, unit=unit, rate_hz=rate_hz)
+        capture = read_mocap(path, **reading)
     problems = [str(warning.message) for warning in caught]
     facts = _as_read(capture)
     try:
