@@ -54,7 +54,7 @@ describe("walkers are made as in Python", () => {
       const { positions } = walking(walker, [], []).at(cycle / walker.frequency_hz);
       expect(apart(positions, expected.positions_mm[i]!.flat())).toBeLessThan(CLOSE);
     });
-    const measures = measuresOf(walker);
+    const measures = measuresOf(walker, model.speed_factor);
     expect(Object.keys(measures)).toEqual(Object.keys(expected.measures));
     for (const [name, value] of Object.entries(expected.measures)) {
       expect(measures[name as MeasureName]).toBeCloseTo(value ?? NaN, 6);

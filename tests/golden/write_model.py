@@ -9,6 +9,7 @@ definition changes.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.explorer.mixing import mixed_vector, model_layout
 from eigenwalker.explorer.model import page_model
 from eigenwalker.gait.appearance import walker_measures
+from eigenwalker.gait.heading import ground_speed
 from eigenwalker.simulation.people import simulate_population
 
 PATH = Path(__file__).parent / "model.json"
@@ -51,6 +53,7 @@ def computed(model: dict[str, Any], state: dict[str, Any]) -> dict[str, Any]:
     """What Python makes of a state."""
     vector = mixed_vector(model, state)
     walker = model_layout(model).walker(vector)
+    walker = replace(walker, speed_mm_s=model["speed_factor"] * ground_speed(walker))
     known = np.array([each["vector"] for each in model["walkers"]])
     place = position_in_space(WalkerSpace().fit(known), vector, walkers=known)
     moments = np.array(CYCLES) * walker.period_s

@@ -71,7 +71,7 @@ function sameLine(before: Now, { state, own }: Now, axis: Axis | undefined): boo
 }
 
 const spotOf = (model: Model, vector: ArrayLike<number>, axis: Axis | undefined): Spot => ({
-  measures: measuresOf(walkerOf(model, vector)),
+  measures: measuresOf(walkerOf(model, vector), model.speed_factor),
   score: axis?.at(positionOf(model, vector)) ?? 0,
 });
 

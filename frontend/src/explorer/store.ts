@@ -115,7 +115,7 @@ export class Store {
     const figures = figuresOf(model, state, own);
     if (this.#now?.figures === figures) return (this.#now = { ...this.#now, own, state });
     const vector = mixedVector(model, state, own);
-    const measures = measuresOf(walkerOf(model, vector));
+    const measures = measuresOf(walkerOf(model, vector), model.speed_factor);
     return (this.#now = { model, state, own, figures, position: positionOf(model, vector), measures });
   }
 

@@ -25,8 +25,8 @@ export const MEASURES = [
 export type MeasureName = (typeof MEASURES)[number]["name"];
 export type Measures = Readonly<Record<MeasureName, number>>;
 
-/** The measures of a walker; NaN if it lacks the markers. */
-export function measuresOf(walker: Walker): Measures {
+/** The measures of a walker, whose speed is that of its feet times a factor; NaN if it lacks the markers. */
+export function measuresOf(walker: Walker, speedFactor = 1): Measures {
   const { frequency_hz } = walker;
   const trunk = walker.markers.includes("pelvis") ? ["pelvis"] : ["left_hip", "right_hip"];
   const moving = withMarkers(walker, [...SHOULDERS, ...trunk, ...ANKLES]);
@@ -44,7 +44,7 @@ export function measuresOf(walker: Walker): Measures {
     lateral_sway_mm: range(SHOULDERS, 1),
     vertical_movement_mm: range(trunk, 2),
     frequency_hz,
-    stride_length_mm: stanceSpeed(ankles, rateHz) / frequency_hz,
+    stride_length_mm: (speedFactor * stanceSpeed(ankles, rateHz)) / frequency_hz,
   };
 }
 

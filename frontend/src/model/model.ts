@@ -47,6 +47,8 @@ export const HEAD = record({
   n_walkers: integer(1, MAX_POPULATION),
   /** Walkers of doubtful captures, which are left out. */
   n_flagged: integer(0, MAX_POPULATION),
+  /** The walkers' mean speed over that of the average walker's feet. */
+  speed_factor: { ...positive, default: 1 } as Schema<number>,
   markers: list(text, 1, MAX_MARKERS),
   form: { enum: ["eigenposture", "fourier"] } as Schema<"eigenposture" | "fourier">,
   harmonics: list(integer(1, 64), 1, MAX_POSTURES),

@@ -75,6 +75,7 @@ def page_model(
         "simulated": "simulated" in population.provenance,
         "provenance": {str(name): str(value) for name, value in population.provenance.items()},
         "n_flagged": len(population) - len(rows),
+        "speed_factor": population.speed_factor,
         "walkers": _walkers(population, rows[selected], axes),
         "traits": axes,
     }
@@ -104,6 +105,7 @@ def _of_vectors(
         "provenance": {},
         "n_walkers": len(X),
         "n_flagged": 0,
+        "speed_factor": 1.0,
         **_body(layout),
         "average": rounded_vectors(X.mean(axis=0), layout),
         **_variation(space, X, layout, points),

@@ -233,11 +233,11 @@ class Population:
         True
         """
         walker = self.layout.walker(vector)
-        return replace(walker, speed_mm_s=self._speed_factor * ground_speed(walker))
+        return replace(walker, speed_mm_s=self.speed_factor * ground_speed(walker))
 
     @cached_property
-    def _speed_factor(self) -> float:
-        """The mean of the walkers' known speeds over that of the average walker's feet, else 1."""
+    def speed_factor(self) -> float:
+        """Mean of the walkers' known speeds over the speed of the average walker's feet, else 1."""
         speeds = np.array([walker.speed_mm_s for walker in self.walkers])[self.in_average]
         known = speeds[np.isfinite(speeds)]
         feet = ground_speed(self.layout.walker(self.average))
