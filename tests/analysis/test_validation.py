@@ -223,3 +223,9 @@ def test_a_weight_that_is_the_same_for_all_is_refused():
     for validate in (nested_leave_one_out, permutation_test):
         with pytest.raises(ValueError, match="The trait is 70 for all 14 walkers"):
             validate(X, np.full(14, 70.0))
+
+
+def test_the_class_that_is_lost_with_a_group_is_named():
+    X, _ = population(8)
+    with pytest.raises(ValueError, match="Without A no walker of the class m is left"):
+        nested_leave_one_out(X, list("fmmfffff"), groups=list("AAABCDEF"))

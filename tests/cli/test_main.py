@@ -117,7 +117,7 @@ def test_a_fit_that_is_killed_goes_on_where_it_stopped(folder, tmp_path, run) ->
         kept = _lines(journal)
         assert lines <= kept < 40
     assert f"interrupted. What was read is kept in {journal}." in said
-    assert "The same command goes on where it stopped; with --fresh it starts anew." in said
+    assert "The same command goes on where it stopped; with --fresh it begins again." in said
     assert "Traceback" not in said
     code, said, errors = run(*command[3:])
     assert code == 0

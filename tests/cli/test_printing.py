@@ -88,6 +88,9 @@ def test_a_command_names_its_own_options(tmp_path, run_command) -> None:
         assert (code, "--rate" in errors, "rate_hz" in errors) == (2, True, False), errors
     code, _, errors = run_command("stimulus", "--from", table, "-o", tmp_path / "a.json")
     assert (code, f"eigenwalker convert {table} walk.c3d --rate" in errors) == (2, True), errors
+    braces = table.rename(tmp_path / "a{1}.csv")
+    _, _, errors = run_command("stimulus", "--from", braces, "-o", tmp_path / "a.json")
+    assert f"eigenwalker convert {braces} walk.c3d --rate" in errors
     _, _, errors = run_command("stimulus", "--size", "3x300", "-o", tmp_path / "a.json")
     assert "--size (width): expected a number from 16, got 3." in errors
     _, _, errors = run_command("stimulus", "--limb-dots", "seed=-1", "-o", tmp_path / "a.json")

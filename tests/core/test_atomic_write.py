@@ -79,6 +79,16 @@ def test_two_writers_of_one_file_do_not_meet(tmp_path) -> None:
     assert [each.name for each in tmp_path.iterdir()] == ["a.txt"]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_a_private_file_stays_private(tmp_path) -> None:
+    path = tmp_path / "people.nc"
+    path.write_text("old")
+    path.chmod(0o600)
+    with atomic_write(path) as unfinished:
+        unfinished.write_text("new")
+    assert (path.read_text(), path.stat().st_mode & 0o777) == ("new", 0o600)
+
+
 def test_a_link_stays_a_link_and_a_folder_a_folder(tmp_path) -> None:
     (tmp_path / "there").mkdir()
     (tmp_path / "link.txt").symlink_to(tmp_path / "there" / "a.txt")

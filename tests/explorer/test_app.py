@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -29,7 +30,7 @@ from eigenwalker.simulation import simulate_population
 from eigenwalker.study.process_capture import process_capture
 from eigenwalker.web import task_runner, upload
 from eigenwalker.web.host_check import HEADERS
-from eigenwalker.web.run import address_of, listening_socket
+from eigenwalker.web.run import address_of, listening_socket, new_app
 from eigenwalker.web.upload import safe_name
 
 
@@ -283,6 +284,21 @@ def test_more_than_it_takes_is_cut_off(client, monkeypatch):
         413,
         "Files of up to 2 MB are taken.",
     )
+
+
+@pytest.mark.parametrize(
+    ("error", "status"),
+    [(OSError(errno.ENOSPC, "full"), 507), (FileNotFoundError(errno.ENOENT, "lost"), 500)],
+)
+def test_only_a_folder_that_takes_no_more_has_no_room(error, status):
+    app = new_app(None, host="127.0.0.1")
+
+    @app.get("/")
+    def fail():
+        raise error
+
+    with served(app) as client:
+        assert client.get("/").status_code == status
 
 
 def test_a_task_that_takes_too_long_is_ended(client, monkeypatch):

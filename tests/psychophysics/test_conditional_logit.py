@@ -240,6 +240,8 @@ def test_few_walkers_leave_none_unseen(n_walkers):
         ({"shown": np.array([[0, 210]])}, "names the pairs 0 to 210"),
         ({"shown": np.array([[-1, 3]])}, "names the pairs -1"),
         ({"chosen": np.array([2])}, "chosen goes from 2"),
+        ({"chosen": np.array([0.7])}, "chosen must be whole numbers; got 0.7"),
+        ({"shown": np.array([[0, 1.7]])}, "shown must be whole numbers; got 1.7"),
         ({"observer": np.array([0, 0])}, "observer has shape"),
     ],
 )

@@ -77,6 +77,11 @@ def test_tables_that_are_none_are_refused(wrong, said):
         order_of_walks(wrong)
 
 
+def test_clusters_are_numbered_by_whole_numbers():
+    with pytest.raises(ValueError, match="clusters must be whole numbers"):
+        cluster_memberships(table(), np.linspace(0, 1, len(table())))
+
+
 def test_more_clusters_than_walks_are_refused():
     with pytest.raises(ValueError, match="n_clusters=3"):
         clusters_of_walks([[0, 1], [1, 0]], 3)

@@ -224,7 +224,7 @@ def test_what_does_not_hold_in_a_checkpoint_is_not_taken(folder, kept, tmp_path)
 def test_a_full_disk_ends_the_checkpoint_and_not_the_fit(folder, tmp_path) -> None:
     names = pd.DataFrame({"file": ["female_0.c3d"]})
     (tmp_path / "people.nc.part").mkdir()  # in whose place no file can be written
-    with pytest.warns(UserWarning, match="starts anew if it is interrupted"):
+    with pytest.warns(UserWarning, match="starts from the beginning if it is interrupted"):
         study = fit_folder(folder, traits=names, n_jobs=1, checkpoint=tmp_path / "people.nc.part")
     assert study.population is not None
 

@@ -69,10 +69,10 @@ def class_task(
         if task.keeps_both(out):
             continue
         who = f"one walker (row {out[0]})" if groups is None else f"{np.asarray(groups)[out[0]]}"
-        alone = names[which[out[0]]]
+        alone = names[0] if (np.delete(task.y, out) > 0).any() else names[1]
         raise ValueError(
-            f"Left out in turn, nobody of the class {alone} would be left to learn it from: all of "
-            f"it is {who}. Each class needs two walkers or more, of two persons or more."
+            f"Without {who} no walker of the class {alone} is left to learn from. Each class needs "
+            "two walkers or more, of two persons or more."
         )
     return task
 

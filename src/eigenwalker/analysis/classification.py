@@ -86,7 +86,7 @@ class InputResult(Generic[_Curves]):
     p: float
 
 
-def of_panels(results: Sequence[InputResult[_Curves]]) -> list[InputResult[_Curves]]:
+def results_of_panels(results: Sequence[InputResult[_Curves]]) -> list[InputResult[_Curves]]:
     """Return the results of panels of the figure, without those of what its text adds."""
     return [result for result in results if result.input not in INPUTS[N_PANELS:]]
 
@@ -154,7 +154,7 @@ class Classification:
         """
         n_inputs = sum(
             result.curves.misclassified[:, result.curves.best_n - 1].astype(int)
-            for result in of_panels(self.results)
+            for result in results_of_panels(self.results)
         )
         counts = pd.Series(n_inputs, index=self.contrast.rows, name="inputs that misclassify it")
         return counts[counts >= least].sort_values(ascending=False, kind="stable")

@@ -32,7 +32,7 @@ Usage: eigenwalker [OPTIONS] COMMAND [ARGS]...
   trait.
 
 Options:
-  --version   Say the version and end.
+  --version   Show the version and exit.
   -h, --help  Show this message and exit.
 
 Commands:
@@ -70,10 +70,10 @@ def _run(name: str, words: list[str]) -> None:
     elif name not in COMMANDS:
         sys.exit(_explain_unknown(name))
     else:
-        from eigenwalker.cli.option_names import speak_of
+        from eigenwalker.cli.option_names import use_options_of
 
         command = load_command(name)
-        speak_of(command)
+        use_options_of(command)
         warnings.showwarning = lambda message, *_, **__: _say(message)
         try:
             command(args=words, prog_name=f"eigenwalker {name}")

@@ -48,7 +48,7 @@ _TRANSFORM = re.compile(r"stimulus\.transforms\[\d+\] \((\w+)\)\.?")
 _of_this_command: dict[str, str] = {}
 
 
-def speak_of(command: Any) -> None:
+def use_options_of(command: Any) -> None:
     """Let messages name the options of a command, which is about to run."""
     options = {name for each in command.params for name in each.opts}
     _of_this_command.clear()

@@ -108,8 +108,9 @@ def start_vector(population: Population, start: str) -> np.ndarray:
     try:
         result = process_capture(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
     except ValueError as error:
-        convert = f"eigenwalker convert {start} walk.c3d"
-        how = {name: f"{convert} --{name[:4]} {{value}}" for name in ("rate_hz", "unit")}
+        literal = start.replace("{", "{{").replace("}", "}}")
+        convert = f"eigenwalker convert {literal} walk.c3d"
+        how = {"rate_hz": f"{convert} --rate {{value}}", "unit": f"{convert} --unit {{value}}"}
         raise ValueError(reworded(str(error), how)) from error
     if flag := flag_of(result.quality):
         print(f"eigenwalker: {start}: {flag}", file=sys.stderr)

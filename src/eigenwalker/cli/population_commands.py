@@ -54,7 +54,7 @@ def fit(
         Path | None, option("CSV to write all into that is known of each capture.")
     ] = None,
     fresh: Annotated[
-        bool, option("Read all anew, also what an interrupted run has read.", "--fresh")
+        bool, option("Read all again, also what an interrupted run has read.", "--fresh")
     ] = False,
 ) -> None:
     """Make a population of a folder of captures.
@@ -101,7 +101,7 @@ def fit(
         write_table(study.files, table, index=False)
     if study.n_resumed:
         resumed = f"{study.n_resumed} of {len(study.files)} captures were read by an earlier run"
-        print(f"{resumed}, which was interrupted; --fresh reads all anew.", file=sys.stderr)
+        print(f"{resumed}, which was interrupted; --fresh reads all again.", file=sys.stderr)
     _print_problems(study)
     if study.population is None:
         print(f"No capture of {len(study.files)} could be used.", file=sys.stderr)
@@ -118,7 +118,7 @@ def _resumable(checkpoint: Path) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         where = f"What was read is kept in {checkpoint}. " if checkpoint.is_file() else ""
-        how = "The same command goes on where it stopped; with --fresh it starts anew."
+        how = "The same command goes on where it stopped; with --fresh it begins again."
         print(f"eigenwalker: interrupted. {where}{how}", file=sys.stderr)
         raise typer.Exit(EXIT_INTERRUPTED) from None
 

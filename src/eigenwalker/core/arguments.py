@@ -60,6 +60,15 @@ def check_numbers(
     return array
 
 
+def check_whole(values: ArrayLike, name: str, *dims: str) -> np.ndarray:
+    """Return an argument as an array of int of these dimensions; refuse what is not whole."""
+    array = check_numbers(values, name, *dims)
+    whole = array.astype(int)
+    if (broken := array[whole != array]).size:
+        raise ValueError(f"{name} must be whole numbers; got {broken[0]:g}.")
+    return whole
+
+
 def check_labels(values: ArrayLike, name: str) -> np.ndarray:
     """Return an argument of words or numbers, one each, as an array of one dimension."""
     try:

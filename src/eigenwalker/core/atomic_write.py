@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +21,8 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 def atomic_write(path: Path) -> Generator[Path, None, None]:
     """Yield a path in the same folder, of the same suffix, to write to; no other has it.
 
-    The file then appears at `path`, in place of one that is there, or not at all after an error.
+    The file then appears at `path`, in place of one that is there and readable by the same people,
+    or not at all after an error.
     """
     if path.is_dir():
         raise IsADirectoryError(f"{path} is a folder; name a file to write.")
@@ -28,6 +30,8 @@ def atomic_write(path: Path) -> Generator[Path, None, None]:
     unfinished = target.with_name(f".{secrets.token_hex(8)}.part{path.suffix}")
     try:
         yield unfinished
+        if target.exists():
+            shutil.copymode(target, unfinished)
         os.replace(unfinished, target)
     except OSError as error:
         if error.errno is None or error.filename not in (None, unfinished, str(unfinished)):

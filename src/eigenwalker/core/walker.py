@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from eigenwalker.core.arguments import check_kind, check_numbers
+from eigenwalker.core.arguments import check_kind, check_numbers, check_whole
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import AXES, trajectories_at
 from eigenwalker.core.walker_svg import N_FRAMES, beside, html_table, stride_svg
@@ -109,7 +109,7 @@ class Walker:
     Raises
     ------
     ValueError
-        If shapes do not fit each other or a number is not finite.
+        If shapes do not fit each other, a number is not finite or a harmonic is not whole.
 
     See Also
     --------
@@ -142,8 +142,11 @@ class Walker:
     def __post_init__(self) -> None:
         set_field = object.__setattr__
         set_field(self, "markers", tuple(str(marker) for marker in self.markers))
-        for name, kind in (("p0", float), ("p", float), ("harmonics", int), ("phases", float)):
-            values = check_numbers(getattr(self, name), name, missing=True).astype(kind)
+        for name in ("p0", "p", "harmonics", "phases"):
+            given = getattr(self, name)
+            whole = name == "harmonics"
+            values = check_whole(given, name) if whole else check_numbers(given, name, missing=True)
+            values = values.copy()
             values.flags.writeable = False
             set_field(self, name, values)
         for name in ("frequency_hz", "speed_mm_s", "time_origin_s"):

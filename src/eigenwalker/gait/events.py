@@ -33,7 +33,7 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
     ----------
     trajectories : DataArray of shape (time, marker, axis)
         A walk that faces +x, best in place, with the markers left_ankle and right_ankle. Whether it
-        goes forwards is told by its coordinate ``speed_mm_s``, else by the standing feet.
+        goes forwards is taken from its coordinate ``speed_mm_s``, else by the standing feet.
 
     Returns
     -------

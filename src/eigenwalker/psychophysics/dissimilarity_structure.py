@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from sklearn.cluster import KMeans
 from sklearn.decomposition import PCA
 
-from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.arguments import check_numbers, check_whole
 
 
 def order_of_walks(table: ArrayLike) -> np.ndarray:
@@ -109,7 +109,7 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     >>> cluster_memberships(table, clusters_of_walks(table))[0].round(3).tolist()
     [0.971, 0.029]
     """
-    rows, clusters = _check_table(table), check_numbers(clusters, "clusters", "walk").astype(int)
+    rows, clusters = _check_table(table), check_whole(clusters, "clusters", "walk")
     if clusters.shape != (len(rows),) or not np.isin(np.arange(clusters.max() + 1), clusters).all():
         raise ValueError(
             f"clusters must number the cluster of each of {len(rows)} walks, from 0; got "

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.arguments import check_kind, check_numbers
+from eigenwalker.core.arguments import check_kind, check_whole
 
 SHOWN = ["a", "b", "c", "d"]
 CHOSEN = ["chosen_1", "chosen_2"]
@@ -85,8 +85,7 @@ class Trials:
 
     def __post_init__(self) -> None:
         for name, *dims in (("observer", "trial"), ("shown", "trial", "pair"), ("chosen", "trial")):
-            numbers = check_numbers(getattr(self, name), name, *dims)
-            object.__setattr__(self, name, numbers.astype(int))
+            object.__setattr__(self, name, check_whole(getattr(self, name), name, *dims))
         n_trials = len(self.shown)
         problems = []
         for name, length in (("observer", len(self.observers)), ("chosen", self.shown.shape[-1])):

@@ -185,7 +185,7 @@ def _unequal(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
 
 
 def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
-    """Yield left joints that are not to the left, lines that are askew, and a wrong breadth."""
+    """Yield left joints that are not to the left, lines that are tilted, and a wrong breadth."""
     hips, shoulders = path["hips"][:, :2], path["shoulders"][:, :2]
     lengths = [np.linalg.norm(line, axis=1).clip(1e-9) for line in (hips, shoulders)]
     if np.median(np.einsum("ta,ta->t", hips, shoulders) / lengths[0] / lengths[1]) < SQUARE:

@@ -55,10 +55,10 @@ CHILD_MM = 800.0
 
 LEVEL_CLIMB = 0.05
 """Rise over run of a path that is no longer level: ramps built for wheelchairs have 0.05 to 0.08,
-stairs 0.5; floors of laboratories that were set up askew 0.02."""
+stairs 0.5; floors of laboratories that were set up tilted 0.02."""
 
 LEVEL_MM = 400.0
-"""Rise of a body that is no longer level over any distance: a floor askew by 0.02 over 20 m."""
+"""Rise of a body that is no longer level over any distance: a floor tilted by 0.02 over 20 m."""
 
 STANDING_SLOPE = (-0.16, 0.08)
 """Rise over run of the ankles that stand in a level walk in place: from -0.14 to 0 in real

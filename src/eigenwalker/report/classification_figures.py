@@ -8,7 +8,7 @@ from pathlib import Path
 import matplotlib.figure
 import xarray as xr
 
-from eigenwalker.analysis.classification import Classification, of_panels
+from eigenwalker.analysis.classification import Classification, results_of_panels
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
@@ -33,10 +33,10 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
     drawings["joints"] = figure_joints(study.average)
     drawings["eigenpostures"] = figure_eigenpostures(study.average)
     if isinstance(result, Classification):
-        curves = {each.input.title: each.curves for each in of_panels(result.results)}
+        curves = {each.input.title: each.curves for each in results_of_panels(result.results)}
         drawings["class curves"] = figure_curves(curves, n_walkers=len(contrast.rows))
     else:
-        curves = {each.input.title: each.curves for each in of_panels(result.results)}
+        curves = {each.input.title: each.curves for each in results_of_panels(result.results)}
         drawings["regression curves"] = figure_regression_curves(curves)
     for kind, view in study.views.items():
         drawings[kind] = figure_walkers(view.walkers)

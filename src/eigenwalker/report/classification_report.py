@@ -193,5 +193,5 @@ def _cautions(study: TraitStudy) -> list[str]:
         "The best number of components is picked on the curve that is reported, as in the paper; "
         "nested errors are free of that choice.",
         "Size (eq. 12) and correspondence of eigenpostures use no labels and are fixed once; "
-        "standardisation, components and their order are found anew without each walker left out.",
+        "standardisation, components and their order are found again without each walker left out.",
     ]

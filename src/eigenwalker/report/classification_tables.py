@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from eigenwalker.analysis.classification import Classification, Regression, of_panels
+from eigenwalker.analysis.classification import Classification, Regression, results_of_panels
 from eigenwalker.analysis.plausibility import Plausibility
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
@@ -105,7 +105,7 @@ def missed_table(study: TraitStudy, most: int = 10) -> Table | None:
         [f"{study.names[row]} ({classes[row]})", int(count)]
         for row, count in zip(counts.index.to_numpy(), counts, strict=True)
     ]
-    n_inputs = len(of_panels(study.result.results))
+    n_inputs = len(results_of_panels(study.result.results))
     return Table(
         "Walkers that several classifiers miss", ["walker", f"missed, of {n_inputs} inputs"], rows
     )

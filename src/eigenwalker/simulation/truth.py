@@ -89,7 +89,7 @@ def truth_of(population: Population) -> Truth:
     check_population(population)
     if KEY not in population.provenance:
         raise ValueError(
-            "This population was not simulated, so nobody knows its truth; "
+            "This population was not simulated, so its truth is unknown; "
             "make one with simulate_population()."
         )
     try:
@@ -173,7 +173,7 @@ def _same_rows(people: pd.DataFrame, traits: pd.DataFrame) -> list[int]:
     if -1 in rows:
         raise ValueError(
             "These walkers are not those that this version draws for this population; "
-            "read its truth with the version that simulated it, or simulate it anew."
+            "read its truth with the version that simulated it, or simulate it again."
         )
     return rows
 

@@ -70,7 +70,7 @@ class Checkpoint:
                 self.path.unlink()
             warnings.warn(
                 f"{self.path}: {error.strerror}. What was read is not kept, so that the same "
-                "command starts anew if it is interrupted.",
+                "command starts from the beginning if it is interrupted.",
                 stacklevel=2,
             )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import socket
 from collections.abc import Awaitable, Callable, Coroutine
 from types import FrameType
@@ -24,6 +25,8 @@ _Answer = TypeVar("_Answer")
 
 DEFAULT_PORT = 8640
 """Taken where it is free, so that a bookmarked address still leads to the page."""
+NO_ROOM = "The server has no room for this, or may not write into its folder."
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 MAX_CONCURRENT = 50
 """Requests; more are answered with 503."""
 
@@ -39,12 +42,19 @@ def new_app(lifespan: Any, *, host: str) -> FastAPI:
         (Ending, 503, None),
         (TooLarge, 413, None),
         (ClientDisconnect, 400, "The request ended before it was whole."),
-        (OSError, 507, "The server has no room for this, or may not write into its folder."),
         (ValueError, 422, None),
         (RequestValidationError, 422, None),
     ):
         app.add_exception_handler(error, _answer_with(status, sentence))
+    app.add_exception_handler(OSError, _no_room)
     return app
+
+
+async def _no_room(_: Request, error: Exception) -> JSONResponse:
+    """Answer for a folder that takes no more; any other fault of the system is ours (500)."""
+    if not (isinstance(error, OSError) and error.errno in _NO_ROOM):
+        raise error
+    return JSONResponse({"detail": NO_ROOM}, 507)
 
 
 def _answer_with(
