@@ -23,8 +23,10 @@ _njit = partial(numba.njit, nogil=True, error_model="numpy", fastmath={"contract
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function compiled, and cached on disk where there is a folder for that."""
+    # without a home, numba would make a folder called "~" where the program runs
+    has_folder = "NUMBA_CACHE_DIR" in os.environ or os.path.expanduser("~") != "~"
     try:
-        return _njit(cache=os.path.expanduser("~") != "~")(function)
+        return _njit(cache=has_folder)(function)
     except RuntimeError:  # neither the installation nor a folder of this user can be written
         return _njit(function)
 

@@ -30,7 +30,8 @@ def draw_people(
     """Return a table of people drawn at random: their traits and the parameters of their walk.
 
     Every parameter is normal within a sex, about a mean that sex, weight, age and mood shift by
-    the stated effects; nobody is further than 2.5 SD from that mean.
+    the stated effects; nobody is further than 2.5 SD from that mean, or with `balanced`, which
+    rescales what was drawn, than about 3 SD.
 
     Parameters
     ----------
@@ -47,7 +48,7 @@ def draw_people(
         Whether they walk over ground, where stride frequency falls with the root of height (the
         pendulum law), rather than on a belt, where it hardly does.
     balanced : bool
-        Whether chance is taken out of the effects: body mass index, height and moods are then
+        Whether chance is taken out of the effects: body mass index, height, age and moods are then
         unrelated to each other, and what is drawn for a person is unrelated to them, and to sex
         where that has an effect. So a few people show every effect at its size. Studies of chance
         need people drawn without it.
