@@ -3,9 +3,11 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.events import gait_events
+from eigenwalker.gait.heading import goes_backwards
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.io.read import read_mocap
@@ -161,3 +163,18 @@ def test_a_flat_walk_has_steps_without_width_and_its_own_speed():
     assert told.speed_mm_s == pytest.approx(walk.attrs["speed_mm_s"], rel=0.06)
     assert told.step_width_mm == pytest.approx(0, abs=1e-6)
     assert abs(told.step_asymmetry) < 0.1
+
+
+def test_a_walk_that_travels_without_a_known_speed_has_the_same_events(walks):
+    walk = walks[0].drop_vars("speed_mm_s", errors="ignore")
+    speed = walks[0].attrs["speed_mm_s"]
+    there = walk + xr.DataArray([speed, 0, 0], dims="axis") * (walk.time - walk.time[0])
+    there = there.transpose(*walk.dims).assign_attrs(walk.attrs)
+    expected = gait_events(walks[0])
+    for same in (walk, there):
+        found = gait_events(same)
+        assert found["event"].tolist() == expected["event"].tolist()
+        np.testing.assert_allclose(found["time_s"], expected["time_s"], atol=1e-6)
+    reversed_values = there.values[::-1]
+    assert goes_backwards(there.copy(data=reversed_values))
+    assert goes_backwards(walk.copy(data=walk.values[::-1]))

@@ -13,6 +13,7 @@ import xarray as xr
 import eigenwalker as ew
 from corpus.sound_files import c3d_file, walk_of
 from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.io.missing_codes import without_codes
 from eigenwalker.io.up_axis_and_unit import UpAxisAssumed
 
 WALK = walk_of(1.0, rate_hz=120)
@@ -47,6 +48,18 @@ def test_codes_are_missing_samples(tmp_path, code):
         np.isnan(WALK.values).any(axis=2).sum()
     )
     assert (walk.attrs["up_axis"], walk.attrs["unit"]) == ("z", "mm")
+
+
+@pytest.mark.parametrize("code", [-999.0, 1000.0])
+@pytest.mark.parametrize("share", [0.003, 0.02, 0.3])
+def test_codes_are_found_however_often_they_stand(code, share):
+    values = WALK.values / 1000
+    lost = np.random.default_rng(1).random(values.shape[:2]) < share
+    values[lost] = code
+    positions, codes = without_codes(values)
+    assert codes == [f"{code:g}"]
+    assert np.isnan(positions[lost]).all()
+    np.testing.assert_array_equal(positions[~lost], values[~lost])
 
 
 @pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")

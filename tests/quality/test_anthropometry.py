@@ -117,6 +117,44 @@ def test_markers_that_are_no_joints_are_not_judged():
     assert wrong_joints(simulate_walk(seed=1, duration_s=2, markers="skin")) == ()
 
 
+@pytest.mark.parametrize("lacking", ["sternum", "head", "left_wrist", "right_shoulder"])
+def test_joints_are_judged_where_others_are_missing(person, lacking):
+    assert wrong_joints(person.sel(marker=person.marker != lacking)) == ()
+    short = stretched(person, "right_knee", "right_ankle", 0.003)
+    found = wrong_joints(short.sel(marker=short.marker != lacking))
+    assert {("right_knee", "right_ankle")} <= {each.points for each in found}
+
+
+def test_joints_that_were_never_seen_hide_no_others(person):
+    values = stretched(person, "right_knee", "right_ankle", 0.003).values.copy()
+    values[:, JOINTS.index("sternum")] = np.nan
+    assert "length" in kinds(person.copy(data=values))
+
+
+@pytest.mark.parametrize("part", ["hip", "shoulder"])
+def test_the_exchanged_pair_is_named(person, part):
+    places = [JOINTS.index(f"{side}_{part}") for side in ("left", "right")]
+    walk = exchanged(person, *places)
+    quality = ew.assess(walk)
+    assert ("side", (f"left_{part}", f"right_{part}")) in {
+        (each.kind, each.points) for each in quality.wrong_joints
+    }
+    assert "wrong_joints" in quality.findings
+    assert "sides_swapped" not in quality.findings
+
+
+def test_a_mirrored_capture_is_named_as_one(person):
+    mirrored = ew.assess(person.copy(data=person.values * [1, -1, 1]))
+    assert "sides_swapped" in mirrored.findings
+
+
+@pytest.mark.parametrize(
+    "attrs", [{"repairs": "x"}, {"rebuilt": 3}, {"n_frames_cut": "3"}, {"repeated": 2.5}]
+)
+def test_attributes_of_others_change_no_verdict(person, attrs):
+    assert ew.assess(person.assign_attrs(attrs)).verdict == ew.assess(person).verdict
+
+
 @pytest.mark.parametrize(
     ("name", "unit"),
     [("02_01.c3d", "mm"), ("07_01.data3d.txt", "asf"), ("12_01.bvh", "asf"), ("35_01.amc", "asf")],

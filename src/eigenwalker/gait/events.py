@@ -32,8 +32,9 @@ def gait_events(trajectories: xr.DataArray) -> pd.DataFrame:
     Parameters
     ----------
     trajectories : DataArray of shape (time, marker, axis)
-        A walk that faces +x, best in place, with the markers left_ankle and right_ankle. Whether it
-        goes forwards is taken from its coordinate ``speed_mm_s``, else by the standing feet.
+        A walk that faces +x, in place or not, with the markers left_ankle and right_ankle. Whether
+        it goes forwards is taken from its coordinate ``speed_mm_s``, else from the pelvis relative
+        to the standing feet.
 
     Returns
     -------

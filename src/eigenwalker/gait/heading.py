@@ -10,7 +10,13 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker, check_walkers
-from eigenwalker.gait.body_points import SIDES, facing_by_names, legs_of, paths_of
+from eigenwalker.gait.body_points import (
+    SIDES,
+    facing_by_names,
+    legs_of,
+    paths_of,
+    pelvis_path,
+)
 
 STANCE_SHARE = 0.35
 """Share of the cycle in which an ankle is lowest: foot flat, hardly moving on the ground."""
@@ -124,12 +130,17 @@ def known_speed(walk: xr.DataArray) -> float:
 
 
 def goes_backwards(walk: xr.DataArray) -> bool:
-    """Return whether a walk in place goes backwards, by its known speed or its standing feet."""
+    """Return whether a walk that faces +x goes backwards, in place or not.
+
+    Its known speed tells, else its progress less the velocity of its standing feet.
+    """
     speed = known_speed(walk)
     if not np.isfinite(speed):
         ankles = walk.reindex(marker=[f"{side}_ankle" for side in SIDES]).sel(axis="z").values
         lifted = np.ptp(ankles, axis=0).min() > LEAST_LIFT_MM  # else nothing tells when it stands
-        speed = stance_speed(walk) if lifted else np.nan
+        pelvis = pelvis_path(walk.values, walk.marker.values.tolist())[:, 0]
+        progress = (pelvis[-1] - pelvis[0]) / float(walk.time[-1] - walk.time[0])
+        speed = stance_speed(walk) + progress if lifted else np.nan
     return bool(speed < 0)
 
 

@@ -24,16 +24,19 @@ def without_codes(positions: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """Return positions (time, marker, 3) with NaN for codes, and the codes that were found.
 
     A code is a number of nines alone in all three coordinates, or one number in all three, or a
-    number of nines in any, further out than `FAR` times 99 % of the coordinates.
+    number of nines in any, further out than `FAR` times 99 % of the coordinates
+    of markers whose three differ.
     """
     size = np.abs(positions)
-    usual = size[size < NINES[0]]  # which leaves out NaN
+    same = (positions == positions[..., :1]).all(axis=2)
+    usual = size[(size < NINES[0]) & ~same[..., None]]  # which leaves out NaN
     limit = FAR * float(np.quantile(usual, 0.99)) if usual.size else 0.0
     if not limit or not np.nanmax(size) > min(limit, NINES[0] - 1):
         return positions, []
     nines = np.isin(size, NINES)
-    same = (positions == positions[..., :1]).all(axis=2) & (size[..., 0] > limit)
-    missing = nines.all(axis=2) | same | (nines & (size > limit)).any(axis=2)
+    missing = (
+        nines.all(axis=2) | (same & (size[..., 0] > limit)) | (nines & (size > limit)).any(axis=2)
+    )
     found = np.unique(positions[missing])
     codes = [f"{code:.10g}" for code in found if abs(code) in NINES or abs(code) > limit]
     return np.where(missing[..., None], np.nan, positions), codes[:10]

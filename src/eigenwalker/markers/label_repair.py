@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -57,6 +57,16 @@ class Rebuilt(NamedTuple):
     lacking: tuple[str, ...] = ()
 
 
+_Record = TypeVar("_Record", Repair, Rebuilt)
+
+
+def records_in(walk: xr.DataArray, attribute: str, kind: type[_Record]) -> tuple[_Record, ...]:
+    """Return the records that an attribute of a capture lists; other things in it are none."""
+    listed = walk.attrs.get(attribute)
+    listed = listed if isinstance(listed, (tuple, list)) else ()
+    return tuple(each for each in listed if isinstance(each, kind))
+
+
 def repair_labels(trajectories: xr.DataArray) -> xr.DataArray:
     """Return a capture in which left and right keep their places and no marker flickers.
 
@@ -95,7 +105,7 @@ def repair_labels(trajectories: xr.DataArray) -> xr.DataArray:
     if not repairs:
         return walk
     positions = np.where(flicker.off_path[..., None], np.nan, positions)
-    repairs = tuple(dict.fromkeys([*walk.attrs.get("repairs", ()), *repairs]))
+    repairs = tuple(dict.fromkeys([*records_in(walk, "repairs", Repair), *repairs]))
     return walk.copy(data=positions).assign_attrs(repairs=repairs)
 
 

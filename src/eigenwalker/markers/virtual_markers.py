@@ -12,7 +12,7 @@ import xarray as xr
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.markers.joint_centres import HIP_REGRESSIONS
-from eigenwalker.markers.label_repair import Rebuilt, repair_labels
+from eigenwalker.markers.label_repair import Rebuilt, Repair, records_in, repair_labels
 from eigenwalker.markers.marker_sets import (
     MEASURED,
     SIDES,
@@ -146,11 +146,9 @@ def virtual_markers(
         "approximate": [joint for joint in order if joint in best.approximate],
         "rebuilt": best.rebuilt,
     }
-    if joints == "walker" and best.markers and "repairs" in walk.attrs:
+    if joints == "walker" and best.markers and (repairs := records_in(walk, "repairs", Repair)):
         result.attrs["repairs"] = tuple(
-            repair
-            for repair in walk.attrs["repairs"]
-            if best.markers & {repair.marker, repair.partner}
+            repair for repair in repairs if best.markers & {repair.marker, repair.partner}
         )
     return result
 

@@ -47,7 +47,7 @@ BREADTH_FACTORS = (0.6, 1.5)
 CROSSING = 0.05
 """Share of stature by which wrists and ankles may cross over: they swing, feet step narrowly."""
 
-SQUARE = 0.5
+LEAST_TWIST_COSINE = 0.5
 """Cosine of the angle between hips and shoulders, whose twist is 20 degrees at most."""
 
 LEVEL_LINE = 0.85
@@ -113,16 +113,18 @@ class WrongJoint(NamedTuple):
 
 
 def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
-    """Return what the joints of a capture, z up, cannot be; none without all 15 joints."""
-    if not set(JOINTS.markers) <= set(capture.marker.values.tolist()):
-        return ()
-    values = capture.sel(marker=list(JOINTS.markers)).values
+    """Return what those joints of a capture, z up, cannot be that it has and that were seen."""
+    present = np.isin(capture.marker.values, JOINTS.markers)
+    present &= np.isfinite(capture.values).all(axis=2).any(axis=0)
+    names, values = capture.marker.values[present].tolist(), capture.values[:, present]
     values = values[np.isfinite(values).all(axis=(1, 2))]
     values = values[:: max(1, len(values) // FRAMES)]
-    if not len(values):
+    if not values.size:
         return ()
-    path = dict(zip(JOINTS.markers, values.swapaxes(0, 1), strict=True))
+    path = dict(zip(names, values.swapaxes(0, 1), strict=True))
     for part in BREADTHS:
+        if not {f"left_{part}", f"right_{part}"} <= set(names):
+            continue
         path[part] = (path[f"left_{part}"] + path[f"right_{part}"]) / 2
         path[f"{part}s"] = path[f"left_{part}"] - path[f"right_{part}"]
     lengths = {
@@ -132,10 +134,13 @@ def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
         )
         for (upper, lower), share in SEGMENTS.items()
         for side in SIDES
+        if _has(path, f"{side}_{upper}", f"{side}_{lower}")
     }
-    lengths["hip", "shoulder"] = _distance(path, "hip", "shoulder"), TRUNK
-    stature = float(np.median([length / share for length, share in lengths.values()]))
-    if not stature > 0:
+    if _has(path, "hip", "shoulder"):
+        lengths["hip", "shoulder"] = _distance(path, "hip", "shoulder"), TRUNK
+    statures = [length / share for length, share in lengths.values()]
+    stature = float(np.median(statures)) if statures else np.nan
+    if stature <= 0:
         return (WrongJoint("place", ("left_hip", "left_knee")),)
     found = [
         WrongJoint("length", points, length / share / stature)
@@ -148,10 +153,14 @@ def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
     found += [
         WrongJoint("order", pair)
         for pair in _ABOVE
-        if not np.median(path[pair[0]][:, 2] - path[pair[1]][:, 2]) > 0
+        if _has(path, *pair) and not np.median(path[pair[0]][:, 2] - path[pair[1]][:, 2]) > 0
     ]
     found += _links(path)
     return tuple(found)
+
+
+def _has(path: dict[str, np.ndarray], *points: str) -> bool:
+    return all(point in path for point in points)
 
 
 def _distance(path: dict[str, np.ndarray], one: str, other: str) -> float:
@@ -160,10 +169,12 @@ def _distance(path: dict[str, np.ndarray], one: str, other: str) -> float:
 
 def _places(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
     """Yield joints in one place, and centres that are not in the middle of left and right."""
-    for pair in combinations(JOINTS.markers, 2):
+    for pair in combinations([name for name in JOINTS.markers if name in path], 2):
         if _distance(path, *pair) < ONE_PLACE * stature:
             yield WrongJoint("place", pair)
     for centre, part in (("pelvis", "hip"), ("sternum", "shoulder")):
+        if not _has(path, centre, part):
+            continue
         across = path[f"{part}s"]
         aside = np.einsum("ta,ta->t", path[centre] - path[part], across)
         aside = abs(np.median(aside / np.einsum("ta,ta->t", across, across).clip(1e-9)))
@@ -178,6 +189,8 @@ def _unequal(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
             (upper if upper in ("pelvis", "sternum") else f"{side}_{upper}", f"{side}_{lower}")
             for side in SIDES
         ]
+        if not _has(path, *ends[0], *ends[1]):
+            continue
         left, right = (_distance(path, *each) for each in ends)
         ratio = max(left, right) / max(min(left, right), 1e-9)
         if ratio > SIDE_FACTOR:
@@ -186,30 +199,57 @@ def _unequal(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
 
 def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
     """Yield left joints that are not to the left, lines that are tilted, and a wrong breadth."""
-    hips, shoulders = path["hips"][:, :2], path["shoulders"][:, :2]
-    lengths = [np.linalg.norm(line, axis=1).clip(1e-9) for line in (hips, shoulders)]
-    if np.median(np.einsum("ta,ta->t", hips, shoulders) / lengths[0] / lengths[1]) < SQUARE:
-        yield WrongJoint("side", ("left_hip", "right_hip"))
+    lines = {part: _unit(path[f"{part}s"]) for part in ("hip", "shoulder") if part in path}
+    if not lines:
         return
-    leftward = hips / lengths[0][:, None] + shoulders / lengths[1][:, None]
-    leftward /= np.linalg.norm(leftward, axis=1, keepdims=True).clip(1e-9)
+    if len(lines) == 2 and _cosine(lines["hip"], lines["shoulder"]) < LEAST_TWIST_COSINE:
+        left = _left_by_legs(path)
+        part = min(lines, key=lambda each: _cosine(lines[each], left))
+        yield WrongJoint("side", (f"left_{part}", f"right_{part}"))
+        return
+    leftward = _unit(np.sum(list(lines.values()), axis=0))
     logs = []
     for part, share in BREADTHS.items():
+        if part not in path:
+            continue
         across = path[f"{part}s"]
         apart = np.einsum("ta,ta->t", across[:, :2], leftward)
-        least = -CROSSING * stature if part in ("wrist", "ankle") else 0.0
+        least = -CROSSING * np.nan_to_num(stature) if part in ("wrist", "ankle") else 0.0
         sloping = np.median(apart / np.linalg.norm(across, axis=1).clip(1e-9)) < LEVEL_LINE
         if np.median(apart) <= least or (part in ("hip", "shoulder") and sloping):
             yield WrongJoint("side", (f"left_{part}", f"right_{part}"))
         logs.append(np.log(max(np.median(apart) / stature / share, 0.25)))
     breadth = float(np.exp(np.mean(logs)))
-    if not BREADTH_FACTORS[0] <= breadth <= BREADTH_FACTORS[1]:
+    if len(logs) == len(BREADTHS) and not BREADTH_FACTORS[0] <= breadth <= BREADTH_FACTORS[1]:
         yield WrongJoint("breadth", (), breadth)
+
+
+def _left_by_legs(path: dict[str, np.ndarray]) -> np.ndarray:
+    """Return where left is by the bend of the knees; as hips say where legs are not known.
+
+    The mean of both legs does not depend on which of them is called left.
+    """
+    if not _has(path, "knee", "ankle"):
+        return _unit(path["hips"])
+    x, y, _ = (path["knee"] - (path["hip"] + path["ankle"]) / 2).T
+    return _unit(np.stack([-y, x], axis=1))
+
+
+def _unit(line: np.ndarray) -> np.ndarray:
+    """Return the horizontal unit vectors of a line."""
+    line = line[:, :2]
+    return line / np.linalg.norm(line, axis=1, keepdims=True).clip(1e-9)
+
+
+def _cosine(one: np.ndarray, other: np.ndarray) -> float:
+    return float(np.median(np.einsum("ta,ta->t", one, other)))
 
 
 def _links(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
     """Yield distances within pelvis and trunk that do not hold."""
     for pair in _LINKS:
+        if not _has(path, *pair):
+            continue
         length = np.linalg.norm(path[pair[0]] - path[pair[1]], axis=1)
         if length.std() > LINK_VARIATION * max(length.mean(), 1e-9):
             yield WrongJoint("link", pair, float(length.std() / max(length.mean(), 1e-9)))

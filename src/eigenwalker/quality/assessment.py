@@ -15,7 +15,7 @@ from eigenwalker.gait.heading import sides_swapped
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.gait.steady_strides import body_relative
 from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
-from eigenwalker.markers.label_repair import Rebuilt, Repair, repair_labels
+from eigenwalker.markers.label_repair import Rebuilt, Repair, records_in, repair_labels
 from eigenwalker.quality.anthropometry import wrong_joints
 from eigenwalker.quality.ground_contact import ground_contact
 from eigenwalker.quality.quality import Quality
@@ -43,10 +43,10 @@ _LEAST_PROGRESS_MM = 600.0
 def assess(trajectories: xr.DataArray) -> Quality:
     """Return what is known of a capture, however bad it is, and the verdict on it.
 
-    Labels are repaired and the walk is brought in place first, as in `in_place`. Joints are held
-    to the proportions of people: lengths, left beside right, heights, breadth, places, and links
-    that hold. Backward walking, captures in two dimensions, frames that are tilted or drift, and
-    speeds at which nobody walks are flagged.
+    Labels are repaired and the walk is brought in place first, as in `in_place`. Joints, as far as
+    they were seen, are held to the proportions of people: lengths, left beside right, heights,
+    breadth, places, and links that hold. Backward walking, captures in two dimensions, frames that
+    are tilted or drift, and speeds at which nobody walks are flagged.
 
     Parameters
     ----------
@@ -112,9 +112,17 @@ class CaptureRecord(NamedTuple):
 
     @classmethod
     def of(cls, capture: xr.DataArray) -> Self:
-        """Return what the attributes of a capture record."""
-        known = {name: capture.attrs[name] for name in cls._fields if name in capture.attrs}
-        return cls(**{**known, "repeated": names_in(capture, "repeated")})
+        """Return what the attributes of a capture record; what anybody else wrote there is not."""
+        attrs = capture.attrs
+        unit, cut = attrs.get("unit"), attrs.get("n_frames_cut")
+        return cls(
+            repairs=records_in(capture, "repairs", Repair),
+            rebuilt=records_in(capture, "rebuilt", Rebuilt),
+            repeated=names_in(capture, "repeated"),
+            unit=unit if isinstance(unit, str) else "",
+            unit_guessed=attrs.get("unit_guessed") is True,
+            n_frames_cut=int(cut) if isinstance(cut, (int, np.integer)) and cut > 0 else 0,
+        )
 
 
 def judge(
@@ -167,7 +175,12 @@ def judge(
 def names_in(capture: xr.DataArray, attribute: str) -> tuple[str, ...]:
     """Return what an attribute lists; NetCDF files hold it as one line."""
     names = capture.attrs.get(attribute, ())
-    return (names,) * bool(names) if isinstance(names, str) else tuple(names)
+    return (names,) * bool(names) if isinstance(names, str) else _texts(names)
+
+
+def _texts(names: object) -> tuple[str, ...]:
+    listed = names if isinstance(names, (tuple, list, np.ndarray)) else ()
+    return tuple(str(name) for name in listed if isinstance(name, str))
 
 
 def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, float]:

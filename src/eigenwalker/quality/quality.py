@@ -288,7 +288,8 @@ def _of_walk(quality: Quality) -> dict[str, bool]:
 def _of_labels(quality: Quality) -> dict[str, bool]:
     return {
         "elastic_limbs": max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
-        "sides_swapped": quality.sides_swapped,
+        "sides_swapped": quality.sides_swapped
+        and not any(each.kind == "side" for each in quality.wrong_joints),
         "wrong_joints": bool(quality.wrong_joints),
         "repeated_names": bool(quality.repeated),
         "swapped_labels": quality.left_right_swaps > 0,

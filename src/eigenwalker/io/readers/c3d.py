@@ -45,8 +45,8 @@ def read_c3d(file: CaptureFile) -> xr.DataArray:
     """
     header, parameters, samples, cut = c3d_sections(file)
     rate_hz = _rate(file, header, parameters)
-    samples, codes = without_codes(samples)
     positions, names, attrs = _markers(file, samples, parameters)
+    positions, codes = without_codes(positions)  # forces and moments set no limit for positions
     attrs |= {"missing_codes": codes} if codes else {}
     walk = trajectories_of(
         file,
