@@ -95,6 +95,27 @@ def test_marks_between_thousands_are_no_decimals(tmp_path, mark, separator):
     text = _table(number="{:,.0f}", separator=separator)
     walk = _read(tmp_path, text if mark == "," else text.replace(",", "."), default_rate_hz=120)
     np.testing.assert_allclose(walk.values, WALK.values, atol=0.51)
+    assert walk.attrs["thousands_mark"] == mark
+
+
+def test_numbers_of_frames_are_no_times(tmp_path):
+    content = _table(time=[f"{number}" for number in range(len(WALK))])
+    with pytest.raises(UnreadableFile, match=r"whole steps of 1.*rate_hz="):
+        _read(tmp_path, content)
+    for given in ({"rate_hz": 120}, {"default_rate_hz": 120}):
+        walk = _read(tmp_path, content, **given)
+        assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120)
+    walk = _read(tmp_path, content.replace("time,", "time_ms,", 1))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(1000)
+
+
+@pytest.mark.parametrize("name", ["time", "time_microseconds", "time_ms", "milliseconds"])
+def test_a_unit_of_time_is_named_or_said(tmp_path, name):
+    scale = 1e6 if "micro" in name else 1e3
+    content = _table(time=[f"{each * scale:.3f}" for each in WALK.time.values])
+    walk = _read(tmp_path, content.replace("time,", f"{name},", 1))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-4)
+    assert walk.attrs.get("time_unit_guessed") == ("ms" if name == "time" else None)
 
 
 def test_three_decimals_behind_commas_stay_decimals(tmp_path):

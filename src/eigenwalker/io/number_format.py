@@ -31,6 +31,11 @@ class NumberMarks(NamedTuple):
         return text.replace(",", ".") if self.decimal == "," else text
 
 
+def noted(marks: NumberMarks) -> dict[str, str]:
+    """Return the attribute that tells of marks between thousands."""
+    return {"thousands_mark": marks.thousands} if marks.thousands else {}
+
+
 def number_marks(rows: Iterable[Sequence[str]], *, has_commas: bool) -> NumberMarks:
     """Return the marks in the coordinates of a table; `has_commas` is whether some have a comma.
 

@@ -94,6 +94,7 @@ def table_of(
     columns: Sequence[int],
     clock: int | None = None,
     others: Sequence[int] = (),
+    marks: NumberMarks | None = None,
 ) -> np.ndarray:
     """Return columns of lines of numbers as an array, with NaN for empty cells.
 
@@ -105,7 +106,7 @@ def table_of(
     """
     if not lines:
         raise file.error("a line of numbers or more", "none")
-    marks = _marks(lines, separator, columns)
+    marks = marks or marks_in(lines, separator, columns)
     wanted = [*others, *columns] if clock is None else [*others, *columns, clock]
     take = None if wanted == list(range(n_columns)) else itemgetter(*wanted, wanted[0])
     rows = np.empty((len(lines), len(wanted)))
@@ -129,7 +130,7 @@ def table_of(
     return rows[:, len(others) :]
 
 
-def _marks(lines: Sequence[str], separator: str | None, columns: Sequence[int]) -> NumberMarks:
+def marks_in(lines: Sequence[str], separator: str | None, columns: Sequence[int]) -> NumberMarks:
     """Return the marks in the numbers of a table."""
     if separator == ",":
         has_commas = any('"' in line for line in lines)

@@ -15,7 +15,8 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.missing_codes import without_codes
-from eigenwalker.io.text_cells import cells, cut_number, refuse_cut_number, table_of
+from eigenwalker.io.number_format import noted
+from eigenwalker.io.text_cells import cells, cut_number, marks_in, refuse_cut_number, table_of
 from eigenwalker.io.timestamps import Clocked, on_clock
 from eigenwalker.io.to_trajectories import FileFrame, labelled_points, own_name, trajectories_of
 
@@ -63,10 +64,11 @@ def interleaved(n_points: int, first: int) -> list[tuple[int, int, int]]:
 
 @dataclass(frozen=True)
 class TableValues:
-    """Numbers of a table: positions (time, marker, 3), times, and attributes about the frames."""
+    """Numbers of a table: positions (time, marker, 3), times and their unit, and attributes."""
 
     positions: np.ndarray
     time: np.ndarray | None = None
+    time_unit: str | None = None
     attrs: Mapping[str, object] = field(default_factory=dict[str, object])
 
 
@@ -78,6 +80,7 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
     others: list[int] = []
     if not table.only_these:
         others = sorted({*range(table.n_columns)} - {*coordinates, table.time_column})
+    marks = marks_in(rows, table.separator, coordinates)
     values = table_of(
         file,
         rows,
@@ -88,6 +91,7 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
         columns=coordinates,
         clock=table.time_column,
         others=others,
+        marks=marks,
     )
     if table.ends_file and len(rows) == len(table.rows):
         refuse_cut_number(file, rows)
@@ -95,7 +99,7 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
     return TableValues(
         values[:, : 3 * n_points].reshape(len(values), n_points, 3),
         values[:, -1] if table.time_column is not None else None,
-        attrs,
+        attrs={**attrs, **noted(marks)},
     )
 
 

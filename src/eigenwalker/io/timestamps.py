@@ -19,8 +19,17 @@ MAX_JITTER = 0.1
 MAX_GAPS = 10
 """A table with fewer than one in this many frames is no capture."""
 
-_TIME_UNITS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9}
-_USUAL_STEPS = ((1.0, 1.0), (1e3, 1e-3), (1e6, 1e-6))
+MAX_ROUNDING_S = 0.0101
+"""How far written times may be off a declared rate: they were rounded to 0.01 s or better."""
+
+TIME_UNITS = {
+    **dict.fromkeys(("s", "sec", "second", "seconds", "iso"), 1.0),
+    **dict.fromkeys(("ms", "millisecond", "milliseconds"), 1e-3),
+    **dict.fromkeys(("us", "µs", "microsecond", "microseconds"), 1e-6),
+    **dict.fromkeys(("ns", "nanosecond", "nanoseconds"), 1e-9),
+}
+"""Seconds in each unit of time, by the words for it."""
+_USUAL_STEPS = ((1.0, "s"), (1e3, "ms"), (1e6, "us"))
 _RATE = re.compile(r"(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -57,16 +66,24 @@ def declared_rate(file: CaptureFile, word: str, where: str) -> float:
         return file.default_rate_hz
 
 
-def in_seconds(time: np.ndarray, unit: str | None = None) -> np.ndarray:
-    """Return times in seconds; without a unit, the one whose steps are those of captures.
+def counts_frames(time: np.ndarray) -> bool:
+    """Return whether times go on in whole steps of 1, as the numbers of frames do."""
+    steps = np.diff(time)
+    return bool(len(steps) and np.median(steps) == 1 and (steps == np.rint(steps)).all())
+
+
+def usual_unit(time: np.ndarray) -> str:
+    """Return the unit in which the steps of times are those of captures.
 
     Steps below 1 are seconds, below 1000 milliseconds, below 10^6 microseconds, else nanoseconds.
     """
-    if unit is not None:
-        scale = _TIME_UNITS.get(unit[:2].lower(), 1.0)
-    else:
-        step = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
-        scale = next((scale for most, scale in _USUAL_STEPS if step < most), 1e-9)
+    step = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    return next((unit for most, unit in _USUAL_STEPS if step < most), "ns")
+
+
+def in_seconds(time: np.ndarray, unit: str) -> np.ndarray:
+    """Return times in seconds that are in one of `TIME_UNITS`."""
+    scale = TIME_UNITS[unit]
     return time[0] * scale + (time - time[0]) * scale if len(time) else time
 
 
@@ -138,7 +155,7 @@ def _fits_rate(time: np.ndarray, rate_hz: float) -> bool:
         return False
     off = np.abs(time - time[0] - np.arange(len(time)) / rate_hz)
     half_frame = 0.5 / rate_hz
-    return bool((off <= (max(0.0101, half_frame) if len(time) > 3 else half_frame)).all())
+    return bool((off <= (max(MAX_ROUNDING_S, half_frame) if len(time) > 3 else half_frame)).all())
 
 
 def _without_rounding(rate: float, length: float) -> float:

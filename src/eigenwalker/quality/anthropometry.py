@@ -25,7 +25,8 @@ TRUNK = 0.288
 
 LENGTH_FACTOR = 1.5
 """Factor by which a segment may differ. People vary by a few per cent (de Leva 1996, J Biomech
-29:1223), points of skeletons and markers that are called joints by up to 1.37."""
+29:1223); the factor is set outside what our captures show, whose points and markers that are called
+joints differ by up to 1.37."""
 
 SIDE_FACTOR = 1.25
 """Ratio of left and right that is tolerated: noisy depth cameras reach 1.12."""
@@ -42,7 +43,11 @@ BREADTHS = {
 `retarget` (ANSUR II), the others as people walk (medians of simulated people)."""
 
 BREADTH_FACTORS = (0.6, 1.5)
-"""Range of their geometric mean over `BREADTHS`; real and simulated people have 0.66 to 1.32."""
+"""Range of their geometric mean over `BREADTHS`, set outside what our captures and simulated people
+show, 0.66 to 1.32."""
+
+NARROWEST = 0.25
+"""Share of `BREADTHS` below which a single breadth counts as this, so that none decides alone."""
 
 CROSSING = 0.05
 """Share of stature by which wrists and ankles may cross over: they swing, feet step narrowly."""
@@ -65,7 +70,8 @@ of skeletons reach 0.09."""
 
 LINK_VARIATION = 0.10
 """Coefficient of variation of distances within pelvis and trunk: skeletons and skin stay below
-0.04, noisy depth cameras reach 0.3."""
+0.04. Noisy depth cameras reach 0.3: such a pelvis and trunk cannot be told from exchanged labels,
+so these captures are not to be used either."""
 
 FRAMES = 200
 """Frames that are looked at."""
@@ -218,7 +224,7 @@ def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
         sloping = np.median(apart / np.linalg.norm(across, axis=1).clip(1e-9)) < LEVEL_LINE
         if np.median(apart) <= least or (part in ("hip", "shoulder") and sloping):
             yield WrongJoint("side", (f"left_{part}", f"right_{part}"))
-        logs.append(np.log(max(np.median(apart) / stature / share, 0.25)))
+        logs.append(np.log(max(np.median(apart) / stature / share, NARROWEST)))
     breadth = float(np.exp(np.mean(logs)))
     if len(logs) == len(BREADTHS) and not BREADTH_FACTORS[0] <= breadth <= BREADTH_FACTORS[1]:
         yield WrongJoint("breadth", (), breadth)

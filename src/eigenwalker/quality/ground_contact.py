@@ -16,7 +16,8 @@ from eigenwalker.gait.parameters import stance_shares as shares_of
 GRAVITY_MM_S2 = 9810.0
 
 YIELDS_DEG = 4.0
-"""Bend of the knee under load that is seen: in forward walking it is 10 to 20 degrees."""
+"""Bend of the knee that counts as one under load: in forward walking it is some 15 degrees (Perry &
+Burnfield 2010, Gait Analysis, loading response)."""
 
 _N_HARMONICS = 5
 _FEWEST_FRAMES = 4 * _N_HARMONICS + 2

@@ -61,8 +61,8 @@ LEVEL_MM = 400.0
 """Rise of a body that is no longer level over any distance: a floor tilted by 0.02 over 20 m."""
 
 STANDING_SLOPE = (-0.16, 0.08)
-"""Rise over run of the ankles that stand in a level walk in place: from -0.14 to 0 in real
-captures, up to 0.05 in simulated ones; a frame tilted by 10 degrees adds 0.18."""
+"""Rise over run of the ankles that stand in a level walk in place, set outside what our captures
+show: -0.14 to 0, in simulated ones up to 0.05; a frame tilted by 10 degrees adds 0.18."""
 
 MOST_ROLL_DEG = 5.0
 """Lean to one side, in the mean of whole strides, beyond which the frame is tilted: real captures

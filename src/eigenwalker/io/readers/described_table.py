@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ import xarray as xr
 
 from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
+from eigenwalker.io.number_format import noted
 from eigenwalker.io.readers.data3d import positions_of_rows
 from eigenwalker.io.text_cells import (
     cells,
+    marks_in,
     points_of,
     refuse_cut_number,
     separator_of,
@@ -74,7 +77,7 @@ def read_described_table(file: CaptureFile, description: Path) -> xr.DataArray:
     axes = _axes(described)
     walk = table_trajectories(
         file,
-        TableValues(positions if axes is None else positions @ axes.T, values.time),
+        replace(values, positions=positions if axes is None else positions @ axes.T),
         names,
         format_name="described table",
         rate_hz=rate_hz,
@@ -181,6 +184,7 @@ def _table(file: CaptureFile, described: _Description) -> tuple[list[str], Table
     at = described.get("time_column", 0)
     if not 0 <= at <= len(head) or (at and layout == "rows"):
         raise described.file.error(f"a time_column from 1 to {len(head)}", f"{at}")
+    marks = marks_in(rows, separator, columns.tolist())
     values = table_of(
         file,
         rows,
@@ -189,12 +193,14 @@ def _table(file: CaptureFile, described: _Description) -> tuple[list[str], Table
         first=n_above + 1,
         columns=columns.tolist(),
         clock=at - 1 if at else None,
+        marks=marks,
     )
     refuse_cut_number(file, rows)
     if layout == "rows":
-        return names, TableValues(positions_of_rows(file, values))
+        return names, TableValues(positions_of_rows(file, values), attrs=noted(marks))
     time = values[:, -1] if at else None
-    return names, TableValues(values[:, : columns.size].reshape(len(values), -1, 3), time)
+    positions = values[:, : columns.size].reshape(len(values), -1, 3)
+    return names, TableValues(positions, time, attrs=noted(marks))
 
 
 def _without_last_empty(words: list[str]) -> list[str]:

@@ -29,7 +29,6 @@ from eigenwalker.io.missing_codes import is_code
 from eigenwalker.io.readers.skeleton_table import body_trajectories
 from eigenwalker.io.text_cells import MAX_CLOCK, MAX_SIZE, Points, points_of, seconds_of_date
 from eigenwalker.io.text_table import TableValues
-from eigenwalker.io.timestamps import in_seconds
 
 _TOML = files("eigenwalker.io.readers").joinpath("point_names.toml").read_text(encoding="utf-8")
 MEDIAPIPE, BODY_25 = (tuple(map(str, names)) for names in tomllib.loads(_TOML).values())
@@ -93,7 +92,7 @@ def _trajectories(file: CaptureFile, data: Any) -> xr.DataArray:
     if not _is_list(frames) or not frames:
         raise file.error("a list of frames", f"{type(frames).__name__}")
     names, positions = _positions(file, frames, top)
-    return body_trajectories(file, TableValues(positions, _times(frames)), names, notes)
+    return body_trajectories(file, TableValues(positions, *_times(frames)), names, notes)
 
 
 def _is_dict(value: object) -> TypeGuard[dict[str, Any]]:
@@ -230,12 +229,13 @@ def _number(file: CaptureFile, value: Any) -> float:
     return float(value)
 
 
-def _times(frames: Sequence[Any]) -> np.ndarray | None:
+def _times(frames: Sequence[Any]) -> tuple[np.ndarray | None, str | None]:
+    """Return the times of frames and their unit, as far as they are known."""
     for key, unit in _TIMES.items():
         times = [frame.get(key) if _is_dict(frame) else None for frame in frames]
         if all(isinstance(time, (int, float)) and abs(time) < MAX_CLOCK for time in times):
-            return in_seconds(np.array(times, dtype=float), unit)
+            return np.array(times, dtype=float), unit
         dates = [seconds_of_date(time) if isinstance(time, str) else None for time in times]
         if None not in dates:
-            return np.array(dates, dtype=float)
-    return None
+            return np.array(dates, dtype=float), "s"
+    return None, None

@@ -18,7 +18,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
-from eigenwalker.io.timestamps import in_seconds, parse_rate
+from eigenwalker.io.timestamps import TIME_UNITS, counts_frames, in_seconds, parse_rate, usual_unit
 from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
@@ -34,8 +34,8 @@ _KINDS = {
 
 _TIME = re.compile(
     r"(?:(?:local|unix|epoch|utc|system|camera|frame|host|date)[ _]?)?"
-    r"(?:time|timestamps?|stamp|epoch|utc|t|seconds?|milliseconds?)"
-    r"(?:[ _]*[\[(]?(?P<unit>s|sec|seconds?|ms|us|µs|ns|iso)[\])]?)?",
+    r"(?P<name>time|timestamps?|stamp|epoch|utc|t|seconds?|milliseconds?)"
+    rf"(?:[ _]*[\[(]?(?P<unit>{'|'.join(TIME_UNITS)})[\])]?)?",
     re.IGNORECASE,
 )
 _NOTE = re.compile(r"(\w+)\s*[:=]\s*([^;,]+)")
@@ -67,7 +67,8 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
     if "frames" in notes and not values.attrs and file.content[-1:] not in (b"\n", b"\r"):
         raise file.error("an end of the last line", "none: the file is cut short")
     if values.time is not None:
-        values = replace(values, time=in_seconds(values.time, times[0][1]["unit"]))
+        words = (word.lower() for word in times[0][1].group("unit", "name") if word)
+        values = replace(values, time_unit=next((w for w in words if w in TIME_UNITS), None))
     return body_trajectories(file, values, points.names, notes)
 
 
@@ -85,6 +86,8 @@ def body_trajectories(
         _refuse_picture(file, values.positions, names)
     positions = without_zeros(values.positions, unless_always=kind != "Kinect")
     time, rate_hz, assumed = values.time, file.rate_hz, {}
+    of_frames = time is not None and values.time_unit is None and counts_frames(time)
+    time = None if of_frames else time
     if rate_hz is None and "rate_hz" in notes:
         time, rate_hz = None, parse_rate(notes["rate_hz"], "rate_hz", file)
     elif rate_hz is None and time is None and kind == "Kinect":
@@ -92,16 +95,23 @@ def body_trajectories(
         rate_hz, assumed = file.frame_rate(None, usual_hz=KINECT_RATE_HZ, reason=reason)
     elif time is None:
         rate_hz = rate_hz or file.default_rate_hz
+    if time is not None:
+        unit_of_time = values.time_unit or usual_unit(time)
+        if rate_hz is None and unit_of_time != "s" and not values.time_unit:
+            assumed = {"time_unit_guessed": unit_of_time}
+        time = in_seconds(time, unit_of_time)
     up = notes.get("up") if re.fullmatch("-?[xyz]", notes.get("up", "")) else None
     if time is None and rate_hz is None:
         raise file.error(
             "a column time_s",
-            f"{list(names[:3])}"[:120] + " and others, but no time",
+            "times in whole steps of 1, which number the frames or lack their unit"
+            if of_frames
+            else f"{list(names[:3])}"[:120] + " and others, but no time",
             "name the rate: read_mocap(..., rate_hz=...)",
         )
     return table_trajectories(
         file,
-        TableValues(positions, time, {**values.attrs, **assumed}),
+        TableValues(positions, time, attrs={**values.attrs, **assumed}),
         names,
         format_name=kind,
         rate_hz=rate_hz,
