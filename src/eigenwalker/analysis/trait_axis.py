@@ -78,7 +78,7 @@ def trait_axis(
 
     V holds the first few eigenwalkers, those of most variance, so that a step leads where walkers
     differ. Every walk counts once, also several of a person, whom `classify` leaves out together:
-    whoever walked more often weighs more. For an axis of people, keep one walk of each.
+    a person with more walks has more weight. For an axis of people, keep one walk of each.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ CHILD_MM = 800.0
 
 LEVEL_CLIMB = 0.05
 """Rise over run of a path that is no longer level: ramps built for wheelchairs have 0.05 to 0.08,
-stairs 0.5; floors of laboratories that were set up tilted 0.02."""
+stairs 0.5; tilted floors of laboratories 0.02."""
 
 LEVEL_MM = 400.0
 """Rise of a body that is no longer level over any distance: a floor tilted by 0.02 over 20 m."""
