@@ -8,7 +8,13 @@ from eigenwalker.core.walker import Walker
 
 
 @pytest.mark.parametrize(
-    ("harmonic", "said"), [(1.7, "whole numbers; got 1.7"), (0, "1 or more"), (float("nan"), "NaN")]
+    ("harmonic", "said"),
+    [
+        (1.7, "whole numbers; got 1.7"),
+        (1e40, "whole numbers"),
+        (0, "1 or more"),
+        (float("nan"), "NaN"),
+    ],
 )
 def test_harmonics_are_whole_numbers_from_1(harmonic, said):
     with pytest.raises(ValueError, match=said):

@@ -63,7 +63,8 @@ def check_numbers(
 def check_whole(values: ArrayLike, name: str, *dims: str) -> np.ndarray:
     """Return an argument as an array of int of these dimensions; refuse what is not whole."""
     array = check_numbers(values, name, *dims)
-    whole = array.astype(int)
+    with np.errstate(invalid="ignore"):  # numbers beyond those of an int are refused below
+        whole = array.astype(int)
     if (broken := array[whole != array]).size:
         raise ValueError(f"{name} must be whole numbers; got {broken[0]:g}.")
     return whole
