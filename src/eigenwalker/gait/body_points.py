@@ -48,6 +48,12 @@ def legs_of(positions: np.ndarray, markers: Sequence[str]) -> list[np.ndarray]:
     return [leg for leg in legs if leg is not None]
 
 
+def leg_length_mm(legs: Sequence[np.ndarray]) -> float:
+    """Return the mean length of thigh and shank together."""
+    bones = [np.linalg.norm(np.diff(leg, axis=1), axis=2).mean(axis=0).sum() for leg in legs]
+    return float(np.mean(bones))
+
+
 def facing_by_names(positions: np.ndarray, markers: Sequence[str]) -> np.ndarray | None:
     """Return the direction x + iy square to hips and shoulders in each frame; None if unknown."""
     names = [[f"{side}_{part}" for side in SIDES] for part in ("hip", "shoulder")]
@@ -85,6 +91,5 @@ def _floor(positions: np.ndarray, markers: Sequence[str]) -> float:
     legs = legs_of(positions, markers)
     if not legs:
         return float(np.quantile(positions[:, :, 2].min(axis=1), _LOW_SHARE))
-    bones = [np.linalg.norm(np.diff(leg, axis=1), axis=2).mean(axis=0).sum() for leg in legs]
     lowest = min(np.quantile(leg[:, 2, 2], _LOW_SHARE) for leg in legs)
-    return float(lowest - ANKLE_HEIGHT_OF_LEG * np.mean(bones))
+    return float(lowest - ANKLE_HEIGHT_OF_LEG * leg_length_mm(legs))

@@ -7,7 +7,7 @@ import numpy as np
 CODES = (3.697314e28, 3.4028235e38, 1.7976931348623157e308)
 """What NDI's programs write (with a minus), and the largest numbers of 4 and of 8 bytes."""
 NINES = tuple(float("9" * digits) for digits in range(4, 13))
-FAR = 10.0
+FAR_FACTOR = 10.0
 """How many times further than nearly all other coordinates a code is that is not known."""
 
 
@@ -24,13 +24,13 @@ def without_codes(positions: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """Return positions (time, marker, 3) with NaN for codes, and the codes that were found.
 
     A code is a number of nines alone in all three coordinates, or one number in all three, or a
-    number of nines in any, further out than `FAR` times 99 % of the coordinates
+    number of nines in any, further out than `FAR_FACTOR` times 99 % of the coordinates
     of markers whose three differ.
     """
     size = np.abs(positions)
     same = (positions == positions[..., :1]).all(axis=2)
     usual = size[(size < NINES[0]) & ~same[..., None]]  # which leaves out NaN
-    limit = FAR * float(np.quantile(usual, 0.99)) if usual.size else 0.0
+    limit = FAR_FACTOR * float(np.quantile(usual, 0.99)) if usual.size else 0.0
     if not limit or not np.nanmax(size) > min(limit, NINES[0] - 1):
         return positions, []
     nines = np.isin(size, NINES)

@@ -17,7 +17,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.missing_codes import without_codes
 from eigenwalker.io.number_format import noted
 from eigenwalker.io.text_cells import cells, cut_number, marks_in, refuse_cut_number, table_of
-from eigenwalker.io.timestamps import Clocked, on_clock
+from eigenwalker.io.timestamps import TimedPositions, on_clock
 from eigenwalker.io.to_trajectories import FileFrame, labelled_points, own_name, trajectories_of
 
 MAX_START_S = 1e7
@@ -130,7 +130,7 @@ def table_trajectories(
 ) -> xr.DataArray:
     """Return the labelled points of a table as trajectories."""
     positions, codes = without_codes(values.positions)
-    clocked = Clocked(positions, rate_hz or 0.0, start_s)
+    clocked = TimedPositions(positions, rate_hz or 0.0, start_s)
     attrs = {**values.attrs, **({"missing_codes": codes} if codes else {})}
     if (time := values.time) is not None:
         if abs(time[0]) > MAX_START_S:  # of a clock that began long before the capture

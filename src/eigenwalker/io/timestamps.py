@@ -33,7 +33,7 @@ _USUAL_STEPS = ((1.0, "s"), (1e3, "ms"), (1e6, "us"))
 _RATE = re.compile(r"(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
-class Clocked(NamedTuple):
+class TimedPositions(NamedTuple):
     """Positions at evenly spaced times: frames a second, and the time of the first frame."""
 
     positions: np.ndarray
@@ -89,25 +89,25 @@ def in_seconds(time: np.ndarray, unit: str) -> np.ndarray:
 
 def on_clock(
     file: CaptureFile, positions: np.ndarray, time: np.ndarray, rate_hz: float | None = None
-) -> Clocked:
+) -> TimedPositions:
     """Return positions at even times: at the rate that the caller names, else by written times.
 
     `time` is in seconds, `rate_hz` what the file declares. The caller's default rate counts where
     the times are unusable.
     """
     if file.rate_hz is not None:
-        return Clocked(positions, file.rate_hz)
+        return TimedPositions(positions, file.rate_hz)
     try:
         return on_even_clock(file, positions, time, rate_hz)
     except UnreadableFile:
         if file.default_rate_hz is None:
             raise
-        return Clocked(positions, file.default_rate_hz)
+        return TimedPositions(positions, file.default_rate_hz)
 
 
 def on_even_clock(
     file: CaptureFile, positions: np.ndarray, time: np.ndarray, rate_hz: float | None = None
-) -> Clocked:
+) -> TimedPositions:
     """Return positions taken at the given times as frames of an even clock.
 
     Frames that were left out become missing ones. Times that jitter, as those of cameras do, are
@@ -115,7 +115,7 @@ def on_even_clock(
     """
     steps = np.diff(time)
     if rate_hz and _fits_rate(time, rate_hz):
-        return Clocked(positions, rate_hz, float(time[0]))
+        return TimedPositions(positions, rate_hz, float(time[0]))
     if not np.isfinite(time).all() or not (steps > 0).all():
         late = int(np.argmin(np.append(steps > 0, False))) + 2
         pair = time[max(late - 2, 0) : late]
@@ -124,7 +124,7 @@ def on_even_clock(
     if len(time) < 2:
         if rate_hz is None:
             raise file.error("two frames or more", f"{len(time)}")
-        return Clocked(positions, rate_hz, float(time[0]) if len(time) else 0.0)
+        return TimedPositions(positions, rate_hz, float(time[0]) if len(time) else 0.0)
     step = 1 / rate_hz if rate_hz else float(np.median(steps))
     frames = np.concatenate([[0], np.cumsum(np.maximum(np.rint(steps / step), 1))])
     length = time[-1] - time[0]
@@ -146,7 +146,7 @@ def on_even_clock(
     jitter = np.abs(time - time[0] - frames / written) / step
     if rate_hz is None and jitter.max() > MAX_JITTER:
         even = _interpolated(positions, time, time[0] + np.arange(n_frames) / rate, step)
-    return Clocked(even, float(rate), float(time[0]))
+    return TimedPositions(even, float(rate), float(time[0]))
 
 
 def _fits_rate(time: np.ndarray, rate_hz: float) -> bool:

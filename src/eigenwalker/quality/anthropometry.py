@@ -110,7 +110,7 @@ class WrongJoint(NamedTuple):
     points : tuple of str
         The joints.
     value : float
-        NaN where the kind has none.
+        A ratio, without a unit; NaN where the kind has none.
     """
 
     kind: Literal["length", "unequal", "order", "side", "place", "middle", "breadth", "link"]

@@ -35,7 +35,8 @@ LIMBS = tuple(
 FEWEST_POINTS = 6
 """Fewer may lie in a plane without the capture having two dimensions."""
 
-_LIVELY = 0.3
+_MOVING_SHARE = 0.3
+"""Share of its usual speed (80 % quantile) above which a body moves as in walking."""
 _LEAST_PROGRESS_MM = 600.0
 """Length of a stride to which a rise is compared in place, where no body should rise at all."""
 
@@ -244,7 +245,7 @@ def _moving_frames(positions: np.ndarray, stride: float) -> int:
         return 0
     speed = np.linalg.norm(np.diff(body_relative(positions[:, seen]), axis=0), axis=1)
     smooth = running_mean(speed, max(1, round(stride / 2)))
-    return int((smooth > _LIVELY * np.quantile(smooth, 0.8)).sum())
+    return int((smooth > _MOVING_SHARE * np.quantile(smooth, 0.8)).sum())
 
 
 def _periodicity(movement: np.ndarray, stride: int) -> float:

@@ -1,4 +1,4 @@
-"""How a walk in place stands on its ground: lean, slope, speed, stance, and how its knees yield."""
+"""How a walk in place stands on its ground: lean, slope, speed, stance, and bend of the knees."""
 
 from __future__ import annotations
 
@@ -8,14 +8,20 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.fourier import fit_basis, harmonic_basis
-from eigenwalker.gait.body_points import ANKLE_HEIGHT_OF_LEG, SIDES, legs_of, paths_of
+from eigenwalker.gait.body_points import (
+    ANKLE_HEIGHT_OF_LEG,
+    SIDES,
+    leg_length_mm,
+    legs_of,
+    paths_of,
+)
 from eigenwalker.gait.events import events_at
 from eigenwalker.gait.heading import known_speed
 from eigenwalker.gait.parameters import stance_shares as shares_of
 
 GRAVITY_MM_S2 = 9810.0
 
-YIELDS_DEG = 4.0
+LOADING_BEND_DEG = 4.0
 """Bend of the knee that counts as one under load: in forward walking it is some 15 degrees (Perry &
 Burnfield 2010, Gait Analysis, loading response)."""
 
@@ -33,7 +39,7 @@ class GroundContact(NamedTuple):
     standing_slope: float = float("nan")
     froude: float = float("nan")
     stance_shares: float = float("nan")
-    knees_yield: bool = False
+    knees_bend_under_load: bool = False
 
 
 def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
@@ -42,8 +48,7 @@ def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
     legs = legs_of(positions, names)
     if len(legs) < 2:
         return GroundContact()
-    bones = [np.linalg.norm(np.diff(leg, axis=1), axis=2).mean(axis=0).sum() for leg in legs]
-    leg_mm = (1 + ANKLE_HEIGHT_OF_LEG) * float(np.mean(bones))
+    leg_mm = (1 + ANKLE_HEIGHT_OF_LEG) * leg_length_mm(legs)
     frequency_hz, speed = walk.attrs["frequency_hz"], known_speed(walk)
     slope = np.nan if speed < 0 else np.mean([_slope(leg[:, 2], rate_hz) for leg in legs])
     return GroundContact(
@@ -51,7 +56,7 @@ def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
         standing_slope=float(slope),
         froude=speed**2 / (GRAVITY_MM_S2 * max(leg_mm, 1e-9)),
         stance_shares=sum(shares_of(events_at(walk, frequency_hz), frequency_hz)),
-        knees_yield=all(_yields(leg, frequency_hz / rate_hz) for leg in legs),
+        knees_bend_under_load=all(_bends_under_load(leg, frequency_hz / rate_hz) for leg in legs),
     )
 
 
@@ -88,7 +93,7 @@ def _slope(ankle: np.ndarray, rate_hz: float) -> float:
     return float(stance[2] / stance[0])
 
 
-def _yields(leg: np.ndarray, strides_a_frame: float) -> bool:
+def _bends_under_load(leg: np.ndarray, strides_a_frame: float) -> bool:
     """Return whether a knee has a second wave of flexion a stride, beside that of the swing."""
     if len(leg) < _FEWEST_FRAMES:
         return False
@@ -104,5 +109,6 @@ def _yields(leg: np.ndarray, strides_a_frame: float) -> bool:
     rises = cycle[1:-1] > np.maximum(cycle[:-2], cycle[2:])
     peaks = np.flatnonzero(rises) + 1
     return any(
-        cycle[peak] - max(cycle[:peak].min(), cycle[peak:].min()) > YIELDS_DEG for peak in peaks
+        cycle[peak] - max(cycle[:peak].min(), cycle[peak:].min()) > LOADING_BEND_DEG
+        for peak in peaks
     )

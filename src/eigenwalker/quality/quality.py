@@ -97,7 +97,9 @@ class Quality:
 
     Parameters
     ----------
-    rate_hz, duration_s, n_frames
+    rate_hz, duration_s : float
+        Frames a second, and seconds, of the whole capture.
+    n_frames : int
         Of the whole capture.
     missing_share : mapping of str to float
         Share of frames without the marker, for markers that miss any.
@@ -132,7 +134,7 @@ class Quality:
     standing_slope, froude, stance_shares : float
         Rise over run of the standing ankles; speed squared over gravity and length of leg; shares
         of the stride in which left and right foot stand, added. NaN if unknown.
-    knees_yield : bool
+    knees_bend_under_load : bool
         Whether knees bend twice a stride, as they do under load in forward walking.
     filled_share, r2, periodicity : float
         Of the steady strides: share of samples that were filled; share of variance that two
@@ -174,7 +176,7 @@ class Quality:
     standing_slope: float = np.nan
     froude: float = np.nan
     stance_shares: float = np.nan
-    knees_yield: bool = False
+    knees_bend_under_load: bool = False
     filled_share: float = 0.0
     r2: float = np.nan
     periodicity: float = np.nan

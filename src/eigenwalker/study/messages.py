@@ -142,7 +142,7 @@ def _values(quality: Quality) -> dict[str, object]:
         "roll": abs(quality.roll_deg),
         "speed": quality.speed_mm_s / 1000,
         "backwards": -quality.speed_mm_s / 1000,
-        "reversed": _words()["reversed"]["yes" if quality.knees_yield else "no"],
+        "reversed": _words()["reversed"]["yes" if quality.knees_bend_under_load else "no"],
         "wrong": "; ".join(wrong[:3]) + (f" and {len(wrong) - 3} more" if len(wrong) > 3 else ""),
         "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
         "rises": "rises" if quality.climb > 0 else "falls",
