@@ -161,7 +161,7 @@ def bad_netcdf() -> list[BadFile]:
         BadFile(
             "population with infinities",
             _netcdf(lambda dataset: dataset.assign(p0=dataset["p0"] * np.inf), kind="population"),
-            "not finite",
+            "finite",
             door="population",
         ),
         BadFile(

@@ -67,7 +67,7 @@ def test_there_are_two_hundred_bad_files_of_different_names() -> None:
 
 @pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
 @pytest.mark.filterwarnings("ignore::eigenwalker.io.RateAssumed")
-@pytest.mark.parametrize("kind", sorted(set(KINDS) - {"mat", "population", "bml"}))
+@pytest.mark.parametrize("kind", sorted(set(KINDS) - {"mat", "population", "bml", "stimulus"}))
 def test_the_sound_files_that_they_are_made_of_are_read(kind, tmp_path) -> None:
     for files in sound_files(kind):
         for name, content in files.items():

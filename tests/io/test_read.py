@@ -61,7 +61,7 @@ def test_a_guessed_unit_is_warned_of_by_a_name_that_can_be_silenced(tmp_path: Pa
         ("table.csv", b"Dear colleague", "a capture .* or a table of points"),
         ("walk.amc", b"Dear colleague", "expected an ASF/AMC file, as it is called"),
         ("diary.txt", b"hello this is my", 'text that begins with "hello this is my"; export'),
-        ("weather.nc", b"\x89HDF\r\n\x1a\n" + bytes(99), "got a NetCDF-4 or HDF5 file; export"),
+        ("weather.nc", b"\x89HDF\r\n\x1a\n" + bytes(99), "got a NetCDF-4 or HDF5 file"),
         ("prose.doc", b"Dear colleague", "export it as one of these"),
         ("bytes", bytes(range(256)), "BVH, C3D"),
     ],

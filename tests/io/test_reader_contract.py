@@ -91,7 +91,7 @@ def _joints(kind: str, walk: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_every_kind_of_file_that_is_read_is_held_to_the_contract():
-    assert set(CONTRACT) == set(KINDS) - {"mat", "population", "bml", "amc"}
+    assert set(CONTRACT) == set(KINDS) - {"mat", "population", "bml", "amc", "stimulus"}
     assert {kind.reader for kind in CONTRACT.values()} | {"ASF/AMC"} == {r.name for r in READERS}
 
 

@@ -232,7 +232,7 @@ def test_joint_angles_do_not_know_heading_or_place():
         (some_clip(rate_hz=30), {"window_s": 0.2}, "needs one rate"),
         (some_clip(), {"window_s": -1}, "give seconds"),
         (some_clip(), {"metric": "euclid"}, "not known"),
-        (some_clip().isel(time=slice(0, 0)), {}, "without frames"),
+        (some_clip().isel(time=slice(0, 0)), {}, "frames"),
         (some_clip().assign_attrs(units="m"), {}, "Expected millimetres"),
         (some_clip().isel(time=[0]), {"metric": FrameMetric("velocities")}, "two frames"),
         (some_clip(), {"metric": FrameMetric(weights={"nose": 1})}, "weighs anything"),

@@ -113,9 +113,11 @@ def test_planted_weights_are_found_in_tables_made_of_walks(mannequins, by):
     assert np.median([nearness(X, y, planted) for y in drawn]) >= 0.95
 
 
-@pytest.mark.parametrize(("by", "least"), [("positions", 0.8), ("velocities", 0.75)])
+@pytest.mark.parametrize(
+    ("by", "least", "most"), [("positions", 0.8, 0.98), ("velocities", 0.75, 0.95)]
+)
 def test_shares_of_trials_level_off_which_blurs_weights_of_groups_that_go_together(
-    mannequins, by, least
+    mannequins, by, least, most
 ):
     """Pairs that differ much are never chosen, however much: no weighted sum can follow that."""
     X = group_table(mannequins, f"{by}-absolute")
@@ -126,7 +128,7 @@ def test_shares_of_trials_level_off_which_blurs_weights_of_groups_that_go_togeth
         chosen, shown = answers(0.75 * told / told.mean(), seed=seed, temperature=0.1)
         y = share_not_chosen(chosen.sum(axis=0), shown.sum(axis=0))
         found.append(nearness(X, y, planted))
-    assert least < np.mean(found) < 0.95
+    assert least < np.mean(found) < most
 
 
 def test_with_the_mannequin_s_sternum_for_clavicles_weights_would_be_lost(mannequins):

@@ -18,8 +18,9 @@ CLEAR_SIDE_MM = 20.0
 TOGETHER = 0.95
 """Share of the frames in which two pairs agree if they change places together."""
 
-RIGID = 0.1
-"""Coefficient of variation of the distance of two markers on one rigid part of the body."""
+RIGID = 0.05
+"""Coefficient of variation of the distance of two markers on one rigid part of the body; that of
+elbows, which swing against the legs, is 0.05 to 0.1."""
 
 TRAVEL_MM = 1000.0
 """Distance travelled from which on the direction of progress is the front of the body."""

@@ -135,7 +135,7 @@ def process_capture(
     ...     file = ew.write_mocap(ew.simulate_walk(seed=1), f"{folder}/walk.c3d")
     ...     result = process_capture(file)
     >>> result.walker
-    Walker(15 markers, 4 postures in the eigenposture form, 0.870 Hz, r2 0.99...)
+    Walker(15 markers, 4 postures in the eigenposture form, 0.86... Hz, r2 0.99...)
     >>> result.quality.verdict, result.quality.n_strides, len(result.repairs)
     ('use', 10, 0)
     """

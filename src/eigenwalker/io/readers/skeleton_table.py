@@ -52,10 +52,12 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
         raise _no_points(file, header)
     notes = _notes(lines[:above])
     times = [(at, hit) for at in points.others if (hit := _TIME.fullmatch(header[at]))]
+    rows = [line for line in lines[first:] if line.strip(" \t,;")]
+    cut_in_line = "frames" in notes and file.content[-1:] not in (b"\n", b"\r")
     table = TextTable(
         points.names,
         points.columns,
-        [line for line in lines[first:] if line.strip(" \t,;")],
+        rows[:-1] if cut_in_line and file.keep_partial else rows,
         n_columns=len(header),
         separator=separator,
         first_line=first + 1,
@@ -64,7 +66,7 @@ def read_skeleton_table(file: CaptureFile) -> xr.DataArray:
         only_these=True,
     )
     values = table_values(file, table)
-    if "frames" in notes and not values.attrs and file.content[-1:] not in (b"\n", b"\r"):
+    if cut_in_line and not file.keep_partial:
         raise file.error("an end of the last line", "none: the file is cut short")
     if values.time is not None:
         words = (word.lower() for word in times[0][1].group("unit", "name") if word)
