@@ -320,3 +320,14 @@ def test_a_number_does_not_look_like_the_limit_that_it_is_beyond(person):
     assert "0.897 of the movement" in unsteady
     assert "0.90 or more" in unsteady
     assert "1.401 strides a second" in pace
+
+
+@pytest.mark.parametrize("trait", ["sex", "weight_kg", "height_mm", "age_years"])
+@pytest.mark.parametrize("steps", [-3, 3])
+@pytest.mark.parametrize("overground", [False, True])
+def test_walkers_that_are_made_of_two_harmonics_are_for_use(trait, steps, overground, tmp_path):
+    """Two harmonics let feet slide and shanks change length a little."""
+    people = ew.load_population()
+    walker = people.walker(people.average + steps * ew.trait_axis(people, trait).step)
+    file = ew.write_mocap(walker, tmp_path / "w.c3d", n_strides=5, overground=overground)
+    assert assess(virtual_markers(read_mocap(file))).findings == ()

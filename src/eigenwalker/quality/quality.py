@@ -64,6 +64,10 @@ STANDING_SLOPE = (-0.16, 0.08)
 """Rise over run of the ankles that stand in a level walk in place, set outside what our captures
 show: -0.14 to 0, in simulated ones up to 0.05; a frame tilted by 10 degrees adds 0.18."""
 
+SYNTHESISED_R2 = 0.9999
+"""Share of variance that two harmonics explain only of walks that were made of them, whose feet
+slide and whose limbs change length a little; captures reach 0.98."""
+
 MOST_ROLL_DEG = 5.0
 """Lean to one side, in the mean of whole strides, beyond which the frame is tilted: real captures
 stay below 2.5."""
@@ -273,7 +277,9 @@ def _of_walk(quality: Quality) -> dict[str, bool]:
     few = n_strides < ENOUGH_STRIDES and quality.straight_passes <= 1
     return {
         "not_level": not quality.level,
-        "sloping": quality.treadmill and (slope < STANDING_SLOPE[0] or slope > STANDING_SLOPE[1]),
+        "sloping": quality.treadmill
+        and not r2 > SYNTHESISED_R2
+        and (slope < STANDING_SLOPE[0] or slope > STANDING_SLOPE[1]),
         "tilted": abs(quality.roll_deg) > MOST_ROLL_DEG,
         "backwards": quality.speed_mm_s < BACKWARDS_MM_S,
         "speed": quality.froude > FASTEST_FROUDE,
@@ -289,7 +295,8 @@ def _of_walk(quality: Quality) -> dict[str, bool]:
 
 def _of_labels(quality: Quality) -> dict[str, bool]:
     return {
-        "elastic_limbs": max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
+        "elastic_limbs": not quality.r2 > SYNTHESISED_R2
+        and max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
         "sides_swapped": quality.sides_swapped
         and not any(each.kind == "side" for each in quality.wrong_joints),
         "wrong_joints": bool(quality.wrong_joints),
