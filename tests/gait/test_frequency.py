@@ -138,3 +138,9 @@ def test_what_repeats_more_often_than_strides_is_told():
     faster = 3.5 / walk.attrs["frequency_hz"]
     with pytest.raises(NoStrideError, match=r"3.5 times a second"):
         fundamental_frequency(walk.assign_coords(time=walk.time.values / faster))
+
+
+def test_a_rate_at_which_no_stride_can_be_seen_is_named():
+    scores = np.sin(np.arange(240) / 9)[:, None]
+    with pytest.raises(NoStrideError, match=r"0\.12 frames a second"):
+        frequency_of_scores(scores, 0.12)

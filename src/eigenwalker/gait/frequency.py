@@ -132,6 +132,11 @@ def frequency_of_scores(
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics}; a walk needs 1 or more.")
     lowest, highest = BOUNDS_HZ
+    if rate_hz < 4 * lowest:
+        raise NoStrideError(
+            f"At {rate_hz:.3g} frames a second no stride can be seen. If its times are "
+            "milliseconds, not seconds, name the rate: read_mocap(..., rate_hz=...)."
+        )
     lowest = max(lowest, _FEWEST_STRIDES * rate_hz / max(n_frames, 1))
     if n_frames < 8 or lowest >= 0.9 * highest:
         raise NoStrideError(
