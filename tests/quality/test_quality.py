@@ -331,3 +331,12 @@ def test_walkers_that_are_made_of_two_harmonics_are_for_use(trait, steps, overgr
     walker = people.walker(people.average + steps * ew.trait_axis(people, trait).step)
     file = ew.write_mocap(walker, tmp_path / "w.c3d", n_strides=5, overground=overground)
     assert assess(virtual_markers(read_mocap(file))).findings == ()
+
+
+@pytest.mark.parametrize(
+    ("factor", "advice"),
+    [(1e-3, "unit='m'"), (1 / 304.8, "unit='ft'"), (1 / 25.4, "unit='in'"), (10, "No unit")],
+)
+def test_the_unit_that_is_named_makes_a_person_of_the_body(person, factor, advice):
+    walk = virtual_markers(person)
+    assert advice in reasons(assess(walk.copy(data=walk.values * factor)))[0]

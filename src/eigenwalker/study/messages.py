@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.errors import printable
 from eigenwalker.io.up_axis_and_unit import PERSON_MM, UNITS
 from eigenwalker.markers.label_repair import Repair
@@ -119,11 +120,19 @@ def _beside(value: float, *limits: float, digits: int) -> str:
     return next((text for text in texts if float(text) not in limits), texts[-1])
 
 
+def _other_unit(size_mm: float, unit: str) -> str:
+    """Return how to read a body of this size, if there is a unit that makes a person of it."""
+    units = UNITS | MILLIMETRES
+    sizes = {name: max(size_mm, 1e-9) * units[name] / units.get(unit, 1.0) for name in units}
+    nearest = min(sizes, key=lambda name: abs(np.log(sizes[name] / PERSON_MM)))
+    if limit.HEIGHTS_MM[0] <= sizes[nearest] <= limit.HEIGHTS_MM[1]:
+        return f"Read it with unit={nearest!r}."
+    return "No unit makes a person of it: look at how it was exported."
+
+
 def _values(quality: Quality) -> dict[str, object]:
     """Return what the sentences on findings name."""
     variation = quality.bone_length_variation
-    raw = max(quality.size_mm, 1e-9) / UNITS.get(quality.unit, 1.0)
-    others = [unit for unit in UNITS if unit != (quality.unit or "mm")]
     form = _words()["wrong_joints"]
     wrong = [
         form[each.kind].format(*each.points, value=each.value) for each in quality.wrong_joints
@@ -137,7 +146,7 @@ def _values(quality: Quality) -> dict[str, object]:
         "limit": limit,
         "height": _length(quality.height_mm),
         "size": _length(quality.size_mm),
-        "likely_unit": min(others, key=lambda unit: abs(np.log(raw * UNITS[unit] / PERSON_MM))),
+        "way_out": _other_unit(quality.size_mm, quality.unit or "mm"),
         "slope": np.degrees(np.arctan(abs(quality.standing_slope))),
         "roll": abs(quality.roll_deg),
         "speed": quality.speed_mm_s / 1000,
