@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import unicodedata
 from pathlib import Path
 
@@ -94,3 +96,18 @@ def test_infinite_traits_are_refused_before_a_capture_is_read(folder) -> None:
     (folder / "c.c3d").rename(folder / "c-1e999.c3d")
     with pytest.raises(ValueError, match="is inf"):
         capture_table(folder, trait_from_name="-(?P<weight_kg>.*).c3d")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are Unicode")
+def test_names_are_found_where_the_system_speaks_ascii(tmp_path):
+    (tmp_path / "Müller_1.c3d").write_bytes(b"")
+    (tmp_path / "t.csv").write_text("file,sex\nMüller_1.c3d,m\n", encoding="utf-8")
+    code = (
+        "import os; from eigenwalker.study.capture_table import capture_table as table; "
+        "print(os.path.exists(table('.', 't.csv', None)['file'][0]))"
+    )
+    ascii_system = {"PATH": "", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=ascii_system, capture_output=True, text=True
+    )
+    assert done.stdout == "True\n", done.stderr

@@ -170,7 +170,9 @@ def _as_on_disk(names: pd.Series, folder: Path) -> list[str]:
         return written
     known: dict[str, list[str]] = {}
     for name in captures_in(folder):
-        composed = unicodedata.normalize("NFC", name)
+        # Where the system speaks ASCII, names on disk have escapes for all other letters.
+        text = os.fsencode(name).decode("utf-8", "surrogateescape")
+        composed = unicodedata.normalize("NFC", text)
         for key in {composed, f"folded {composed.casefold()}"}:
             known.setdefault(key, []).append(name)
 
