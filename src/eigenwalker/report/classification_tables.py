@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -105,7 +106,8 @@ def missed_table(study: TraitStudy, most: int = 10) -> Table | None:
         [f"{study.names[row]} ({classes[row]})", int(count)]
         for row, count in zip(counts.index.to_numpy(), counts, strict=True)
     ]
-    n_inputs = len(results_of_panels(study.result.results))
+    results: Any = study.result.results  # of classes, whose walkers are the ones that are missed
+    n_inputs = len(results_of_panels(results))
     return Table(
         "Walkers that several classifiers miss", ["walker", f"missed, of {n_inputs} inputs"], rows
     )
