@@ -274,10 +274,10 @@ def test_groups_and_traits_must_fit_the_walkers():
 def test_a_class_that_is_one_walker_or_one_person_is_refused():
     walkers = np.random.default_rng(0).normal(size=(12, 5))
     sex = np.array(["woman"] * 11 + ["man"])
-    with pytest.raises(ValueError, match=r"the class man .*one walker \(row 11\)"):
+    with pytest.raises(ValueError, match=r"one walker \(row 11\) .*the class man"):
         jackknife_curves(walkers, sex)
     sex[6:], person = "man", ["a", "b", "c", "d", "e", "f"] + ["Bo"] * 6
-    with pytest.raises(ValueError, match="all of it is Bo"):
+    with pytest.raises(ValueError, match=r"Without Bo .*the class man"):
         jackknife_curves(walkers, sex, groups=person)
     assert jackknife_curves(walkers, sex, groups=[*person[:-1], "Al"]).fewest_errors < 12
 
