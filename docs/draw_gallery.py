@@ -269,8 +269,12 @@ ROWS = (
         "The dots joined.",
     ),
     Row(
-        *("begin", "mannequin", 'make_stimulus(average, style="mannequin", **small)'),
-        "--style mannequin",
+        *(
+            "begin",
+            "mannequin",
+            'make_stimulus(average, style="mannequin", **small | {"duration_s": 1.21})',
+        ),
+        "--style mannequin --duration 1.21",
         "The same walk on a wooden mannequin, the same for all, woman or man, as in Pražák "
         "and others (2010).",
     ),

@@ -42,7 +42,7 @@ def test_the_page_is_what_the_table_gives():
 def test_every_row_has_its_picture_and_no_other_is_kept():
     pictures = {path.name: path.stat().st_size for path in gallery.PICTURES.iterdir()}
     assert set(pictures) == {f"{row.name}.gif" for row in gallery.ROWS}
-    assert all(2_000 < size < 170_000 for size in pictures.values())
+    assert all(2_000 < size < 160_000 for size in pictures.values())
     assert sum(pictures.values()) < 1_200_000
 
 
