@@ -301,7 +301,7 @@ def test_synthesize_starts_from_a_walker_or_a_capture(run, people, folder, tmp_p
         (("synthesize", "--trait", "sex"), "sex=+3"),
         (("synthesize", "--trait", "sex=much"), "sex=+3"),
         (("synthesize", "--from", "99"), "walker from 0 to 39"),
-        (("synthesize", "-o", "walker.xyz"), "'.xyz' is not known"),
+        (("synthesize", "-o", "walker.xyz"), "must end in one of"),
         (("synthesize", "--part", "p9"), "no part 'p9'"),
         (("fit", ".", "-o", "people.csv"), "written as .nc"),
         (("fit", ".", "-o", "people.nc", "--form", "wavelet"), "eigenposture"),

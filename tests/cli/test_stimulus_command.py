@@ -69,6 +69,22 @@ def test_a_stimulus_file_is_taken_further(run):
     assert (code, "--trait is for populations" in complaint) == (2, True)
 
 
+def test_synthesize_is_stimulus_by_another_name(run, run_command):
+    words = ("--from", "3", "--trait", "sex=2", "--part", "structure", "--kind", "mean_difference")
+    said = {}
+    for command in ("stimulus", "synthesize"):
+        code, said[command], complaint = run_command(
+            command, *words, "--strides", "2", "-o", f"{command}.json"
+        )
+        assert code == 0, complaint
+    assert said["stimulus"].replace("stimulus.json", "synthesize.json") == said["synthesize"]
+    assert "sex: 2 standard deviations towards male" in said["stimulus"]
+    texts = {Path(f"{command}.json").read_text() for command in said}
+    assert len(texts) == 1
+    made = Stimulus.from_json(texts.pop())
+    assert made.timing.duration_s == pytest.approx(2 / made.figures[0].motion.frequency_hz)
+
+
 def test_a_figure_for_animators_says_how_still_its_feet_stand(run):
     code, said, _ = run("--duration", "2", "-o", "walk.glb")
     assert code == 0
@@ -83,6 +99,9 @@ def test_a_figure_for_animators_says_how_still_its_feet_stand(run):
     (["--information", "some"], "choose 'full', 'structure' or 'dynamics'"),
     (["--size", "big"], "width and height"),
     (["-o", "stim.avi"], "must end in one of"),
+    (["--part", "structure"], "give --trait too"),
+    (["--strides", "0"], "expected 1 or more"),
+    (["--strides", "1", "--duration", "2"], "in place of --duration"),
 ])  # fmt: skip
 def test_what_is_typed_wrong_is_said_in_a_sentence(run, words, complaint):
     code, _, said = run(*words)

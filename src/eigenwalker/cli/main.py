@@ -18,8 +18,8 @@ COMMANDS = {
     "fit": ("population_commands", "Make a population of a folder of captures."),
     "simulate": ("population_commands", "Simulate walkers of known truth, and their captures."),
     "classify": ("classify_command", "Tell a trait from gait, and say how surely."),
-    "synthesize": ("synthesize_command", "Film a walker, moved along traits."),
-    "stimulus": ("stimulus_command", "Make a stimulus: a walker, transforms, and a view."),
+    "stimulus": ("stimulus_command", "Make a walker, and write it as a stimulus, a film, a rig."),
+    "synthesize": ("stimulus_command", "The same as stimulus; a film, if no file is named."),
     "compare": ("compare_command", "Say how different walks look."),
     "data": ("data_commands", "List and fetch captures that others published."),
 }

@@ -20,6 +20,7 @@ ARGUMENTS = {
     "n_components": "--components {value}",
     "n_harmonics": "--harmonics {value}",
     "n_men": "--men {value}",
+    "n_strides": "--strides {value}",
     "n_permutations": "--permutations {value}",
     "n_women": "--women {value}",
     "partial": "--partial {value}",

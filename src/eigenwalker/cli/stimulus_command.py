@@ -1,5 +1,8 @@
 """``eigenwalker stimulus --trait sex=2 --invert -o stim.json``: a walker, transforms, a view.
 
+``eigenwalker synthesize`` is the same command; without ``-o`` it writes ``walker.mp4``, of whole
+strides.
+
 Options may be typed in any order. They are applied in this one: who walks (``--from``, ``--trait``,
 ``--information``); the body (``--gain``, ``--arm-swing``, ``--conflict``, ``--ellipses``,
 ``--perturb``); time (``--speed``, ``--start``, ``--reverse``, ``--freeze``, ``--delay``,
@@ -32,6 +35,7 @@ from eigenwalker.cli.options import (
 if TYPE_CHECKING:
     import numpy as np
 
+    from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.core.walker import Walker
     from eigenwalker.population.population import Population
     from eigenwalker.stimulus.stimulus import Stimulus
@@ -48,15 +52,22 @@ def stimulus(
         ),
     ] = None,
     output: Annotated[
-        Path,
+        Path | None,
         typer.Option(
             "-o",
             "--output",
             help=".json, .mp4, .webm, .gif, .png, .svg, .csv, .npz, .mat, .py, .html, .bvh, .glb; "
-            "a folder for frames.",
+            "a folder for frames. Left out, stim.json (synthesize: walker.mp4).",
         ),
-    ] = Path("stim.json"),
+    ] = None,
     trait: TraitSteps = None,
+    kind: Annotated[
+        str, option("'discriminant' tells the trait best, 'mean_difference' shows it best.")
+    ] = "discriminant",
+    part: Annotated[
+        str, option("What the axis may change: all, structure, dynamics, p1, p1+p2, ...")
+    ] = "all",
+    components: Annotated[int, option("Eigenwalkers that the axis uses.")] = 10,
     start_from: StartFrom = "average",
     information: Annotated[str, option("'full', 'structure' or 'dynamics' only.")] = "",
     gain: Annotated[Texts, option("Joints that move more: parts=legs,factor=0.5")] = None,
@@ -88,7 +99,12 @@ def stimulus(
     view: View = 30.0,
     elevation: Elevation = 0.0,
     eye_distance: Annotated[float | None, option("mm, for a perspective picture.")] = None,
-    duration: Annotated[float | None, option("Seconds; 4 if left out.")] = None,
+    duration: Annotated[
+        float | None, option("Seconds; 4 if left out (synthesize: whole strides).")
+    ] = None,
+    strides: Annotated[
+        int | None, option("Whole strides in place of a duration, so that it loops.")
+    ] = None,
     rate: Annotated[float | None, option("Frames a second; 60 if left out.")] = None,
     style: Annotated[str | None, option("'dots', 'sticks' or 'mannequin'.")] = None,
     size: Annotated[str | None, option("Picture in pixels: 512x512")] = None,
@@ -98,14 +114,24 @@ def stimulus(
     distance: Annotated[float, option("From the eye to the screen, mm.")] = 570.0,
     px_per_cm: Annotated[float, option("Pixels a centimetre of the screen.")] = 38.0,
     with_flagged: WithFlagged = False,
+    *,
+    context: typer.Context,
 ) -> None:
-    """Make a stimulus: a walker, what is done to it, and how it is shown.
+    """Make a walker, say what is done to it and how it is shown, and write it to anything.
 
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
     options = dict(locals())
-    from eigenwalker.stimulus.write_stimulus import write_stimulus
+    from eigenwalker.plotting.encoding import FORMATS
+    from eigenwalker.stimulus.write_stimulus import check_suffix, write_stimulus
 
+    film = str(context.info_name).endswith("synthesize")
+    output = output or Path("walker.mp4" if film else "stim.json")
+    check_suffix(output)
+    if strides is not None and (strides < 1 or duration is not None):
+        raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
+    if not (trait or morph_to) and (kind, part, components) != ("discriminant", "all", 10):
+        raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
     if people is not None and people.suffix.lower() == ".json":
         made, population = _of_a_stimulus(options), None
     else:
@@ -113,6 +139,8 @@ def stimulus(
         made = _of_a_population(population, options)
     for name, parameters in _transforms(options, population):
         made = made.then(name, **parameters)
+    if strides or (film and duration is None):
+        made = made.whole_strides(strides)
     if height_deg is not None:
         made = made.sized(height_deg, viewing_distance_mm=distance, px_per_cm=px_per_cm)
     with progress_bar("Writing") as progress:
@@ -123,7 +151,10 @@ def stimulus(
         from eigenwalker.stimulus.animation import animated
 
         print(animated(made).slide)
-    print(f"Stimulus: {path}")
+    print(f"{'Film' if path.suffix.lower() in FORMATS else 'Stimulus'}: {path}")
+
+
+synthesize = stimulus
 
 
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
@@ -151,12 +182,10 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
 
     from eigenwalker.stimulus.stimulus import Stimulus
 
-    for name in ("trait", "information", "morph_to", "size", "eye_distance"):
-        if options[name]:
-            file = options["people"].name
-            raise ValueError(
-                f"--{name.replace('_', '-')} is for populations; {file} is a stimulus."
-            )
+    for name in ("trait", "start_from", "information", "morph_to", "size", "eye_distance"):
+        if options[name] and options[name] != "average":
+            file, name = options["people"].name, name.removeprefix("start_").replace("_", "-")
+            raise ValueError(f"--{name} is for populations; {file} is a stimulus.")
     made = Stimulus.load(options["people"])
     timing = {"duration_s": options["duration"], "rate_hz": options["rate"]}
     timing = {name: value for name, value in timing.items() if value is not None}
@@ -169,14 +198,51 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
 def _walker(population: Population, options: dict[str, Any]) -> Walker:
     from eigenwalker.stimulus.make import with_information
 
-    vector = _moved(population, start_vector(population, options["start_from"]), options["trait"])
+    start = start_vector(population, options["start_from"])
+    vector = _moved(population, start, options["trait"], options)
+    if options["trait"]:
+        _print_plausibility(population, vector)
     if options["information"]:
         return with_information(population, vector, options["information"])
     return population.walker(vector)
 
 
-def _moved(population: Population, vector: np.ndarray, traits: Texts) -> np.ndarray:
-    return vector + sum(steps * axis.step for axis, steps in trait_axes(population, traits))
+def _moved(
+    population: Population, vector: np.ndarray, traits: Texts, options: dict[str, Any]
+) -> np.ndarray:
+    """Return features moved along traits, and print how far that is."""
+    axis_options = {name: options[name] for name in ("kind", "part")}
+    axes = trait_axes(population, traits, n_components=options["components"], **axis_options)
+    vector = vector + sum(steps * axis.step for axis, steps in axes)
+    for axis, steps in axes:
+        print(_position_line(population, axis, vector, steps))
+    return vector
+
+
+def _position_line(
+    population: Population, axis: TraitAxis, vector: np.ndarray, steps: float
+) -> str:
+    contrast = axis.contrast
+    pole = contrast.positive if steps >= 0 else contrast.negative
+    place = float(axis.positions(vector[None])[0])
+    walkers = axis.positions(population.X[contrast.rows])
+    beyond = "beyond all walkers, who reach" if abs(place) > abs(walkers).max() else "walkers reach"
+    return (
+        f"{contrast.trait}: {abs(steps):g} standard deviations towards {pole}, to {place:+.1f}; "
+        f"{beyond} {walkers.min():+.1f} to {walkers.max():+.1f}."
+    )
+
+
+def _print_plausibility(population: Population, vector: np.ndarray) -> None:
+    from eigenwalker.analysis.plausibility import plausibility
+
+    result = plausibility(population, vector)
+    limbs = (f"{name} {100 * change:+.0f} %" for name, change in result.limb_change.items())
+    print(
+        f"Distance from the average walker: {result.position.distance:.1f} times the usual "
+        f"({result.position.percentile:.0f} % of the walkers are nearer).\n"
+        f"Limbs: {', '.join(limbs)}"
+    )
 
 
 def _transforms(
@@ -189,7 +255,7 @@ def _transforms(
             continue
         if name == "morph_to":
             assert population is not None
-            vector = _moved(population, population.average, value)
+            vector = _moved(population, population.average, value, options)
             yield "morph", {"walker": population.walker(vector)}
         elif name in ("occlude", "show"):
             yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.walker import Walker
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
@@ -149,6 +150,34 @@ class Stimulus:
             px_per_cm=px_per_cm,
         )
         return replace(self, display=display)
+
+    def whole_strides(self, n_strides: int | None = None) -> Stimulus:
+        """Return the stimulus with a duration of whole strides of its first figure, so it loops.
+
+        Parameters
+        ----------
+        n_strides : int, optional
+            Left out, as many as come nearest to its duration.
+
+        Returns
+        -------
+        Stimulus
+            Trajectories, which have no period, keep their duration if no number is given.
+
+        Raises
+        ------
+        ValueError
+            If a number is given, and the figure has no period.
+        """
+        if isinstance(self.figures[0].motion, Walker):
+            period_s = self.scene[0].period_s
+            n_strides = n_strides or max(round(self.timing.duration_s / period_s), 1)
+            return replace(self, timing=replace(self.timing, duration_s=n_strides * period_s))
+        if n_strides is None:
+            return self
+        raise ValueError(
+            f"n_strides={n_strides} is for walkers; trajectories have no period. Give duration_s."
+        )
 
     def extent(self, figure: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest and largest coordinates in the picture, mm, of a figure or all."""

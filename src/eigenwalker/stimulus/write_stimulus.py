@@ -70,11 +70,7 @@ def write_stimulus(
     True
     """
     path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix and suffix not in SUFFIXES:
-        raise ValueError(f"{path.name!r} must end in one of {SUFFIXES} to hold a stimulus.")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
+    suffix = check_suffix(path)
     if not suffix:
         _write_frames(stimulus, path, progress)
         return path
@@ -88,6 +84,16 @@ def write_stimulus(
         else:
             WRITERS[suffix](stimulus, unfinished)
     return path
+
+
+def check_suffix(path: Path) -> str:
+    """Return the suffix of a file that can be written; refuse others."""
+    suffix = path.suffix.lower()
+    if suffix and suffix not in SUFFIXES:
+        raise ValueError(f"{path.name!r} must end in one of {SUFFIXES} to hold a stimulus.")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
+    return suffix
 
 
 def _write_film(stimulus: Stimulus, path: Path, progress: Progress | None) -> None:
