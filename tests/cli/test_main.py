@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import av
@@ -70,6 +72,47 @@ def test_help_imports_nothing_heavy() -> None:
 def test_what_no_command_is_typed_for(run, words, code, answer) -> None:
     ended, printed, errors = run(*words)
     assert (ended, answer in printed + errors) == (code, True)
+
+
+def test_a_module_that_runs_is_called_as_such_and_says_on_what_it_runs(run, monkeypatch) -> None:
+    said = run("--version")[1]
+    assert re.fullmatch(rf"eigenwalker {ew.__version__} \(Python 3\.\d+\.\d+\w*, \w+ \w+\)\n", said)
+    monkeypatch.setattr("eigenwalker.cli.main.called_as", lambda: "python -m eigenwalker")
+    assert run("-h")[1].startswith("Usage: python -m eigenwalker [OPTIONS]")
+    assert run("fit", "-h")[1].startswith("Usage: python -m eigenwalker fit ")
+    assert "Try 'python -m eigenwalker -h' for help." in run("fitt")[2]
+
+
+def test_shells_complete_commands_and_their_options(run, monkeypatch) -> None:
+    monkeypatch.setenv("_EIGENWALKER_COMPLETE", "complete_bash")
+    for typed, words in (("cl", ["classify"]), ("fit --tr", ["--traits", "--trait-from-name"])):
+        monkeypatch.setenv("COMP_WORDS", f"eigenwalker {typed}")
+        monkeypatch.setenv("COMP_CWORD", str(len(typed.split())))
+        assert run()[1].split() == words
+
+
+def test_where_no_trait_is_named_one_that_walkers_have_is_told_and_named(
+    run, people, tmp_path
+) -> None:
+    known = Population.load(people)
+    bare = known.traits.drop(columns="sex")
+    for name, traits in (("age_years", bare), ("style", bare.assign(style=["a", "b"] * 6))):
+        replace(known, traits=traits).save(tmp_path / "some.nc")
+        code, said, errors = run("classify", tmp_path / "some.nc", "--permutations", 1)
+        assert (code, said.partition(":")[0]) == (0, name)
+        assert f"No trait 'sex' tells these walkers apart: {name} is told." in errors
+    for traits, problem in (
+        (bare[["flag"]], "The population has no trait to tell"),
+        (bare[["flag"]].assign(style=list("abc") * 4), "choose two, for instance style=a:b"),
+    ):
+        replace(known, traits=traits).save(tmp_path / "some.nc")
+        code, _, errors = run("classify", tmp_path / "some.nc")
+        assert (code, problem in errors) == (2, True)
+
+
+def test_what_to_cite_is_printed(run) -> None:
+    assert "@article{troje2002decomposing," in run("cite")[1]
+    assert run("cite", "cmu")[1].count("@") == 1
 
 
 def test_fit_reads_a_folder_and_ends_with_0(run, folder, tmp_path) -> None:

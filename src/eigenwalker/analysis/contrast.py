@@ -117,6 +117,20 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     return Contrast(column, rows, y, negative, positive, True, _persons(population, rows))
 
 
+def usual_trait(population: Population) -> str:
+    """Return the trait to tell where none is named: the sex, else the first of two classes."""
+    found: dict[str, bool] = {}
+    problem = ValueError(f"The population has no trait to tell; it has {list(population.traits)}.")
+    for name in (str(name) for name in population.traits if name not in _NO_TRAITS):
+        try:
+            found[name] = trait_contrast(population, name).two_classes
+        except ValueError as error:
+            problem = error
+    if not found:
+        raise problem
+    return min(found, key=lambda name: (name.lower() != "sex", not found[name]))
+
+
 def _as_text(values: pd.Series) -> pd.Series:
     """Values as a user types them: 1 for 1.0, and nothing for a missing one."""
     if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):

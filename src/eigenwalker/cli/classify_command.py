@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -27,8 +28,8 @@ BUILT_IN_TITLE = "How people walk"
 def classify(
     people: People = None,
     trait: Annotated[
-        str, option("Trait to tell: sex, weight_kg, style=feminine:masculine.")
-    ] = "sex",
+        str | None, option("Trait to tell: sex, weight_kg, style=feminine:masculine.")
+    ] = None,
     output: ReportFolder = None,
     permutations: Annotated[int, option("Random permutations of the trait to compare with.")] = 200,
     with_flagged: WithFlagged = False,
@@ -38,6 +39,7 @@ def classify(
     from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
+    trait = trait or _usual_trait(population)
     page = None
     with progress_bar("Classifying") as progress:
         result = _classify(population, trait, n_permutations=permutations, progress=progress)
@@ -55,7 +57,7 @@ def demo(
     output: Annotated[Path, option("Folder to write into.", "-o", "--output")] = Path(
         "eigenwalker-demo"
     ),
-    trait: Annotated[str, option("Trait of two classes to tell.")] = "sex",
+    trait: Annotated[str | None, option("Trait to tell; left out, the sex, or the first.")] = None,
     open_page: OpenPage = True,
     with_flagged: WithFlagged = False,
 ) -> None:
@@ -73,6 +75,7 @@ def demo(
     from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
+    trait = trait or _usual_trait(population)
     with progress_bar("Classifying and filming") as progress:
         result = _classify(population, trait, progress=progress)
         page = write_classification_report(
@@ -96,6 +99,15 @@ def model_names(people: Path | None) -> dict[str, str]:
     if people is None:
         return {"title": BUILT_IN_TITLE, "source": ""}
     return {"title": people.stem, "source": people.name}
+
+
+def _usual_trait(population: Population) -> str:
+    from eigenwalker.analysis.contrast import usual_trait
+
+    trait = usual_trait(population)
+    if trait != "sex":
+        print(f"No trait 'sex' tells these walkers apart: {trait} is told.", file=sys.stderr)
+    return trait
 
 
 def _classify(population: Population, trait: str, **settings: Any) -> Classification | Regression:

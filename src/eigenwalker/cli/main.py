@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from eigenwalker.cli.exit_codes import EXIT_FAILED
@@ -22,9 +24,11 @@ COMMANDS = {
     "synthesize": ("stimulus_command", "The same as stimulus; a film, if no file is named."),
     "compare": ("compare_command", "Say how different walks look."),
     "data": ("data_commands", "List and fetch captures that others published."),
+    "cite": ("cite_command", "Print what to cite: the program, its papers, a data set."),
 }
 """The module of each command, and its line in the help of all."""
 
+COMPLETION = ("--install-completion", "--show-completion")
 HELP = """\
 Usage: eigenwalker [OPTIONS] COMMAND [ARGS]...
 
@@ -32,15 +36,17 @@ Usage: eigenwalker [OPTIONS] COMMAND [ARGS]...
   trait.
 
 Options:
-  --version   Show the version and exit.
-  -h, --help  Show this message and exit.
+  --version             Show the version, and that of Python; exit.
+  --install-completion  Complete words in this shell by the tab key.
+  --show-completion     Print what does so, to be copied.
+  -h, --help            Show this message and exit.
 
 Commands:
 """ + "\n".join(f"  {name:<12}{line}" for name, (_, line) in COMMANDS.items())
 """Printed by itself: without the library of options the help of all is there at once."""
 
 
-PRINTING = ("classify", "compare", "data", "info")
+PRINTING = ("cite", "classify", "compare", "data", "info")
 """Commands whose result is what they print."""
 
 
@@ -60,13 +66,19 @@ def main() -> None:
 
 
 def _run(name: str, words: list[str]) -> None:
-    if name in ("-h", "--help", ""):
-        print(HELP)
+    completes = name in COMPLETION or "_EIGENWALKER_COMPLETE" in os.environ
+    if name in ("-h", "--help", "") and not completes:
+        print(HELP.replace("eigenwalker", called_as(), 1))
         sys.exit(0 if name else EXIT_FAILED)
     if name == "--version":
+        import platform
+
         from eigenwalker._version import __version__
 
-        print(f"eigenwalker {__version__}")
+        system = f"{platform.system()} {platform.machine()}"
+        print(f"eigenwalker {__version__} (Python {platform.python_version()}, {system})")
+    elif completes:
+        completed_commands()(args=[name, *words], prog_name="eigenwalker")
     elif name not in COMMANDS:
         sys.exit(_explain_unknown(name))
     else:
@@ -76,17 +88,40 @@ def _run(name: str, words: list[str]) -> None:
         use_options_of(command)
         warnings.showwarning = lambda message, *_, **__: _say(message)
         try:
-            command(args=words, prog_name=f"eigenwalker {name}")
+            command(args=words, prog_name=f"{called_as()} {name}")
         except (ValueError, OSError) as error:
             _say(error)
             sys.exit(EXIT_FAILED)
+
+
+def called_as() -> str:
+    """Return how the program was called."""
+    return "python -m eigenwalker" if Path(sys.argv[0]).name == "__main__.py" else "eigenwalker"
+
+
+def completed_commands() -> Any:
+    """Return all commands as one, which completes words in shells."""
+    import typer
+
+    program = typer.Typer(rich_markup_mode=None)
+    for name in COMMANDS:
+        command = _command_object(name)
+        if isinstance(command, typer.Typer):
+            program.add_typer(command, name=name)
+        else:
+            program.command(name)(command)
+    return typer.main.get_command(program)
+
+
+def _command_object(name: str) -> Any:
+    return getattr(import_module(f"eigenwalker.cli.{COMMANDS[name][0]}"), name)
 
 
 def load_command(name: str) -> Any:
     """Return the command of that name, as click runs it; only its own module is imported."""
     import typer
 
-    command = getattr(import_module(f"eigenwalker.cli.{COMMANDS[name][0]}"), name)
+    command = _command_object(name)
     if not isinstance(command, typer.Typer):
         function, command = command, typer.Typer(rich_markup_mode=None, add_completion=False)
         command.command(name)(function)
@@ -99,11 +134,11 @@ def _explain_unknown(word: str) -> int:
     from difflib import get_close_matches
 
     what = "option" if word.startswith("-") else "command"
-    near = get_close_matches(word, [*COMMANDS, "--help", "--version"], n=1)
+    near = get_close_matches(word, [*COMMANDS, *COMPLETION, "--help", "--version"], n=1)
     guess = f" Did you mean '{near[0]}'?" if near else ""
-    usage = HELP.partition("\n")[0]
+    usage = HELP.partition("\n")[0].replace("eigenwalker", called_as())
     print(
-        f"{usage}\nTry 'eigenwalker -h' for help.\n\nError: No such {what} '{word}'.{guess}",
+        f"{usage}\nTry '{called_as()} -h' for help.\n\nError: No such {what} '{word}'.{guess}",
         file=sys.stderr,
     )
     return EXIT_FAILED

@@ -52,7 +52,8 @@ class BmlModel:
 
     References
     ----------
-    Troje (2002), The little difference: Fourier based gender classification (demonstration).
+    Troje (2002), The little difference: Fourier based synthesis of gender-specific
+    biological motion, and its demonstration on the web.
 
     Examples
     --------
@@ -110,7 +111,8 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
 
     References
     ----------
-    Troje (2002), The little difference: Fourier based gender classification (demonstration).
+    Troje (2002), The little difference: Fourier based synthesis of gender-specific
+    biological motion, and its demonstration on the web.
 
     Examples
     --------

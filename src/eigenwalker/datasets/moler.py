@@ -148,7 +148,8 @@ def read_mm(
 
     References
     ----------
-    Troje (2002), The little difference: Fourier based gender classification, eq. 1.
+    Troje (2002), The little difference: Fourier based synthesis of gender-specific
+    biological motion, eq. 1.
     """
     path = Path(path)
     arrays = read_mat_arrays(path)
