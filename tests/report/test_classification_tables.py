@@ -15,6 +15,8 @@ from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
     multiple_inputs_sentence,
+    permutation_sentence,
+    person_sentences,
     plausibility_table,
     printed_results,
     results_table,
@@ -76,7 +78,7 @@ def test_missed_walkers_are_named_with_their_class(people) -> None:
 def test_the_printed_table_says_where_p_ends_and_what_is_missing() -> None:
     people = ew.simulate_population(12, 12, seed=0, sex_effect=3)
     found = classify(people, "sex", inputs=[INPUTS[2], INPUTS[11]], n_permutations=19)
-    words = printed_results(found.table(), 19).set_index("input")
+    words = printed_results(found).set_index("input")
     assert words["p"]["structure (p0)"] == "<= 0.05"
     assert words["separated at n"]["frequency alone"] == "-"
     assert found.table()["p"].min() == 1 / 20
@@ -88,5 +90,26 @@ def test_classes_of_unequal_size_are_mentioned() -> None:
     people = ew.simulate_population(12, 12, seed=0, sex_effect=3).select(np.arange(3, 24))
     found = classify(people, "sex", inputs=INPUTS[9:10], n_permutations=0)
     assert "(female 9, male 12), and the discriminant has no constant" in chance_sentence(found)
-    assert printed_results(found.table(), 0)["p"].tolist() == ["-"]
+    assert printed_results(found)["p"].tolist() == ["-"]
     assert multiple_inputs_sentence(found) == ""
+
+
+def test_what_p_permutes_and_who_walked_are_said() -> None:
+    people = ew.simulate_population(6, 6, seed=0)
+    traits = people.traits.assign(
+        file=[f"{row}.c3d" for row in range(12)],
+        Subject=[row // 2 for row in range(12)],
+        foot=["left", "right"] * 6,
+    )
+    people = ew.Population(people.walkers, traits)
+    sex, foot = (
+        classify(people, trait, inputs=INPUTS[9:10], n_permutations=9) for trait in ("sex", "foot")
+    )
+    assert "among persons" in permutation_sentence(sex)
+    assert printed_results(sex).columns[-1] == "p"
+    assert "within each person, as 6 of 6" in permutation_sentence(foot)
+    assert printed_results(foot).columns[-1] == "p within persons"
+    said = " ".join(person_sentences(sex.contrast, traits))
+    assert said.startswith("12 walks are of 6 persons, as the trait 'Subject' says")
+    unknown = person_sentences(sex.contrast, traits.drop(columns="Subject"))
+    assert unknown[0].startswith("No trait is known to say who walked")

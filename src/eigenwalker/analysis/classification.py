@@ -73,7 +73,8 @@ class InputResult(Generic[_Curves]):
     nested : NestedPredictions
         When the number of components is chosen without the walker predicted.
     p : float
-        Share of permuted traits that reach as small an error on the curve.
+        Share of permuted traits that reach as small an error on the curve. Permuted among persons,
+        or within each, where they have several values (`Contrast.varies_within_persons`).
 
     See Also
     --------

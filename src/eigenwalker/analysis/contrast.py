@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from eigenwalker.population.persons import PERSON
 from eigenwalker.population.population import FLAG, Population, check_population
 
-PERSON = "person"
-"""Column of the traits that names the person of each walk."""
 _POLES = {
     "age": ("young", "old"),
     "weight": ("light", "heavy"),
@@ -51,6 +50,13 @@ class Contrast:
     positive: str
     two_classes: bool
     persons: np.ndarray | None = None
+
+    @property
+    def varies_within_persons(self) -> bool:
+        """Whether some person has several values, so that permutations stay within persons."""
+        if self.persons is None:
+            return False
+        return bool((pd.Series(self.y).groupby(self.persons).nunique() > 1).any())
 
     @property
     def labels(self) -> np.ndarray:
@@ -185,10 +191,8 @@ def _continuous(population: Population, column: str, rows: np.ndarray) -> Contra
 
 
 def _persons(population: Population, rows: np.ndarray) -> np.ndarray | None:
-    if PERSON not in population.traits:
+    if population.persons is None:
         return None
-    persons = population.traits[PERSON].iloc[rows]
-    named = persons.notna() & (persons.astype(str) != "")
     # Each walk of an unnamed person counts as a person of its own.
-    persons = persons.astype(str).where(named, [f"\0{row}" for row in rows])
-    return persons.to_numpy(dtype=str) if persons.duplicated().any() else None
+    persons = np.array([name or f"\0{row}" for row, name in enumerate(population.persons)])[rows]
+    return persons if len(set(persons)) < len(persons) else None

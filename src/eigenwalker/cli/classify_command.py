@@ -6,9 +6,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
     OpenPage,
     People,
+    Person,
     ReportFolder,
     WithFlagged,
     load_people,
@@ -32,13 +34,14 @@ def classify(
     ] = None,
     output: ReportFolder = None,
     permutations: Annotated[int, option("Random permutations of the trait to compare with.")] = 200,
+    person: Person = None,
     with_flagged: WithFlagged = False,
 ) -> None:
     """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
     from eigenwalker.analysis.trait_study import study_trait
     from eigenwalker.report.classification_report import write_classification_report
 
-    population = load_people(people, with_flagged)
+    population = load_people(people, with_flagged, person)
     trait = trait or _usual_trait(population)
     page = None
     with progress_bar("Classifying") as progress:
@@ -47,7 +50,7 @@ def classify(
             page = write_classification_report(study_trait(population, result), output)
     classes = result.contrast
     print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
-    _print_result(result)
+    _print_result(result, population)
     if page is not None:
         print(f"Report: {page}")
 
@@ -88,7 +91,7 @@ def demo(
     index = page.with_name(INDEX)
     with atomic_write(index) as unfinished:
         unfinished.write_text(interactive_page(model, report=page.name), encoding="utf-8")
-    _print_result(result)
+    _print_result(result, population)
     print(f"Report: {page}\nPage to play with: {index}")
     if open_page:
         open_in_browser(str(index))
@@ -118,14 +121,18 @@ def _classify(population: Population, trait: str, **settings: Any) -> Classifica
     return predict(population, trait, **settings)
 
 
-def _print_result(result: Classification | Regression) -> None:
+def _print_result(result: Classification | Regression, population: Population) -> None:
     from eigenwalker.report.classification_tables import (
         chance_sentence,
         multiple_inputs_sentence,
+        permutation_sentence,
+        person_sentences,
         printed_results,
     )
 
-    print(printed_results(result.table(), result.n_permutations).to_string(index=False))
+    print(printed_results(result).to_string(index=False))
     print(f"\n{chance_sentence(result)}")
-    if sentence := multiple_inputs_sentence(result):
-        print(sentence)
+    sentences = [permutation_sentence(result), multiple_inputs_sentence(result)]
+    sentences += person_sentences(result.contrast, population.traits)
+    for sentence in filter(None, sentences):
+        print(in_options(sentence))

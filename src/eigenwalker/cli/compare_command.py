@@ -14,11 +14,13 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    Person,
     Rate,
     ReportFolder,
     TraitFromName,
     Unit,
     WithFlagged,
+    load_people,
     option,
     progress_bar,
 )
@@ -69,6 +71,7 @@ def compare(
     ] = None,
     trait: Annotated[str | None, option("Trait of a population: are its classes apart?")] = None,
     trait_from_name: TraitFromName = None,
+    person: Person = None,
     with_flagged: WithFlagged = False,
     unit: Unit = None,
     rate: Rate = None,
@@ -81,7 +84,7 @@ def compare(
     """
     given = {"--nearest": nearest, "--answers": answers, "-o": output, "--clusters": clusters}
     given |= {"--trait": trait, "--trait-from-name": trait_from_name, "--unit": unit}
-    given |= {"--with-flagged": with_flagged or None, "--rate": rate}
+    given |= {"--person": person, "--with-flagged": with_flagged or None, "--rate": rate}
     options = {name for name, value in given.items() if value is not None}
     _check_options(first, second, options)
     _check_output(output)
@@ -96,7 +99,7 @@ def compare(
         return
     query = None if nearest is None else _captured(nearest, reading)
     table = None if answers is None else _answers(answers, chosen)
-    walks = _walks(first, reading, trait, trait_from_name, with_flagged)
+    walks = _walks(first, reading, trait, trait_from_name, person, with_flagged)
     if nearest is not None and query is not None:
         _print_nearest(nearest, query, walks, chosen)
     elif table is not None:
@@ -196,6 +199,7 @@ def _compare_all(
     from eigenwalker.report.pairs_report import (
         TABLE_NAME,
         pairs_sentences,
+        persons_compared,
         printed_labels,
         write_pairs_report,
     )
@@ -211,7 +215,9 @@ def _compare_all(
         table = pair_table(walks.clips, metric=metric, progress=progress)
     print("\n".join(pairs_sentences(table, metric)))
     if walks.labels:
-        print(printed_labels(label_table(table, walks.labels)))
+        print(printed_labels(label_table(table, walks.labels, persons=walks.persons)))
+    for sentence in persons_compared(walks):
+        print(sentence)
     if output is not None:
         n_clusters = clusters or N_CLUSTERS
         page = write_pairs_report(table, walks, output, metric=metric, n_clusters=n_clusters)
@@ -294,10 +300,10 @@ def _walks(
     reading: dict[str, Any],
     trait: str | None,
     trait_from_name: str | None,
+    person: str | None,
     with_flagged: bool,
 ) -> Walks:
     """Return all walks of a folder or a population."""
-    from eigenwalker.datasets.built_in import load_population
     from eigenwalker.study.walks import walks_of_folder, walks_of_population
 
     if source.is_dir():
@@ -307,6 +313,7 @@ def _walks(
             return walks_of_folder(
                 source,
                 trait_from_name=trait_from_name,
+                person=person,
                 with_flagged=with_flagged,
                 progress=progress,
                 **reading,
@@ -317,10 +324,10 @@ def _walks(
         )
     if trait_from_name is not None:
         raise ValueError("--trait-from-name is for folders; for a population give --trait.")
-    population = load_population(source)
+    population = load_people(source, with_flagged, person)
     with progress_bar("Looping walks") as progress:
         return walks_of_population(
-            population.without_flags() if with_flagged else population,
+            population,
             trait=trait,
             mannequin=reading["mannequin"],
             progress=progress,

@@ -46,6 +46,7 @@ PLACES = {
 }
 """Options that give parts of a stimulus."""
 _TRANSFORM = re.compile(r"stimulus\.transforms\[\d+\] \((\w+)\)\.?")
+_PERSONS = re.compile(r"take population\.with_persons\('(.*?)'\)")
 _of_this_command: dict[str, str] = {}
 
 
@@ -63,4 +64,5 @@ def in_options(sentence: str) -> str:
             sentence = sentence.replace(place, option)
         sentence = _TRANSFORM.sub(lambda found: f"--{found[1].replace('_', '-')} ", sentence)
     sentence = sentence.replace("take population.without_flags()", "give --with-flagged")
+    sentence = _PERSONS.sub(r"give --person \1", sentence)
     return reworded(sentence, _of_this_command)

@@ -40,6 +40,10 @@ Partial = Annotated[
 ]
 Subject = Annotated[str | None, option("One person of files that hold several.")]
 PopulationFile = Annotated[Path, option("Population file to write (.nc).", "-o", "--output")]
+Person = Annotated[
+    str | None,
+    option("Trait that says who walked, or 'none'; left out, known by its name.", "--person"),
+]
 ReportFolder = Annotated[Path | None, option("Folder to write a report into.", "-o", "--output")]
 TraitFromName = Annotated[
     str | None, option("Pattern with named groups over names: 'walk_(?P<style>[a-z]+)_'.")
@@ -56,13 +60,18 @@ OpenPage = Annotated[bool, option("Open the page if there is a screen.", "--open
 Seed = Annotated[int, option("The same seed gives the same people.")]
 
 
-def load_people(path: Path | None, with_flagged: bool) -> Population:
-    """Return the population of a file; without one the built-in population, named on stderr."""
+def load_people(path: Path | None, with_flagged: bool, person: str | None = None) -> Population:
+    """Return the population of a file; without one the built-in population, named on stderr.
+
+    Its persons are those of the column `person`; of none, if that is the word.
+    """
     from eigenwalker.datasets.built_in import BUILT_IN, load_population
 
     if path is None:
         print(f"Using {BUILT_IN}.", file=sys.stderr)
     population = load_population(path)
+    if person is not None:
+        population = population.with_persons(person)
     return population.without_flags() if with_flagged else population
 
 

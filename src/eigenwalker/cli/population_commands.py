@@ -14,6 +14,7 @@ from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_PARTI
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
     Partial,
+    Person,
     PopulationFile,
     Rate,
     Seed,
@@ -50,6 +51,7 @@ def fit(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    person: Person = None,
     table: Annotated[
         Path | None, option("CSV to write all into that is known of each capture.")
     ] = None,
@@ -89,6 +91,7 @@ def fit(
             rate_hz=rate,
             partial=partial,  # pyright: ignore[reportArgumentType] - checked when a file is read
             subject=subject,
+            person=person,
             low_pass_hz=low_pass,
             n_jobs=jobs,
             checkpoint=checkpoint,
@@ -139,7 +142,7 @@ def _print_problems(study: Study) -> None:
 
 
 def _print_summary(study: Study, output: Path) -> None:
-    from eigenwalker.study.messages import summary_in_words
+    from eigenwalker.study.messages import persons_in_words, summary_in_words
 
     assert study.population is not None
     read = study.files[study.files["status"] != "refused"]
@@ -149,6 +152,8 @@ def _print_summary(study: Study, output: Path) -> None:
     )
     for name, value in summary_in_words(study.files).items():
         print(f"  {name + ':':<23}{value}")
+    for sentence in persons_in_words(study.population.traits):
+        print(in_options(sentence))
     if "units" in study.population.provenance:
         print(f"Units were {study.population.provenance['units']}.")
     print(f"Population: {output}")

@@ -13,6 +13,7 @@ from eigenwalker.analysis.direction import Kind, direction
 from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_space
 from eigenwalker.analysis.walker_space import WalkerSpace
 from eigenwalker.population.features import FeatureLayout
+from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import Population
 
 MAX_TRAITS = 12
@@ -35,7 +36,7 @@ def model_traits(
     if traits is not None:
         return [_trait(axes, name) for name in traits]
     models = [_trait(axes, first)] if first else []
-    columns = {trait["column"] for trait in models}
+    columns = {trait["column"] for trait in models} | {person_column(population.traits)}
     for name in (str(name) for name in population.traits if name not in columns):
         try:
             models.append(_trait(axes, name))

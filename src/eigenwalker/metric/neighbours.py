@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -57,7 +57,9 @@ def nearest_walks(
     return pd.Series(distances, name="distance").sort_values(kind="stable")
 
 
-def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
+def label_table(
+    table: pd.DataFrame, labels: Mapping[str, str], *, persons: Mapping[str, str] | None = None
+) -> pd.DataFrame:
     """Return whether walks with the same label are nearer to each other than to others.
 
     Parameters
@@ -66,13 +68,17 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
         Distances (`pair_table`).
     labels : mapping of str to str
         Label of each walk; walks without one are left out.
+    persons : mapping of str to str, optional
+        Whose walk each is. Two walks of a person are not compared: they are alike for who walked,
+        whatever their label.
 
     Returns
     -------
     DataFrame of labels
-        ``walks``, their number; the mean distances ``within`` the label (NaN for one walk) and to
-        ``others``; ``nearest``, the share of its walks whose nearest walk has the same label; and
-        ``by_chance``, the expected share if labels were assigned at random.
+        ``walks``, their number; the mean distances ``within`` the label and to ``others`` (NaN
+        where there are none); ``nearest``, the share of its walks whose nearest walk has the same
+        label; and ``by_chance``, the mean share of that label among the walks that could be
+        nearest.
 
     Examples
     --------
@@ -87,18 +93,41 @@ def label_table(table: pd.DataFrame, labels: Mapping[str, str]) -> pd.DataFrame:
     names = [name for name in table.index if name in labels]
     if not names:
         raise ValueError(f"None of the {len(table)} walks of the table has a label.")
-    values = table.loc[names, names].to_numpy()
     label_of = np.array([labels[name] for name in names])
-    nearest = label_of[(values + np.diag(np.full(len(values), np.inf))).argmin(axis=1)]
+    compared = pairs_of_persons(names, persons)
+    nearest = _nearest(table.loc[names, names].to_numpy(), compared)
+    values = np.where(compared, table.loc[names, names].to_numpy(), np.nan)
     rows = {}
     for label in sorted(set(label_of)):
         own = label_of == label
-        n = int(own.sum())
+        known = own & (nearest >= 0)
+        shares = compared[known][:, own].sum(axis=1) / compared[known].sum(axis=1)
         rows[label] = {
-            "walks": n,
-            "within": values[np.ix_(own, own)].sum() / (n * (n - 1)) if n > 1 else np.nan,
-            "others": values[np.ix_(own, ~own)].mean() if n < len(label_of) else np.nan,
-            "nearest": float(np.mean(nearest[own] == label)),
-            "by_chance": (n - 1) / max(len(label_of) - 1, 1),
+            "walks": int(own.sum()),
+            "within": _mean(values[np.ix_(own, own)]),
+            "others": _mean(values[np.ix_(own, ~own)]),
+            "nearest": _mean(1.0 * own[nearest[known]]),
+            "by_chance": _mean(shares),
         }
     return pd.DataFrame.from_dict(rows, orient="index")
+
+
+def pairs_of_persons(names: Sequence[str], persons: Mapping[str, str] | None) -> np.ndarray:
+    """Return which walks are compared, of different persons: bool of shape (walk, walk)."""
+    who = np.array([(persons or {}).get(name) or f"\0{row}" for row, name in enumerate(names)])
+    return who[:, None] != who
+
+
+def nearest_of_others(table: pd.DataFrame, persons: Mapping[str, str] | None = None) -> np.ndarray:
+    """Return the number of the walk of another person that is nearest to each; -1 for none."""
+    return _nearest(table.to_numpy(), pairs_of_persons([str(name) for name in table], persons))
+
+
+def _nearest(values: np.ndarray, compared: np.ndarray) -> np.ndarray:
+    nearest = np.where(compared, values, np.inf).argmin(axis=1)
+    return np.where(compared.any(axis=1), nearest, -1)
+
+
+def _mean(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if known.size else float("nan")

@@ -23,6 +23,7 @@ from eigenwalker.population.correspondence import (
     posture_correlations,
 )
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
+from eigenwalker.population.persons import name_persons, persons_of
 from eigenwalker.population.population_file import (
     Stored,
     check_traits,
@@ -49,7 +50,8 @@ class Population:
         All of the same markers, form and number of harmonics.
     traits : DataFrame of shape (walker, trait)
         What is known of each walker: sex, age, ratings, file ... A column ``flag`` says why a
-        walker should be left out, a column ``person`` whose trial it is.
+        walker should be left out, a column ``person`` whose trial it is; columns with other words
+        for it are known too (``Subject``, ``ID``).
     correspondence : Correspondence, optional
         How walkers that are in correspondence already were brought there; leave it out for others.
     provenance : mapping of str to str
@@ -142,6 +144,14 @@ class Population:
             return numbers
         files = self.traits["file"].fillna("").astype(str)
         return [file or number for file, number in zip(files, numbers, strict=True)]
+
+    @property
+    def persons(self) -> np.ndarray | None:
+        """Whose walk each is, as text of shape (walker,), empty where unknown; None if nobody says.
+
+        Such as ``person``, ``Subject`` or a repeating ``ID`` says; `with_persons` decides it.
+        """
+        return persons_of(self.traits)
 
     @property
     def flagged(self) -> np.ndarray:
@@ -321,6 +331,36 @@ class Population:
     def without_flags(self) -> Population:
         """Return the population with its flags removed, so that flagged walkers count too."""
         return replace(self, traits=self.traits.assign(**{FLAG: ""}))
+
+    def with_persons(self, column: str | None) -> Population:
+        """Return the population with the column of its traits that names the person of each walk.
+
+        Parameters
+        ----------
+        column : str or None
+            It is called ``person`` from then on. None: every walk counts as of another person.
+
+        Returns
+        -------
+        Population
+
+        Raises
+        ------
+        ValueError
+            If there is no such column.
+
+        See Also
+        --------
+        persons : Whom they name.
+
+        Examples
+        --------
+        >>> people = ew.simulate_population(2, 2, seed=1)
+        >>> people = Population(people.walkers, people.traits.assign(who=["a", "a", "b", "b"]))
+        >>> people.with_persons("who").persons.tolist()
+        ['a', 'a', 'b', 'b']
+        """
+        return replace(self, traits=name_persons(self.traits, column))
 
     def add(self, walkers: Sequence[Walker], traits: pd.DataFrame) -> Population:
         """Return the population with more walkers, brought into correspondence with those here.

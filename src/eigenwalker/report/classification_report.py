@@ -20,6 +20,8 @@ from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
     multiple_inputs_sentence,
+    permutation_sentence,
+    person_sentences,
     plausibility_table,
     results_table,
     traits_table,
@@ -145,8 +147,8 @@ def _model(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
 def _results(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
     result = study.result
     blocks: list[Block] = [results_table(study)]
-    if sentence := multiple_inputs_sentence(result):
-        blocks.append(Text(sentence))
+    sentences = (permutation_sentence(result), multiple_inputs_sentence(result))
+    blocks += [Text(sentence) for sentence in sentences if sentence]
     if not isinstance(result, Classification):
         return [*blocks, figures["regression curves"]]
     missed = missed_table(study)
@@ -178,16 +180,7 @@ def _cautions(study: TraitStudy) -> list[str]:
             "These are styles that few people acted, not traits of the walkers: errors say how "
             "well the acts can be told apart, not how well people can."
         )
-    if contrast.persons is not None:
-        n_persons = len(set(contrast.persons))
-        cautions.append(
-            f"The walks are of {n_persons} persons; all walks of a person are left out together."
-        )
-    elif "person" not in study.traits and "file" in study.traits:
-        cautions.append(
-            "No column tells whose walk each is, so trials, not persons, were left out: if a "
-            "person walked more than once, errors on new people will be higher."
-        )
+    cautions += person_sentences(contrast, study.traits)
     return [
         *cautions,
         "The best number of components is picked on the curve that is reported, as in the paper; "

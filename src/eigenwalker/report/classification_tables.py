@@ -9,18 +9,20 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.analysis.classification import Classification, Regression, results_of_panels
+from eigenwalker.analysis.contrast import Contrast
 from eigenwalker.analysis.plausibility import Plausibility
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.report.blocks import Table
 from eigenwalker.report.words import TABLES, WORDS
+from eigenwalker.study.messages import persons_in_words
 
 
 def results_table(study: TraitStudy) -> Table:
     """Return how well a trait is predicted from each input."""
     units = "persons" if study.result.contrast.persons is not None else "walkers"
-    printed = printed_results(study.table, study.result.n_permutations)
+    printed = printed_results(study.result, study.table)
     return Table(
         f"Predicted of {units} left out one at a time",
         [str(column) for column in printed],
@@ -28,8 +30,12 @@ def results_table(study: TraitStudy) -> Table:
     )
 
 
-def printed_results(table: pd.DataFrame, n_permutations: int) -> pd.DataFrame:
+def printed_results(
+    result: Classification | Regression, table: pd.DataFrame | None = None
+) -> pd.DataFrame:
     """Return the results as printed: "-" where there is nothing, p with its lower limit."""
+    table = result.table() if table is None else table
+    n_permutations = result.n_permutations
     least = 1 / (1 + n_permutations)
 
     def printed_p(p: float) -> str:
@@ -43,7 +49,45 @@ def printed_results(table: pd.DataFrame, n_permutations: int) -> pd.DataFrame:
         return f"{value:.3g}" if isinstance(value, float) else str(value)
 
     printed = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
-    return printed.assign(p=[printed_p(p) for p in table["p"]])
+    printed = printed.assign(p=[printed_p(p) for p in table["p"]])
+    return printed.rename(columns={"p": p_heading(result.contrast)})
+
+
+def p_heading(contrast: Contrast) -> str:
+    """Return the heading of p values, which says if they permute within persons."""
+    return "p within persons" if contrast.varies_within_persons else "p"
+
+
+def permutation_sentence(result: Classification | Regression) -> str:
+    """Return what was permuted for p; empty where nothing was."""
+    contrast = result.contrast
+    if not result.n_permutations:
+        return ""
+    if not contrast.varies_within_persons:
+        who = "walks" if contrast.persons is None else "persons, each with all their walks"
+        return f"p permutes {contrast.trait} among {who}."
+    values = pd.Series(contrast.y).groupby(contrast.persons).nunique()
+    return (
+        f"p permutes {contrast.trait} within each person, as {(values > 1).sum()} of {len(values)} "
+        "persons have several values of it: it asks whether walks of one person are told apart, "
+        "not whether people are. Errors leave out whole persons."
+    )
+
+
+def person_sentences(contrast: Contrast, traits: pd.DataFrame) -> list[str]:
+    """Return how it is known who walked, or what to do where it is not; nothing of simulations."""
+    return [*persons_in_words(traits.iloc[contrast.rows]), *_both_sexes(contrast)]
+
+
+def _both_sexes(contrast: Contrast) -> list[str]:
+    """Return a warning if persons have several values of a trait that people do not change."""
+    if not contrast.varies_within_persons or contrast.trait.lower() not in ("sex", "gender"):
+        return []
+    values = pd.Series(contrast.y).groupby(contrast.persons).nunique()
+    return [
+        f"{contrast.trait} is not the same for all walks of a person ({values.idxmax()!r} for one):"
+        " do numbers of persons begin again in each group?"
+    ]
 
 
 def chance_sentence(result: Classification | Regression) -> str:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from eigenwalker.core.atomic_write import write_table
 from eigenwalker.metric.frame_metrics import GroupMetric
-from eigenwalker.metric.neighbours import label_table
+from eigenwalker.metric.neighbours import label_table, nearest_of_others
 from eigenwalker.plotting.difference_tables import (
     figure_difference_table,
     figure_map_of_walks,
@@ -77,10 +77,12 @@ def write_pairs_report(
             "All pairs",
             [_table_figure(table, names, order, clusters), _map(table, names, clusters, labels)],
         ),
-        Section("Each walk", [_each_walk(table, names, order, clusters, labels)]),
+        Section("Each walk", [_each_walk(table, walks, names, order, clusters, labels)]),
     ]
     if walks.labels:
-        sections.insert(1, Section("Labels", [_labels(label_table(table, walks.labels))]))
+        sections.insert(
+            1, Section("Labels", [_labels(label_table(table, walks.labels, persons=walks.persons))])
+        )
     for title, reasons in (
         ("Not compared", walks.refused),
         ("Flagged, and left out", walks.flagged),
@@ -107,6 +109,17 @@ def pairs_sentences(table: pd.DataFrame, metric: GroupMetric) -> list[str]:
         f"{len(pairs)} pairs of {len(table)} walks by {metric.name}: differences of "
         f"{pairs.min():.3g} to {pairs.max():.3g}, median {np.median(pairs):.3g}.",
         f"Most alike are {walks(pairs.argmin())}; most different {walks(pairs.argmax())}.",
+    ]
+
+
+def persons_compared(walks: Walks) -> list[str]:
+    """Return that walks of one person are not compared, in a sentence; none where none are."""
+    n_persons = len(set(walks.persons.values()))
+    if n_persons == len(walks.persons):
+        return []
+    return [
+        f"The walks are of {n_persons} persons. Nearest walks, and differences within a label and "
+        "from others, leave out walks of the same person, which are alike for who walked."
     ]
 
 
@@ -149,13 +162,14 @@ def _map(
 
 def _each_walk(
     table: pd.DataFrame,
+    walks: Walks,
     names: list[str],
     order: np.ndarray,
     clusters: np.ndarray,
     labels: list[str | None],
 ) -> Table:
     values = table.to_numpy()
-    nearest = (values + np.diag(np.full(len(values), np.inf))).argmin(axis=1)
+    nearest = nearest_of_others(table, walks.persons)
     membership = cluster_memberships(table, clusters)
     columns = ["walk", "label", "cluster", "belongs", "nearest walk", "distance", "mean of all"]
     rows = [
@@ -164,8 +178,8 @@ def _each_walk(
             labels[walk],
             int(clusters[walk]) + 1,
             f"{100 * membership[walk, clusters[walk]]:.0f} %",
-            names[nearest[walk]],
-            float(values[walk, nearest[walk]]),
+            names[nearest[walk]] if nearest[walk] >= 0 else None,
+            float(values[walk, nearest[walk]]) if nearest[walk] >= 0 else None,
             float(values[walk].sum() / (len(values) - 1)),
         ]
         for walk in order[:MAX_ROWS]
@@ -184,13 +198,17 @@ def _labels(labels: pd.DataFrame) -> Table:
             int(row.walks),
             float(row.within),
             float(row.others),
-            f"{100 * row.nearest:.0f} %",
-            f"{100 * row.by_chance:.0f} %",
+            _percentage(row.nearest),
+            _percentage(row.by_chance),
         ]
         for label, row in labels.iterrows()
     ]
     columns = ["label", "walks", "same label", "others", "nearest is of the label", "by chance"]
     return Table(TABLES["labels"], columns, rows)
+
+
+def _percentage(share: float) -> str | None:
+    return None if np.isnan(share) else f"{100 * share:.0f} %"
 
 
 def _method(walks: Walks, metric: GroupMetric) -> list[str]:
@@ -200,6 +218,7 @@ def _method(walks: Walks, metric: GroupMetric) -> list[str]:
         "Walks were brought in place, looped, registered pair by pair in phase, heading and "
         f"place, and compared along the path by the metric {metric.name}.",
         *missing_points(clips),
+        *persons_compared(walks),
         WORDS["metric"]["scale_is_unknown"],
         WORDS["metric"]["where_points_sit"],
     ]

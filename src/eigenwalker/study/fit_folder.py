@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.io.read import companion_files
+from eigenwalker.population.persons import name_persons
 from eigenwalker.population.population import FLAG, Population, flags_of, join_flags
 from eigenwalker.study.capture_table import FILE, capture_table, captures_in
 from eigenwalker.study.checkpoint import Checkpoint
@@ -75,6 +76,7 @@ def fit_folder(
     rate_hz: float | None = None,
     partial: Literal["refuse", "keep"] = "refuse",
     subject: str | None = None,
+    person: str | None = None,
     low_pass_hz: float | None = None,
     n_jobs: int = -1,
     checkpoint: str | Path | None = None,
@@ -104,6 +106,9 @@ def fit_folder(
         "keep" takes the whole frames of captures that are cut short, and flags them.
     subject : str, optional
         The person to take of captures that hold several.
+    person : str, optional
+        The trait that says who walked, or "none"; else one such as
+        ``person``, ``Subject`` or a repeating ``ID`` is taken.
     low_pass_hz : float, optional
         Cut-off of a low-pass filter, for noisy captures.
     n_jobs : int
@@ -143,6 +148,8 @@ def fit_folder(
     """
     folder = Path(folder)
     table = capture_table(folder, traits, trait_from_name)
+    if person is not None:
+        table = name_persons(table, person)
     names = table[FILE].tolist()
     if n_harmonics < 1:
         raise ValueError(f"n_harmonics={n_harmonics} is too few; give 1 or more.")

@@ -15,6 +15,12 @@ from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.errors import printable
 from eigenwalker.io.up_axis_and_unit import PERSON_MM, UNITS
 from eigenwalker.markers.label_repair import Repair
+from eigenwalker.population.persons import (
+    PERSON,
+    columns_like_persons,
+    person_column,
+    persons_of,
+)
 from eigenwalker.quality import quality as limit
 from eigenwalker.quality.quality import BONE_VARIATION, FLICKER_SHARE, Quality
 from eigenwalker.study.body_warnings import WIDE_HIPS, RetargetingWarnings
@@ -106,6 +112,46 @@ def repair_in_words(repair: Repair) -> str:
     if repair.first_frame == repair.last_frame:
         return f"{markers}, frame {repair.first_frame}"
     return f"{markers}, frames {repair.first_frame} to {repair.last_frame}"
+
+
+def persons_in_words(traits: pd.DataFrame) -> list[str]:
+    """Return who walked, by a table of traits, or what to do where that is not known.
+
+    Nothing of walkers that were not captured.
+    """
+    column, persons = person_column(traits), persons_of(traits)
+    if column is not None and persons is not None and (persons != "").any():
+        return [_persons_of_column(column, persons)]
+    if "file" not in traits:
+        return []
+    if column is not None:
+        return ["Each walk counts as of another person."]
+    sentences = [
+        "No trait is known to say who walked, so each walk counts as of another person: if "
+        "a person walked more than once, errors on new people will be higher."
+    ]
+    if like := columns_like_persons(traits):
+        names = ", ".join(map(repr, like))
+        way = f"take population.with_persons({like[0]!r})"
+        sentences.append(f"The values of {names} repeat as persons do. If they are, {way}.")
+    return sentences
+
+
+def _persons_of_column(column: str, persons: np.ndarray) -> str:
+    named = persons[persons != ""]
+    n_persons = len(set(named))
+    source = "" if column == PERSON else f", as the trait {column!r} says"
+    unknown = len(persons) - len(named)
+    rest = f"; of {unknown} nobody knows whose they are" if unknown else ""
+    if n_persons == len(named):
+        return f"Each walk is of another person{source}{rest}."
+    sentence = (
+        f"{len(named)} walks are of {n_persons} persons{source}{rest}. All walks of a person "
+    )
+    sentence += "are left out together."
+    if column != PERSON:
+        sentence += " If it says something else, take population.with_persons('none')."
+    return sentence
 
 
 def _length(millimetres: float) -> str:

@@ -15,6 +15,7 @@ from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.metric.clips import PreparedClip, as_trajectories
 from eigenwalker.metric.prepared import prepare
 from eigenwalker.metric.retargeting import retarget
+from eigenwalker.population.persons import name_persons, person_column, persons_of
 from eigenwalker.population.population import Population, check_population, flags_of
 from eigenwalker.study.body_warnings import retargeting_warnings
 from eigenwalker.study.capture_table import FILE, capture_table
@@ -33,6 +34,7 @@ class Walks:
     ``labels``, such as their style, and ``remarks`` to be minded. ``refused`` tells why captures
     could not be used, ``flagged`` what is wrong with walks that are left out for it. ``vectors``
     are walkers of a population in its feature space, of shape (feature,) each; none of captures.
+    ``persons`` are those whose walks they are, where that is known.
     """
 
     clips: dict[str, PreparedClip]
@@ -41,6 +43,7 @@ class Walks:
     flagged: dict[str, str] = field(default_factory=dict)
     remarks: dict[str, str] = field(default_factory=dict)
     vectors: dict[str, np.ndarray] = field(default_factory=dict)
+    persons: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return (
@@ -111,6 +114,7 @@ def walks_of_folder(
     folder: str | Path,
     *,
     trait_from_name: str | None = None,
+    person: str | None = None,
     with_flagged: bool = False,
     mannequin: bool = True,
     default_unit: str | None = None,
@@ -124,7 +128,10 @@ def walks_of_folder(
     folder : path
         Where to look.
     trait_from_name : str, optional
-        Pattern over names with a named group, which is the label: ``walk_(?P<style>[a-z]+)_``.
+        Pattern over names with a named group, which is the label: ``walk_(?P<style>[a-z]+)_``; a
+        group ``person`` says who walked, and other words for it do.
+    person : str, optional
+        Which group it is.
     with_flagged : bool
         Whether captures count that are flagged (`assess`).
     mannequin, default_unit, default_rate_hz
@@ -158,7 +165,10 @@ def walks_of_folder(
     (Walks(2 walks, 0 refused, 0 flagged), ['anna.c3d', 'ben.c3d'])
     """
     table = capture_table(folder, None, trait_from_name)
-    label = next((column for column in table if column != FILE), None)
+    if person is not None:
+        table = name_persons(table, person)
+    persons = dict(zip(table[FILE], persons_of(table), strict=True)) if person_column(table) else {}
+    label = next((name for name in table if name not in (FILE, person_column(table))), None)
     walks = Walks({})
     for row in ticked(table.to_dict("records"), len(table), progress):
         name = str(row[FILE])
@@ -180,7 +190,8 @@ def walks_of_folder(
             walks.clips[name] = clip
             walks.labels.update({} if label is None else {name: str(row[label])})
             walks.remarks.update({name: remark} if remark else {})
-    return replace(walks, clips=with_common_rotations(walks.clips))
+    persons = {name: persons[name] for name in walks.clips if persons.get(name)}
+    return replace(walks, clips=with_common_rotations(walks.clips), persons=persons)
 
 
 def walks_of_population(
@@ -225,6 +236,8 @@ def walks_of_population(
     check_population(population)
     labels = [] if trait is None else _labels(population, trait)
     names, flags = population.names, flags_of(population.traits)
+    persons = population.persons
+    who = {} if persons is None else dict(zip(names, persons.tolist(), strict=True))
     clips, flagged = {}, {}
     walkers = zip(names, population.walkers, flags, population.flagged, strict=True)
     for name, walker, flag, is_flagged in ticked(walkers, len(names), progress):
@@ -238,6 +251,7 @@ def walks_of_population(
         {name: label for name, label in zip(names, labels, strict=False) if name in clips},
         flagged=flagged,
         vectors={name: row for name, row in zip(names, population.X, strict=True) if name in clips},
+        persons={name: who[name] for name in clips if who.get(name)},
     )
 
 
