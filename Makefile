@@ -17,7 +17,7 @@ demo: .venv/installed
 	$(BIN)/eigenwalker demo
 
 test: .venv/installed-dev lint
-	$(BIN)/pytest -q -n auto
+	$(BIN)/pytest -q -n auto --dist loadscope
 
 lint: .venv/installed-dev
 	$(BIN)/ruff check .
@@ -28,16 +28,16 @@ lint: .venv/installed-dev
 # As the tests of a fresh clone, in an environment that was made before.
 newest: .venv/bin/python
 	$(BIN)/python -m pip install --quiet --upgrade --upgrade-strategy eager -e ".[dev]"
-	$(BIN)/pytest -q -n auto
+	$(BIN)/pytest -q -n auto --dist loadscope
 
 lowest: .venv-lowest/installed
-	PYTHONPATH=src .venv-lowest/bin/python -m pytest -q -n 2 -W default -p no:cacheprovider $(LOWEST_TESTS)
+	PYTHONPATH=src .venv-lowest/bin/python -m pytest -q -n 2 --dist loadscope -W default -p no:cacheprovider $(LOWEST_TESTS)
 
 .venv-lowest/installed: pyproject.toml .ci/lowest.py
 	@test -n "$(LOWEST_PYTHON)" || { echo "The lowest versions have wheels for Python 3.11 and 3.12; found neither. Name one: make lowest LOWEST_PYTHON=/path/to/python3.11"; exit 1; }
 	$(LOWEST_PYTHON) -m venv .venv-lowest
 	$(LOWEST_PYTHON) .ci/lowest.py > .venv-lowest/requirements.txt
-	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: -r .venv-lowest/requirements.txt
+	.venv-lowest/bin/python -m pip install --quiet --no-compile --only-binary :all: -r .venv-lowest/requirements.txt
 	@touch $@
 
 bench: .venv/installed-dev
@@ -53,7 +53,7 @@ bench: .venv/installed-dev
 	@touch $@
 
 .venv/installed-dev: pyproject.toml $(PAGE) | .venv/bin/python
-	$(BIN)/python -m pip install --quiet -e ".[dev]"
+	$(BIN)/python -m pip install --quiet --no-compile -e ".[dev]"
 	@if command -v npm >/dev/null; then cd frontend && npm ci --silent || echo "npm could not fetch what tests of the browser's side need; they are skipped"; fi
 	@touch $@ .venv/installed
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import sys
 import tempfile
 import warnings
@@ -23,6 +24,8 @@ from eigenwalker.core.walker import Form, Walker
 from eigenwalker.simulation.walk import simulate_walk
 
 if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
     from eigenwalker.metric import PreparedClip
 
 _KERNELS = sorted((Path(__file__).parents[1] / "src" / "eigenwalker" / "metric").glob("*.py"))
@@ -95,6 +98,19 @@ def _orthogonal_walker(
         frequency_hz=frequency_hz,
         form=form,
     )
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium, one for all tests that visit a page."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+    if found is None:
+        pytest.skip("chromium is not installed, so nobody visits the page")
+    with playwright.sync_playwright() as starting:
+        started = starting.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield started
+        started.close()
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import shutil
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 SIZES = {"desktop": (1440, 900), "wide": (1920, 1080), "phone": (390, 844), "small": (360, 640)}
 LATER = "requestAnimationFrame(() => requestAnimationFrame(() => {{ {} }}))"
@@ -42,9 +40,6 @@ DROP = """([name, text]) => {
         document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true }));
     }
 }"""
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None, reason="chromium is not installed, so nobody visits the page"
-)
 
 
 @pytest.fixture(scope="module")
@@ -57,14 +52,6 @@ def address(model: dict, tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("page") / "index.html"
     path.write_text(interactive_page(model, report="report.html"), encoding="utf-8")
     return path.as_uri()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with playwright.sync_playwright() as starting:
-        started = starting.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 def untimed_table() -> bytes:

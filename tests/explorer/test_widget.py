@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +18,6 @@ traitlets = pytest.importorskip("traitlets", reason="anywidget is not installed"
 pytest.importorskip("anywidget", reason="anywidget is not installed")
 
 from eigenwalker.explorer.widget import WalkerWidget, show  # noqa: E402 - needs anywidget
-
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 
 
 @pytest.fixture(scope="module")
@@ -195,18 +191,6 @@ def harness(widget: WalkerWidget) -> str:
     return HARNESS.replace("VALUES", json.dumps(kept).replace("<", "\\u003c")).replace(
         "SCRIPT", script
     )
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed, so nothing is drawn")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as started:
-        chromium = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
 
 
 def opened(browser, widget: WalkerWidget, folder: Path):
