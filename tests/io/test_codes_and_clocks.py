@@ -12,8 +12,10 @@ import xarray as xr
 
 import eigenwalker as ew
 from corpus.sound_files import c3d_file, walk_of
+from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.missing_codes import without_codes
+from eigenwalker.io.timestamps import on_even_clock
 from eigenwalker.io.up_axis_and_unit import UpAxisAssumed
 
 WALK = walk_of(1.0, rate_hz=120)
@@ -77,6 +79,91 @@ def test_unix_times_are_read(tmp_path, scale):
     assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-6)
     assert walk.time.values[0] == 0
     assert walk.attrs["clock_start_s"] == pytest.approx(1606735971.123)
+
+
+@pytest.mark.parametrize("unit", ["s", "ms", "us", "ns"])
+@pytest.mark.parametrize("suffix", [".trc", ".sto", ".tsv"])
+def test_every_table_reads_unix_times(tmp_path, suffix, unit):
+    scale = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[unit]
+    time = [f"{(1606735971.125 + each) * scale:.6f}" for each in WALK.time.values]
+    walk = _read(tmp_path, _of_format(suffix, time), f"a{suffix}")
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-6)
+    assert walk.attrs["clock_start_s"] == pytest.approx(1606735971.125)
+    assert walk.attrs.get("time_unit_guessed", "s") == unit
+
+
+def _of_format(suffix: str, time: list[str]) -> str:
+    """Return the walk as a TRC, STO or Qualisys table of 120 frames a second."""
+    n, names = len(NAMES), "\t".join(NAMES)
+    head = {
+        ".trc": "PathFileType\t4\nDataRate\tNumFrames\tNumMarkers\tUnits\n"
+        f"120\t{len(WALK)}\t{n}\tmm\nFrame#\tTime\t" + "\t\t\t".join(NAMES) + "\n"
+        "\t\t" + "\t".join(f"{axis}{i + 1}" for i in range(n) for axis in "XYZ"),
+        ".sto": f"a\nnRows={len(WALK)}\nnColumns={3 * n + 1}\nUnits=mm\nendheader\ntime\t"
+        + "\t".join(f"{name}_t{axis}" for name in NAMES for axis in "xyz"),
+        ".tsv": f"NO_OF_FRAMES\t{len(WALK)}\nNO_OF_MARKERS\t{n}\nFREQUENCY\t120\n"
+        f"MARKER_NAMES\t{names}\nFrame\tTime\t"
+        + "\t".join(f"{name} {axis}" for name in NAMES for axis in "XYZ"),
+    }[suffix]
+    rows = [
+        "\t".join(
+            [*([] if suffix == ".sto" else [f"{at + 1}"]), moment, *map("{:.2f}".format, row)]
+        )
+        for at, (moment, row) in enumerate(
+            zip(time, WALK.values.reshape(len(WALK), -1), strict=True)
+        )
+    ]
+    return "\n".join([head, *rows]) + "\n"
+
+
+@pytest.mark.parametrize("suffix", [".trc", ".tsv"])
+@pytest.mark.parametrize("time", ["0", "", "1.60673597e+09"])
+def test_times_that_say_nothing_leave_the_declared_rate(tmp_path, suffix, time):
+    walk = _read(tmp_path, _of_format(suffix, [time] * len(WALK)), f"a{suffix}")
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(120, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("rate_hz", "decimals"), [(120, 2), (120, 3), (60, 2), (30, 2), (75, 2), (29.97, 3), (240, 4)]
+)
+def test_times_of_few_digits_give_the_rate_that_the_whole_column_shows(rate_hz, decimals):
+    file = CaptureFile(Path("a.csv"), b"")
+    time = np.round(np.arange(400) / rate_hz, decimals)
+    even = on_even_clock(file, np.arange(400.0)[:, None, None], time)
+    assert even.rate_hz == pytest.approx(rate_hz, rel=1e-5)
+    np.testing.assert_array_equal(even.positions.ravel(), np.arange(400))
+    assert "rounded" in even.attrs["rate_reason"]
+
+
+@pytest.mark.parametrize(
+    ("step", "rate_hz", "others"),
+    [("0.008", 120, "117.6"), ("0.01", 100, "66.67"), ("0.02", 50, "66.67"), ("0.004", 250, "222")],
+)
+def test_a_step_that_may_be_rounded_is_said(tmp_path, step, rate_hz, others):
+    decimals = len(step) - 2
+    time = [f"{at * float(step):.{decimals}f}" for at in range(len(WALK))]
+    with pytest.warns(ew.io.RateAssumed, match=rf"step of {step} s .* rounded.*{others}"):
+        walk = _read(tmp_path, _table(time=time))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(rate_hz)
+    assert walk.attrs["rate_assumed"]
+
+
+@pytest.mark.parametrize(
+    ("step", "rate_hz"), [("0.0083", 120), ("0.017", 60), ("0.033", 30), ("0.010", 100)]
+)
+def test_a_step_that_one_rate_has_is_of_that_rate(tmp_path, step, rate_hz):
+    decimals = len(step) - 2
+    time = [f"{at * float(step):.{decimals}f}" for at in range(len(WALK))]
+    walk = _read(tmp_path, _table(time=time))
+    assert 1 / np.diff(walk.time.values).mean() == pytest.approx(rate_hz)
+
+
+def test_times_of_too_few_digits_are_refused_with_the_way_out(tmp_path):
+    for time in (["5"] * len(WALK), [f"{each:.0f}" for each in WALK.time.values]):
+        with pytest.raises(UnreadableFile, match=r"times that go on.*(none differs|too few digits)"
+                           r".*rate_hz="):  # fmt: skip
+            _read(tmp_path, _table(time=time))
+        assert len(_read(tmp_path, _table(time=time), rate_hz=120)) == len(WALK)
 
 
 def test_dates_are_read_or_refused_with_the_way_out(tmp_path):

@@ -154,8 +154,9 @@ def _print_summary(study: Study, output: Path) -> None:
         print(f"  {name + ':':<23}{value}")
     for sentence in persons_in_words(study.population.traits):
         print(in_options(sentence))
-    if "units" in study.population.provenance:
-        print(f"Units were {study.population.provenance['units']}.")
+    for assumed in ("units", "rates"):
+        if assumed in study.population.provenance:
+            print(f"{assumed.capitalize()} were {study.population.provenance[assumed]}.")
     print(f"Population: {output}")
 
 

@@ -15,13 +15,12 @@ import xarray as xr
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.missing_codes import without_codes
-from eigenwalker.io.number_format import noted
+from eigenwalker.io.number_format import N_SAMPLED, noted
 from eigenwalker.io.text_cells import cells, cut_number, marks_in, refuse_cut_number, table_of
-from eigenwalker.io.timestamps import TimedPositions, on_clock
+from eigenwalker.io.timestamps import TIME_UNITS, TimedPositions, clock_in_seconds, on_clock
 from eigenwalker.io.to_trajectories import FileFrame, labelled_points, own_name, trajectories_of
 
-MAX_START_S = 1e7
-"""Captures whose clock shows a later time than this are counted from their first frame."""
+_DECIMALS = re.compile(r"-?\d+[.,](\d{1,12})", re.ASCII)
 _COUNT = re.compile(r"\d{1,9}", re.ASCII)
 _UNLABELLED = re.compile(r"\*\d*|u_?\d+|un(labell?ed|named|identified).*", re.IGNORECASE)
 
@@ -64,12 +63,16 @@ def interleaved(n_points: int, first: int) -> list[tuple[int, int, int]]:
 
 @dataclass(frozen=True)
 class TableValues:
-    """Numbers of a table: positions (time, marker, 3), times and their unit, and attributes."""
+    """Numbers of a table: positions (time, marker, 3), times and their unit, and attributes.
+
+    `time_decimals` is the number of decimals of all times; None where it differs.
+    """
 
     positions: np.ndarray
     time: np.ndarray | None = None
     time_unit: str | None = None
     attrs: Mapping[str, object] = field(default_factory=dict[str, object])
+    time_decimals: int | None = None
 
 
 def table_values(file: CaptureFile, table: TextTable) -> TableValues:
@@ -100,7 +103,17 @@ def table_values(file: CaptureFile, table: TextTable) -> TableValues:
         values[:, : 3 * n_points].reshape(len(values), n_points, 3),
         values[:, -1] if table.time_column is not None else None,
         attrs={**attrs, **noted(marks)},
+        time_decimals=_time_decimals(rows, table),
     )
+
+
+def _time_decimals(rows: Sequence[str], table: TextTable) -> int | None:
+    """Return with how many decimals all times are written; None where it differs."""
+    if table.time_column is None:
+        return None
+    times = (cells(row, table.separator)[table.time_column] for row in rows[:N_SAMPLED])
+    found = {len(hit[1]) if (hit := _DECIMALS.fullmatch(time)) else None for time in times}
+    return found.pop() if len(found) == 1 else None
 
 
 def _whole_rows(file: CaptureFile, table: TextTable) -> Sequence[str]:
@@ -132,11 +145,12 @@ def table_trajectories(
     positions, codes = without_codes(values.positions)
     clocked = TimedPositions(positions, rate_hz or 0.0, start_s)
     attrs = {**values.attrs, **({"missing_codes": codes} if codes else {})}
-    if (time := values.time) is not None:
-        if abs(time[0]) > MAX_START_S:  # of a clock that began long before the capture
-            attrs["clock_start_s"] = float(time[0])
-            time = time - time[0]
-        clocked = on_clock(file, positions, time, rate_hz)
+    if values.time is not None:
+        time, unit, of_clock = clock_in_seconds(file, values.time, values.time_unit, rate_hz)
+        decimals = values.time_decimals
+        resolution = 0.0 if decimals is None else 10.0**-decimals * TIME_UNITS[unit]
+        clocked = on_clock(file, positions, time, rate_hz, resolution_s=resolution)
+        attrs = {**attrs, **of_clock, **clocked.attrs}
     positions, names, points = labelled_points(clocked.positions, names, _is_labelled)
     positions[np.isnan(positions).any(axis=2)] = np.nan
     if np.isnan(positions).all():

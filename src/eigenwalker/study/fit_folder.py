@@ -21,7 +21,12 @@ from eigenwalker.population.persons import name_persons
 from eigenwalker.population.population import FLAG, Population, flags_of, join_flags
 from eigenwalker.study.capture_table import FILE, capture_table, captures_in
 from eigenwalker.study.checkpoint import Checkpoint
-from eigenwalker.study.messages import flag_of, rebuilt_in_words, summarise
+from eigenwalker.study.messages import (
+    assumed_rate_in_words,
+    flag_of,
+    rebuilt_in_words,
+    summarise,
+)
 from eigenwalker.study.process_capture import CaptureResult, process_capture
 
 _Outcome = tuple[Walker | None, dict[str, Any]]
@@ -211,6 +216,10 @@ def _provenance(rows: pd.DataFrame, form: Form) -> dict[str, str]:
             f"guessed from the height of the body for {len(guessed)} of {len(rows)} captures, "
             f"whose files name none ({units})"
         )
+    assumed = rows["rate_assumed"][rows["rate_assumed"] != ""]
+    if len(assumed):
+        most = assumed.value_counts().index[0]
+        provenance["rates"] = f"assumed for {len(assumed)} of {len(rows)} captures ({most})"
     return provenance
 
 
@@ -312,6 +321,7 @@ def _row(result: CaptureResult) -> dict[str, Any]:
         "marker_set": result.walk.attrs.get("marker_set", ""),
         "unit": str(capture.attrs.get("unit", "mm")),
         "unit_guessed": quality.unit_guessed,
+        "rate_assumed": assumed_rate_in_words(capture),
         "verdict": quality.verdict,
         FLAG: flag,
     }

@@ -161,6 +161,7 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
         "format": capture.attrs["format"],
         "unit": capture.attrs.get("unit"),
         "rate_hz": rate_hz,
+        "rate_reason": capture.attrs.get("rate_reason", ""),
         "duration_s": len(capture) / rate_hz if rate_hz else None,
         "n_frames": len(capture),
         "missing_samples": float(missing.mean()),

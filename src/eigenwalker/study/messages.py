@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
-from eigenwalker.core.trajectories import MILLIMETRES
+from eigenwalker.core.trajectories import MILLIMETRES, sampling_rate
 from eigenwalker.io.errors import printable
 from eigenwalker.io.up_axis_and_unit import PERSON_MM, UNITS
 from eigenwalker.markers.label_repair import Repair
@@ -96,6 +97,13 @@ def capture_lines(result: CaptureResult) -> list[str]:
     if quality.unit_guessed:
         lines.append(f"The file names no unit; {quality.unit} was guessed from the height.")
     return lines
+
+
+def assumed_rate_in_words(capture: xr.DataArray) -> str:
+    """Return the rate that a capture is assumed to have, and why; empty where it names one."""
+    if not capture.attrs.get("rate_assumed"):
+        return ""
+    return f"{sampling_rate(capture):.6g} Hz, {capture.attrs['rate_reason']}"
 
 
 def rebuilt_in_words(quality: Quality) -> str:
@@ -291,6 +299,8 @@ def inspection_in_words(facts: Mapping[str, object]) -> dict[str, str | list[str
         written["n_strides"] = _strides(facts)
     if "marker_set" in facts:
         written["marker_set"] = _marker_set(facts)
+    if facts.get("rate_reason"):
+        written["rate_hz"] += f", {facts['rate_reason']}"
     if facts.get("unit_guessed"):
         written["unit"] = f"{written.get('unit', 'unknown')}, guessed from the height of the body"
     return {inspection[name][0]: value for name, value in written.items()}

@@ -15,22 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
+from eigenwalker.io.rounded_times import rate_of_step
 from eigenwalker.io.text_cells import number, plain_numbers
 from eigenwalker.io.timestamps import RATES_HZ
 
 MAX_JOINTS = 2000
 """More joints are no person's skeleton but a damaged file."""
-EXACT_HZ = (25, 50, 100, 200, 250, 500, 1000)
-"""Usual rates whose frame times have three decimals or fewer: 0.01 is not rounded."""
-MOST_USUAL_HZ = (120, 60, 30, 100, 240, 200, 50)
-MAX_ROUNDING = 0.01
-"""Frame times that are rounded by more than this share tell no rate."""
-USUAL_RATES_HZ = (
-    *(24, 25, 30, 48, 50, 60, 72, 75, 80, 90, 96, 100, 120, 125, 128, 144, 150, 160, 180, 192),
-    *(200, 240, 250, 256, 300, 360, 400, 480, 500, 512, 600, 960, 1000),
-    *(24000 / 1001, 30000 / 1001, 60000 / 1001, 120000 / 1001, 240000 / 1001),
-)
-
 _DECLARED = re.compile(
     r"\s*Frames\s*(?::\s*)?(\d{1,9})\s*Frame\s+Time\s*(?::\s*)?(\S+)", re.IGNORECASE
 )
@@ -167,20 +157,8 @@ def _table(file: CaptureFile, rows: Sequence[str], n_channels: int) -> np.ndarra
 
 
 def _rate(file: CaptureFile, written: str) -> tuple[float, dict[str, object]]:
-    """Return the usual rate whose frame time, rounded as `written`, is the one in the file.
-
-    Where several are, it is said, and the most usual of them is taken.
-    """
+    """Return the usual rate whose frame time, rounded as `written`, is the one in the file."""
     step = float(written)
     decimals = len(written.partition(".")[2]) if "e" not in written.lower() else 12
     rounding = max(0.5000001 * 10.0**-decimals, 1e-6 * step)
-    near = [rate for rate in USUAL_RATES_HZ if abs(1 / rate - step) <= rounding]
-    whole = [rate for rate in near if rate == int(rate)]
-    nearest = float(min(whole or near or [1 / step], key=lambda rate: abs(1 / rate - step)))
-    is_exact = nearest in EXACT_HZ and abs(step * nearest - 1) < 1e-9
-    if file.rate_hz or len(whole) < 2 or is_exact or rounding < MAX_ROUNDING * step:
-        return nearest, {}
-    rate_hz = float(next((rate for rate in MOST_USUAL_HZ if rate in whole), nearest))
-    least, most = 1 / (step + rounding), 1 / max(step - rounding, 1e-9)
-    reason = f"as its frame time {written} is rounded and may mean {least:.4g} to {most:.4g}"
-    return file.frame_rate(file.default_rate_hz, usual_hz=rate_hz, reason=reason)
+    return rate_of_step(file, step, rounding, f"frame time {written}")

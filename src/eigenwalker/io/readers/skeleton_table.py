@@ -18,7 +18,7 @@ from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.text_cells import cells, points_of, separator_of
 from eigenwalker.io.text_table import TableValues, TextTable, table_trajectories, table_values
-from eigenwalker.io.timestamps import TIME_UNITS, counts_frames, in_seconds, parse_rate, usual_unit
+from eigenwalker.io.timestamps import TIME_UNITS, counts_frames, parse_rate
 from eigenwalker.io.to_trajectories import FileFrame, unit_named, without_zeros
 from eigenwalker.io.up_axis_and_unit import Unit, up_axis
 
@@ -88,8 +88,8 @@ def body_trajectories(
         _refuse_picture(file, values.positions, names)
     positions = without_zeros(values.positions, unless_always=kind != "Kinect")
     time, rate_hz, assumed = values.time, file.rate_hz, {}
-    of_frames = time is not None and values.time_unit is None and counts_frames(time)
-    time = None if of_frames else time
+    if kind == "Kinect" and time is not None and not values.time_unit and counts_frames(time):
+        time = None
     if rate_hz is None and "rate_hz" in notes:
         time, rate_hz = None, parse_rate(notes["rate_hz"], "rate_hz", file)
     elif rate_hz is None and time is None and kind == "Kinect":
@@ -97,23 +97,13 @@ def body_trajectories(
         rate_hz, assumed = file.frame_rate(None, usual_hz=KINECT_RATE_HZ, reason=reason)
     elif time is None:
         rate_hz = rate_hz or file.default_rate_hz
-    if time is not None:
-        unit_of_time = values.time_unit or usual_unit(time)
-        if rate_hz is None and unit_of_time != "s" and not values.time_unit:
-            assumed = {"time_unit_guessed": unit_of_time}
-        time = in_seconds(time, unit_of_time)
     up = notes.get("up") if re.fullmatch("-?[xyz]", notes.get("up", "")) else None
     if time is None and rate_hz is None:
-        raise file.error(
-            "a column time_s",
-            "times in whole steps of 1, which number the frames or lack their unit"
-            if of_frames
-            else f"{list(names[:3])}"[:120] + " and others, but no time",
-            "name the rate: read_mocap(..., rate_hz=...)",
-        )
+        got = f"{list(names[:3])}"[:120] + " and others, but no time"
+        raise file.error("a column time_s", got, "name the rate: read_mocap(..., rate_hz=...)")
     return table_trajectories(
         file,
-        TableValues(positions, time, attrs={**values.attrs, **assumed}),
+        replace(values, positions=positions, time=time, attrs={**values.attrs, **assumed}),
         names,
         format_name=kind,
         rate_hz=rate_hz,
