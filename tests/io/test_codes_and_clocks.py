@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import struct
 import warnings
 from pathlib import Path
 
@@ -62,6 +63,26 @@ def test_codes_are_found_however_often_they_stand(code, share):
     assert codes == [f"{code:g}"]
     assert np.isnan(positions[lost]).all()
     np.testing.assert_array_equal(positions[~lost], values[~lost])
+
+
+@pytest.mark.parametrize("code", [999.0, -1.0, 9999.0, -99.0, 123.0])
+@pytest.mark.parametrize("unit_mm", [1, 1000])
+def test_one_number_that_repeats_in_gaps_is_a_code(code, unit_mm):
+    values = WALK.values / unit_mm
+    values[50:60, 3:5] = code
+    positions, codes = without_codes(values)
+    assert codes == [f"{code:g}"]
+    assert np.isnan(positions[50:60, 3:5]).all()
+    np.testing.assert_array_equal(np.delete(positions, [3, 4], 1), np.delete(values, [3, 4], 1))
+
+
+def test_a_code_in_one_coordinate_is_found_where_it_stays():
+    values = WALK.values.copy()
+    values[50:60, 3, 0] = 9999
+    values[20, 5, 0] = 9999  # which a walk of ten metres passes
+    positions, codes = without_codes(values)
+    assert codes == ["9999"]
+    assert np.isnan(positions).any(axis=2).sum() == 10 + int(np.isnan(values).any(axis=2).sum())
 
 
 @pytest.mark.filterwarnings("ignore::eigenwalker.io.UnitGuessed")
@@ -185,6 +206,21 @@ def test_marks_between_thousands_are_no_decimals(tmp_path, mark, separator):
     assert walk.attrs["thousands_mark"] == mark
 
 
+@pytest.mark.parametrize("mark", ["'", "\u2019", "\u00a0", "\u2009", "\u202f", "_", " "])
+@pytest.mark.parametrize(("decimal", "separator"), [(".", ","), (".", "\t"), (",", ";")])
+def test_other_marks_between_thousands_are_left_out(tmp_path, mark, decimal, separator):
+    grouped = _table(number="{:,.1f}", separator="|").replace(",", mark).replace(".", decimal)
+    walk = _read(tmp_path, grouped.replace("|", separator), default_rate_hz=120)
+    np.testing.assert_allclose(walk.values, WALK.values, atol=0.051)
+    assert walk.attrs["thousands_mark"] == mark
+
+
+def test_a_mark_that_is_not_between_thousands_is_refused_with_the_way_out(tmp_path):
+    content = _table().replace(".", "'", 600)
+    with pytest.raises(UnreadableFile, match="decimal point and no other mark"):
+        _read(tmp_path, content, default_rate_hz=120)
+
+
 def test_numbers_of_frames_are_no_times(tmp_path):
     content = _table(time=[f"{number}" for number in range(len(WALK))])
     with pytest.raises(UnreadableFile, match=r"whole steps of 1.*rate_hz="):
@@ -211,15 +247,17 @@ def test_three_decimals_behind_commas_stay_decimals(tmp_path):
     np.testing.assert_allclose(walk.values, WALK.values, atol=0.51)
 
 
-def test_utf_16_is_read_in_every_format(tmp_path):
+def test_utf_16_and_32_are_read_in_every_format(tmp_path):
     for suffix in (".bvh", ".trc", ".csv"):
         whole = WALK.interpolate_na("time", fill_value="extrapolate")
         path = ew.write_mocap(whole, tmp_path / f"a{suffix}")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             plain = ew.read_mocap(path)
-            path.write_bytes(path.read_text().encode("utf-16"))
-            np.testing.assert_array_equal(ew.read_mocap(path).values, plain.values)
+            text = path.read_text()
+            for encoding in ("utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le"):
+                path.write_bytes(text.encode(encoding))
+                np.testing.assert_array_equal(ew.read_mocap(path).values, plain.values)
 
 
 def test_a_long_c3d_without_trial_parameters_is_read_whole(tmp_path):
@@ -278,6 +316,46 @@ def _sparse_bvh() -> str:
 def test_limits_are_checked_before_the_work_is_done(tmp_path, name, content):
     with pytest.raises(UnreadableFile, match="at most"):
         _read(tmp_path, content, name)
+
+
+def test_a_skeleton_that_few_numbers_move_has_a_limit(tmp_path):
+    bones = "".join(
+        f"begin\nid {at}\nname b{at}\ndirection 0 1 0\nlength 1\naxis 0 0 0 XYZ\nend\n"
+        for at in range(1, 1500)
+    )
+    (tmp_path / "a.asf").write_text(
+        ":version 1.10\n:name a\n:units\nmass 1\nlength 1\nangle deg\n"
+        ":root\norder TX TY TZ RX RY RZ\n"
+        f"axis XYZ\nposition 0 0 0\norientation 0 0 0\n:bonedata\n{bones}:hierarchy\nbegin\n"
+        + "".join(f"{'root' if at == 1 else f'b{at - 1}'} b{at}\n" for at in range(1, 1500))
+        + "end\n"
+    )
+    motion = ":FULLY-SPECIFIED\n:DEGREES\n" + "".join(
+        f"{at}\nroot 0 0 0 0 0 0\n" for at in range(1, 3001)
+    )
+    with pytest.raises(UnreadableFile, match="positions at most"):
+        _read(tmp_path, motion, "a.amc")
+
+
+def test_a_netcdf_file_gives_no_more_than_it_has(tmp_path):
+    """Ten thousand variables that lie in one place would be 80 times the file."""
+    n = 20_000
+
+    def word(text: str) -> bytes:
+        return struct.pack(">i", len(text)) + text.encode().ljust(-(-len(text) // 4) * 4, b"\0")
+
+    dims = struct.pack(">ii", 10, 1) + word("d") + struct.pack(">i", n)
+    absent = struct.pack(">ii", 0, 0)
+    n_variables = 200
+    begin = 8 + len(dims) + 8 + 8 + n_variables * (8 + 8 + 8 + 12)
+    variables = b"".join(
+        word(f"v{at:03}") + struct.pack(">ii", 1, 0) + absent + struct.pack(">iii", 6, 8 * n, begin)
+        for at in range(n_variables)
+    )
+    head = b"CDF\x01" + struct.pack(">i", 0) + dims + absent
+    content = head + struct.pack(">ii", 11, n_variables) + variables + bytes(8 * n)
+    with pytest.raises(UnreadableFile, match="damaged"):
+        _read(tmp_path, content, "a.nc")
 
 
 def test_no_message_is_long():

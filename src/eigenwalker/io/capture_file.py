@@ -22,6 +22,14 @@ _KEEP_PARTIAL = (
 )
 
 
+_MARKS = {
+    "utf-32": (b"\xff\xfe\x00\x00", b"\x00\x00\xfe\xff"),
+    "utf-16": (b"\xff\xfe", b"\xfe\xff"),
+}
+_WIDE = {"utf-32-le": (4, 0), "utf-32-be": (4, 3), "utf-16-le": (2, 0), "utf-16-be": (2, 1)}
+"""Bytes of a letter, and which of them is not 0 in plain ones."""
+
+
 class RateAssumed(UserWarning):
     """A file names no frame rate, so the usual one of its format was taken.
 
@@ -137,13 +145,34 @@ def read_bytes(path: Path, *, max_bytes: int = MAX_BYTES, expected: str = "a cap
 
 
 def as_utf8(content: bytes) -> bytes:
-    """Return a text in UTF-16, by its mark, as UTF-8; other contents as they are."""
-    if not content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    """Return a text in UTF-16 or UTF-32 as UTF-8, by its mark or its zeros; others as they are."""
+    encoding = wide_encoding(content)
+    if encoding is None:
         return content
     try:
-        return codecs.getincrementaldecoder("utf-16")().decode(content).encode()
-    except UnicodeDecodeError:
+        return codecs.getincrementaldecoder(encoding)().decode(content).encode()
+    except UnicodeError:
         return content
+
+
+def wide_encoding(content: bytes) -> str | None:
+    """Return the encoding of a text of two or four bytes a letter; None for any other content.
+
+    Without a mark at its start it is known by zeros: all letters of its beginning but some are
+    plain ones, at the same place among the bytes of each.
+    """
+    for encoding, mark in _MARKS.items():
+        if content.startswith(mark):
+            return encoding
+    beginning = content[:256]
+    for encoding, (width, at) in _WIDE.items():
+        letters = beginning[at::width]
+        zeros = b"".join(beginning[other::width] for other in range(width) if other != at)
+        plain = sum(byte in b"\t\r\n" or 32 <= byte < 127 for byte in letters)
+        n = len(beginning) // width
+        if n >= 8 and plain > 0.9 * n and zeros.count(0) > 0.9 * n * (width - 1):
+            return encoding
+    return None
 
 
 def is_text(content: bytes) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import cache
 from itertools import islice
 from typing import NamedTuple
 
@@ -12,11 +13,8 @@ MIN_GROUPED = 20
 N_SAMPLED = 2000
 """Rows in which numbers such as 1.503 are looked at."""
 
-_GROUPED = {
-    ",": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?", re.ASCII),
-    ".": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?", re.ASCII),
-}
-_WHOLE = re.compile(r"[+-]?[1-9]\d*", re.ASCII)
+APART = ("'", "\u2019", "\u00a0", "\u2009", "\u202f", "_", " ")
+"""Marks between thousands that are no decimals anywhere: Swiss, French and SI style, programs'."""
 
 
 class NumberMarks(NamedTuple):
@@ -26,9 +24,23 @@ class NumberMarks(NamedTuple):
     thousands: str = ""
 
     def plain(self, text: str) -> str:
-        """Return numbers as Python writes them."""
-        text = text.replace(self.thousands, "") if self.thousands else text
+        """Return numbers as Python writes them; with marks between thousands, one number."""
+        if self.thousands:
+            if _grouped(self.thousands).fullmatch(text.strip()):
+                text = text.replace(self.thousands, "")
+            elif self.decimal == "," and "." in text:
+                return text  # a number of another column, such as a time
         return text.replace(",", ".") if self.decimal == "," else text
+
+
+@cache
+def _grouped(mark: str) -> re.Pattern[str]:
+    decimal = {",": "[.]", ".": ","}.get(mark, "[.,]")
+    mark = re.escape(mark)
+    return re.compile(rf"[+-]?[1-9]\d{{0,2}}({mark}\d{{3}})+({decimal}\d*)?", re.ASCII)
+
+
+_WHOLE = re.compile(r"[+-]?[1-9]\d*", re.ASCII)
 
 
 def noted(marks: NumberMarks) -> dict[str, str]:
@@ -36,19 +48,41 @@ def noted(marks: NumberMarks) -> dict[str, str]:
     return {"thousands_mark": marks.thousands} if marks.thousands else {}
 
 
-def number_marks(rows: Iterable[Sequence[str]], *, has_commas: bool) -> NumberMarks:
+def mark_apart(lines: Sequence[str], separator: str | None) -> str:
+    """Return the mark of `APART` that may stand between thousands in lines, empty if none does."""
+    marks = APART if separator else APART[:-1]
+    present = [mark for mark in marks if any(mark in line for line in lines)]
+    return next((m for m in present if any(_between(m).search(line) for line in lines)), "")
+
+
+@cache
+def _between(mark: str) -> re.Pattern[str]:
+    return re.compile(rf"\d{re.escape(mark)}\d{{3}}(?!\d)", re.ASCII)
+
+
+def number_marks(
+    rows: Iterable[Sequence[str]], *, has_commas: bool, apart: str = ""
+) -> NumberMarks:
     """Return the marks in the coordinates of a table; `has_commas` is whether some have a comma.
 
-    A mark stands between thousands if three digits follow it in all numbers that have it, none of
-    which begins with 0, and whole numbers stand beside them: 503 below 1,503.
+    A comma or point stands between thousands if three digits follow it in all numbers that have it,
+    none of which begins with 0, and whole numbers stand beside them: 503 below 1,503. `apart` is a
+    mark of `APART` that the table has: it does so where three digits follow it.
     """
+    decimal = "," if has_commas else "."
+    if apart:
+        rows = list(rows)
+        marked = [cell.strip() for row in rows for cell in row if apart in cell.strip()]
+        if marked:
+            is_mark = all(map(_grouped(apart).fullmatch, marked))
+            return NumberMarks(decimal, apart if is_mark else "")
     if has_commas:
         rows = list(rows)
         if _is_grouped(rows, ","):
             return NumberMarks(".", ",")
     if _is_grouped(islice(rows, N_SAMPLED), "."):
         return NumberMarks(",", ".")
-    return NumberMarks("," if has_commas else ".")
+    return NumberMarks(decimal)
 
 
 def _is_grouped(rows: Iterable[Sequence[str]], mark: str) -> bool:
@@ -58,7 +92,7 @@ def _is_grouped(rows: Iterable[Sequence[str]], mark: str) -> bool:
         for cell in row:
             word = cell.strip()
             if mark in word:
-                if not _GROUPED[mark].fullmatch(word):
+                if not _grouped(mark).fullmatch(word):
                     return False
                 n_marked += 1
             beside = beside or decimal in word or _WHOLE.fullmatch(word) is not None

@@ -15,7 +15,7 @@ import numpy as np
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import EXPORT_AGAIN
 from eigenwalker.io.missing_codes import is_code
-from eigenwalker.io.number_format import N_SAMPLED, NumberMarks, number_marks
+from eigenwalker.io.number_format import N_SAMPLED, NumberMarks, mark_apart, number_marks
 
 MAX_SIZE = 1e9
 """No length, angle or time in a sound file is larger than this, whatever its unit."""
@@ -62,7 +62,8 @@ def number(word: str, where: str, file: CaptureFile) -> float:
     """Return the number that a word is; refuse words that are none, and absurd numbers."""
     value = float(word) if _NUMBER.fullmatch(word) else np.nan
     if not abs(value) < MAX_SIZE:
-        advice = "write numbers with a decimal point" if "," in word else EXPORT_AGAIN
+        grouped = re.search(r"\d[^\d.eE+-]\d", word)
+        advice = "write numbers with a decimal point and no other mark" if grouped else EXPORT_AGAIN
         raise file.error(f"a finite number in {where}", repr(word[:40]), advice)
     return value
 
@@ -112,7 +113,7 @@ def table_of(
     rows = np.empty((len(lines), len(wanted)))
     room = sum(map(len, lines)) + n_columns
     for at, line in enumerate(lines):
-        plain = line if separator == "," else marks.plain(line)
+        plain = line if separator == "," or marks.thousands else marks.plain(line)
         words = cells(plain, separator) if '"' in plain else plain.split(separator)
         if len(words) > n_columns:
             words = [*words[:n_columns], *(word for word in words[n_columns:] if word.strip())]
@@ -125,30 +126,34 @@ def table_of(
             raise file.error(f"{n_columns} cells in line {first + at}", f"{len(words)}{reason}")
         if take:
             words = take(words)[:-1]
+        if marks.thousands:
+            words = [marks.plain(word) for word in words]
         row = plain_numbers(words, None if clock is None else -1)
-        rows[at] = _cells(words, first + at, file, marks, clock) if row is None else row
+        rows[at] = _cells(words, first + at, file, clock) if row is None else row
     return rows[:, len(others) :]
 
 
 def marks_in(lines: Sequence[str], separator: str | None, columns: Sequence[int]) -> NumberMarks:
     """Return the marks in the numbers of a table."""
+    apart = mark_apart(lines, separator)
     if separator == ",":
         has_commas = any('"' in line for line in lines)
     else:
         has_commas = any(re.search(r"\d,\d", line) for line in lines)
-    if not has_commas and not any("." in line for line in lines[:N_SAMPLED]):
+    if not (apart or has_commas) and not any("." in line for line in lines[:N_SAMPLED]):
         return NumberMarks()
     rows = (cells(line, separator) for line in lines)
     coordinates = ([row[at] for at in columns if at < len(row)] for row in rows)
-    marks = number_marks(coordinates, has_commas=has_commas)
+    if apart and separator == ",":
+        coordinates = list(coordinates)
+        has_commas = any("," in cell for row in coordinates for cell in row)
+    marks = number_marks(coordinates, has_commas=has_commas, apart=apart)
     return NumberMarks() if separator == "," and not marks.thousands else marks
 
 
-def _cells(
-    words: Sequence[str], line: int, file: CaptureFile, marks: NumberMarks, clock: int | None
-) -> list[float]:
+def _cells(words: Sequence[str], line: int, file: CaptureFile, clock: int | None) -> list[float]:
     """Return the numbers in the cells of a line one by one."""
-    *words, last = [marks.plain(word.strip()) for word in words] if marks.thousands else words
+    *words, last = words
     if clock is None:
         return [_cell(word, line, file) for word in (*words, last)]
     return [*(_cell(word, line, file) for word in words), clock_time(last, line, file)]

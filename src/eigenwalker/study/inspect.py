@@ -165,6 +165,7 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
         "duration_s": len(capture) / rate_hz if rate_hz else None,
         "n_frames": len(capture),
         "missing_samples": float(missing.mean()),
+        "missing_codes": list(capture.attrs.get("missing_codes", ())),
         "missing_markers": capture.marker.values[missing.all(axis=0)].tolist(),
         "markers": capture.marker.values.tolist(),
     }
