@@ -106,14 +106,26 @@ class WrongJoint(NamedTuple):
         and right (ratio), ``"order"`` (the first is not above the second), ``"side"`` (the first is
         not to the left of the second), ``"place"`` (both are in one), ``"middle"`` (the first is
         not between the others), ``"breadth"`` of the body (over that of people), ``"link"``
-        (coefficient of variation of a distance).
+        (coefficient of variation of a distance); of markers on the skin ``"exchanged"`` (with one
+        another) and ``"elsewhere"`` (than in the marker set).
     points : tuple of str
-        The joints.
+        The joints or markers.
     value : float
         A ratio, without a unit; NaN where the kind has none.
     """
 
-    kind: Literal["length", "unequal", "order", "side", "place", "middle", "breadth", "link"]
+    kind: Literal[
+        "length",
+        "unequal",
+        "order",
+        "side",
+        "place",
+        "middle",
+        "breadth",
+        "link",
+        "exchanged",
+        "elsewhere",
+    ]
     points: tuple[str, ...]
     value: float = float("nan")
 

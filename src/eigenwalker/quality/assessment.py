@@ -18,6 +18,7 @@ from eigenwalker.io.up_axis_and_unit import body_height, head_and_feet
 from eigenwalker.markers.label_repair import Rebuilt, Repair, records_in, repair_labels
 from eigenwalker.quality.anthropometry import wrong_joints
 from eigenwalker.quality.ground_contact import ground_contact
+from eigenwalker.quality.marker_places import wrong_markers
 from eigenwalker.quality.quality import Quality
 
 LIMBS = tuple(
@@ -132,22 +133,27 @@ def judge(
     walk: xr.DataArray | None,
     record: CaptureRecord,
     problem: str = "",
+    *,
+    labelled: xr.DataArray | None = None,
 ) -> Quality:
     """Return what is known of a capture and of the walk that was made of it.
 
     The walk holds steady strides in place, or is None, and `problem` says why there are none.
+    `labelled` holds the markers as captured, where joints were made of them.
     """
     names = capture.marker.values.tolist()
     missing = np.isnan(capture.values).any(axis=2).mean(axis=0)
     rate_hz = sampling_rate(capture)
-    strides = repaired
+    strides, steady = repaired, slice(None)
     if walk is not None:
         start = int(np.searchsorted(repaired.time.values, walk.time.values[0]))
-        strides = repaired[start : start + len(walk)]
+        steady = slice(start, start + len(walk))
+        strides = repaired[steady]
         if walk.sizes["marker"] < repaired.sizes["marker"]:
             strides = strides.sel(marker=walk.marker)
     height_mm, lean_deg = _height_and_lean(repaired.values, names)
     seen = strides if walk is None else walk
+    markers, mirrored = wrong_markers((repaired if labelled is None else labelled)[steady])
     return Quality(
         rate_hz=rate_hz,
         duration_s=len(capture) / rate_hz,
@@ -156,13 +162,13 @@ def judge(
             name: float(share) for name, share in zip(names, missing, strict=True) if share
         },
         **record._asdict(),
-        sides_swapped=walk is not None and sides_swapped(walk.values, names),
+        sides_swapped=mirrored or (walk is not None and sides_swapped(walk.values, names)),
         bone_length_variation=bone_length_variation(strides),
         height_mm=height_mm,
         lean_deg=lean_deg,
         extent_mm=_extent(repaired.values),
         thickness=thickness(seen.values) if len(names) >= FEWEST_POINTS else np.nan,
-        wrong_joints=wrong_joints(seen),
+        wrong_joints=markers or wrong_joints(seen),
         problem=problem,
         **(
             {}

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import MILLIMETRES, sampling_rate
 from eigenwalker.io.errors import printable
 from eigenwalker.io.up_axis_and_unit import PERSON_MM, UNITS
@@ -206,6 +207,9 @@ def _values(quality: Quality) -> dict[str, object]:
         "speed": quality.speed_mm_s / 1000,
         "backwards": -quality.speed_mm_s / 1000,
         "reversed": _words()["reversed"]["yes" if quality.knees_bend_under_load else "no"],
+        "wrong_points": "Joints are not where those of people are"
+        if all({*each.points} <= {*JOINTS.markers} for each in quality.wrong_joints)
+        else "Labels are wrong",
         "wrong": "; ".join(wrong[:3]) + (f" and {len(wrong) - 3} more" if len(wrong) > 3 else ""),
         "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
         "rises": "rises" if quality.climb > 0 else "falls",

@@ -169,12 +169,12 @@ def process_capture(
         main_walk = walk.sel(marker=list(JOINTS.markers)) if joints == "full" else walk
         walker = DECOMPOSE[form](main_walk, n_harmonics=n_harmonics)
     except ValueError as error:
-        quality = judge(main, main, main_walk, CaptureRecord.of(main), str(error))
+        quality = judge(main, main, main_walk, CaptureRecord.of(main), str(error), labelled=capture)
         raise NoWalkError(str(error), main, quality) from error
     return CaptureResult(
         walk=walk,
         walker=walker,
-        quality=judge(main, main, main_walk, CaptureRecord.of(main)),
+        quality=judge(main, main, main_walk, CaptureRecord.of(main), labelled=capture),
         repairs=pd.DataFrame(points.attrs.get("repairs", ()), columns=Repair._fields),
         gaps=pd.DataFrame(_gaps(points, walk), columns=_WHERE),
         left_out=pd.DataFrame(_left_out(points, walk), columns=_WHERE),
