@@ -1,6 +1,6 @@
-"""What the papers found in people and what of it shows in the built-in ones, along each axis.
+"""What the papers found in people shows in the built-in ones, as each axis is dragged.
 
-Not all does: the hips' own phase is the same in both sexes; see docs/simulation.md.
+But for shoulders narrower than hips, which joint centres do not show: see docs/simulation.md.
 """
 
 import numpy as np
@@ -78,7 +78,7 @@ def test_the_upper_body_sways_more_in_men(sexes):
 
 def test_men_take_more_room(sexes):
     woman, man = (np.ptp(walk.sel(axis="y").values) for walk in sexes)
-    assert man > 1.15 * woman
+    assert man > 1.18 * woman
 
 
 def turned(sexes, path):
@@ -91,9 +91,12 @@ def test_hips_less_shoulders_turn_round_as_the_larger_sway_changes_place(sexes):
     assert turned(sexes, lambda walk: sideways(walk, "hip") - sideways(walk, "shoulder")) > 150
 
 
-def test_the_phase_of_the_hips_themselves_is_nearly_the_same_in_both_sexes(sexes):
-    """The opposite phases that Troje (2002, The little difference) reports are not reproduced."""
-    assert turned(sexes, lambda walk: sideways(walk, "hip")) < 30
+def test_hips_themselves_move_to_the_side_in_opposite_phase(sexes):
+    """Against the stride: left ankles are furthest ahead at the same moment (Troje 2002)."""
+    assert turned(sexes, lambda walk: sideways(walk, "hip")) > 150
+    assert turned(sexes, lambda walk: walk.sel(marker="left_ankle", axis="x").values) < 10
+    for walk in sexes:
+        assert np.ptp(sideways(walk, "hip")) > 5
 
 
 def test_women_and_men_themselves_sway_as_their_poles_do(people):
@@ -140,9 +143,9 @@ def test_the_sexes_overlap_as_in_troje(people):
         name: jackknife_curves(who.part(part), sex).fewest_errors
         for name, (who, part) in inputs.items()
     }
-    assert errors["size"] < errors["all"] < 11
-    assert errors["dynamics"] < errors["structure"]
-    assert errors["all"] < errors["structure"] < 16
+    assert errors["size"] < errors["all"] < errors["dynamics"] < errors["structure"]
+    for name, paper in {"size": 3, "all": 7, "structure": 11, "dynamics": 6}.items():
+        assert abs(errors[name] - paper) <= 3
 
 
 @pytest.mark.parametrize(("over_ground", "power"), [(True, -0.5), (False, -0.14)])

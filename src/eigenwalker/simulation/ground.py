@@ -64,7 +64,7 @@ class Ground:
         self._paths = np.concatenate([trunk, trunk])
         self._by = _derivatives(self._legs, self._paths)
         self._yaw = np.radians(person["foot_progression_deg"])
-        curves = trunk_curves(person, gait.effort)
+        curves = trunk_curves(person, body, gait)
         rotations = trunk_rotations({name: trunk @ curves[name] for name in curves}, "pelvis")
         ahead, self.sway, rise = pelvis_paths(person, gait)
         self._hips = np.concatenate(

@@ -46,7 +46,8 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
 
     The vertical range grows from 27 mm at 0.7 m/s to 48 mm at 1.6, the lateral one shrinks from
     70 to 39 mm (Orendurff et al. 2004), both in bodies of average size: larger ones move by as
-    much more, at speeds that rise with the root of the leg (dynamic similarity, Alexander 1989).
+    much more, at speeds that rise with the root of the leg (dynamic similarity, Alexander 1989). A negative lateral
+    range is a path away from the foot that stands.
     """
     stride_length = person["stride_share"] * body.height
     speed = stride_length * person["frequency_hz"]
@@ -62,7 +63,7 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
         stance=person["stance_share"] - 0.1 * (dimensionless - 0.38),
         step_width=max(person["step_width_mm"], 45.0),
         vertical_range=max(size * (27 + 21 * faster) + person["vertical_mm"], 12.0),
-        lateral_range=max(size * (70 - 31 * faster) + person["lateral_mm"], 10.0),
+        lateral_range=size * (70 - 31 * faster) + person["lateral_mm"],
     )
 
 
@@ -80,12 +81,16 @@ def _swing_filter() -> np.ndarray:
 _SWING_FILTER = _swing_filter()
 
 
-def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.ndarray]:
+def trunk_curves(
+    person: Mapping[str, float], body: Body, gait: GaitParameters
+) -> dict[str, np.ndarray]:
     """Return Fourier coefficients, in radians, of pelvis and trunk against the room.
 
     The trunk's are the norms of trunk on pelvis and of the pelvis added up: a person's trunk does
-    not copy what is particular about the pelvis but for half of its rotation.
+    not copy what is particular about the pelvis but for half of its rotation. It leans against the
+    pelvis' path to the side, so that shoulders sway by what they were drawn to, whatever hips do.
     """
+    effort = gait.effort
 
     def curve(name: str, factor: str | None = None, lag: str | None = None) -> np.ndarray:
         norm = np.radians(norm_coefficients(name, effort, PELVIS_HARMONICS))
@@ -97,12 +102,14 @@ def trunk_curves(person: Mapping[str, float], effort: float) -> dict[str, np.nda
     pelvis_tilt, trunk_tilt = curve("pelvis_tilt"), np.zeros(2 * PELVIS_HARMONICS + 1)
     pelvis_tilt[0] += np.radians(person["pelvis_tilt_deg"])
     trunk_tilt[0] = np.radians(person["trunk_tilt_deg"])
+    own_lean = delay(lean * person["trunk_lean_factor"], person["trunk_lean_lag"])
+    against = pelvis_paths(person, gait)[1] / body.shoulder[2]
     return {
         "pelvis_tilt": pelvis_tilt,
         "pelvis_obliquity": curve("pelvis_obliquity", "obliquity_factor", "obliquity_lag"),
         "pelvis_rotation": rotation,
         "trunk_tilt": trunk_tilt,
-        "trunk_obliquity": delay(lean * person["trunk_lean_factor"], person["trunk_lean_lag"]),
+        "trunk_obliquity": own_lean + against,
         "trunk_rotation": twist + 0.5 * (rotation + curve("pelvis_rotation")),
     }
 

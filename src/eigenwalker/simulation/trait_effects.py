@@ -46,7 +46,7 @@ def draw_people(
         in `PARAMETERS`; else for each SD of the trait. ``{}`` switches all these effects off.
     over_ground : bool
         Whether they walk over ground, where stride frequency falls with the root of height (the
-        pendulum law), rather than on a belt, where it hardly does.
+        pendulum law), rather than on a belt, where it hardly does, and hips move less to the side.
     balanced : bool
         Whether chance is taken out of the effects: body mass index, height, age and moods are then
         unrelated to each other, and what is drawn for a person is unrelated to them, and to sex
@@ -103,6 +103,8 @@ def draw_people(
         values[name] = mean + parameter.sd * (score + shift)
     taller = values["height_mm"] / average_person()["height_mm"]
     values["frequency_hz"] *= taller ** frequency_exponent(over_ground)
+    for name, more in PEOPLE["over_ground"].items():
+        values[name] += more * over_ground
     traits = {
         "sex": np.where(scores["sex"] > 0, "male", "female"),
         "age_years": rated["age"],
@@ -118,10 +120,14 @@ def draw_people(
 def frequency_exponent(over_ground: bool) -> float:
     """Return the power of height with which stride frequency goes.
 
-    Over ground that of a pendulum (Alexander 1989). On a belt that of the sexes of Troje (2002),
-    0.845 and 0.836 Hz, at heights of 1629 and 1757 mm.
+    Over ground that of a pendulum (Alexander 1989). On a belt that by which the women and men of
+    Troje (2002) differ, at their mean heights.
     """
-    return -0.5 if over_ground else -0.14
+    if over_ground:
+        return -0.5
+    frequency, height = PEOPLE["belt"]["frequency_hz"], PARAMETERS["height_mm"]
+    slower = np.log(frequency["male"] / frequency["female"])
+    return float(slower / np.log(height.male / height.female))
 
 
 def _balanced(

@@ -31,7 +31,7 @@ def walk_cycle_frames(
     Angles have the shape (frame,), the path of the pelvis point has (frame, 3), in millimetres.
     """
     waves = harmonic_basis(strides.phase, PELVIS_HARMONICS)
-    angles = {name: waves @ curve for name, curve in trunk_curves(person, gait.effort).items()}
+    angles = {name: waves @ curve for name, curve in trunk_curves(person, body, gait).items()}
     pelvis = waves @ cycle.pelvis.T
     pelvis += strides.body_lengthening[:, None] * (waves @ cycle.pelvis_slope.T)
     pelvis[:, :2] += strides.wander
