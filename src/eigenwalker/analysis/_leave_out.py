@@ -14,8 +14,8 @@ from typing import Self
 
 import numpy as np
 
-from eigenwalker.analysis.discriminant import Order, order_of_components
-from eigenwalker.analysis.walker_space import Scale, constant_features, divisors, spanned_dimensions
+from eigenwalker.analysis.discriminant_weights import Order, order_of_components
+from eigenwalker.analysis.span import Scale, constant_features, divisors, spanned_dimensions
 
 _NUMBERS_AT_ONCE = 2**17
 """Size of the standardised walkers of several folds that fit a processor's cache: a megabyte."""

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from eigenwalker.analysis.discriminant import refuse_missing, two_classes
-from eigenwalker.analysis.walker_space import constant_features
+from eigenwalker.analysis.span import constant_features
 from eigenwalker.core.arguments import check_labels, check_numbers
 
 

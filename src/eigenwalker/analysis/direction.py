@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
-from eigenwalker.analysis.walker_space import WalkerSpace
+if TYPE_CHECKING:
+    from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
+    from eigenwalker.analysis.walker_space import WalkerSpace
 
 Kind = Literal["discriminant", "mean_difference"]
 Units = Literal["sd", "raw", "classmean"]
-Discriminant = DiscriminantClassifier | DiscriminantRegressor
 
 
 def direction(
     space: WalkerSpace,
-    discriminant: Discriminant,
+    discriminant: DiscriminantClassifier | DiscriminantRegressor,
     *,
     kind: Kind = "discriminant",
     units: Units = "sd",
@@ -73,37 +73,53 @@ def direction(
     >>> (space.average_walker_ + step).round(6).tolist()
     [6.5, 4.5]
     """
-    for name, choice, choices in (("kind", kind, Kind), ("units", units, Units)):
-        if choice not in get_args(choices):
-            raise ValueError(
-                f"{name}={choice!r} is unknown; choose from {', '.join(get_args(choices))}."
-            )
     c = discriminant.coef_
     if len(c) != len(space.eigenwalkers_):
         raise ValueError(
             f"The discriminant was fitted on {len(c)} columns, the space has "
             f"{len(space.eigenwalkers_)} eigenwalkers; fit it on space.transform(walkers)."
         )
-    scores = c if kind == "discriminant" else discriminant.pattern_
-    if units != "raw":
-        advance = float(c @ scores)  # how much c k changes along the step
-        if not advance > 0:
-            raise ValueError(
-                "The discriminant is the same for all walkers it was fitted on, so there is no "
-                "direction to exaggerate; the trait may not vary with any component that was used."
-            )
-        scores = scores * _length(discriminant, units) / advance
+    scores = step_in_scores(
+        c, discriminant.pattern_, discriminant.spread_, getattr(discriminant, "class_means_", None),
+        kind=kind, units=units,
+    )  # fmt: skip
     return scores @ space.eigenwalkers_
 
 
-def _length(discriminant: Discriminant, units: Units) -> float:
-    """How much c k changes in one step."""
-    if units == "sd":
-        return discriminant.spread_
-    if not isinstance(discriminant, DiscriminantClassifier):
+def step_in_scores(
+    c: np.ndarray,
+    pattern: np.ndarray,
+    spread: float,
+    class_means: np.ndarray | None,
+    *,
+    kind: Kind,
+    units: Units,
+) -> np.ndarray:
+    """Return the step of `direction` along the eigenwalkers: shape (component,)."""
+    for name, choice, choices in (("kind", kind, Kind), ("units", units, Units)):
+        if choice not in get_args(choices):
+            raise ValueError(
+                f"{name}={choice!r} is unknown; choose from {', '.join(get_args(choices))}."
+            )
+    scores = c if kind == "discriminant" else pattern
+    if units == "raw":
+        return scores
+    advance = float(c @ scores)  # how much c k changes along the step
+    if not advance > 0:
+        raise ValueError(
+            "The discriminant is the same for all walkers it was fitted on, so there is no "
+            "direction to exaggerate; the trait may not vary with any component that was used."
+        )
+    length = spread if units == "sd" else _half_distance(c, class_means)
+    return scores * length / advance
+
+
+def _half_distance(c: np.ndarray, class_means: np.ndarray | None) -> float:
+    """How much c k changes from the middle between two classes to either."""
+    if class_means is None:
         raise ValueError(
             "units='classmean' is half the distance of two classes, and a continuous trait has "
             "none; use units='sd'."
         )
-    first, second = discriminant.class_means_ @ discriminant.coef_
+    first, second = class_means @ c
     return (second - first) / 2

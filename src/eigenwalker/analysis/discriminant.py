@@ -5,7 +5,7 @@
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
-from typing import Literal, Self, get_args
+from typing import Self
 
 import numpy as np
 import pandas as pd
@@ -15,9 +15,8 @@ from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted
 
+from eigenwalker.analysis.discriminant_weights import Order, discriminant_weights
 from eigenwalker.core.sklearn_validation import validate_data
-
-Order = Literal["standardised", "raw", "variance"]
 
 
 class _Discriminant(BaseEstimator):
@@ -26,18 +25,10 @@ class _Discriminant(BaseEstimator):
 
     def _fit_traits(self, K: np.ndarray, r: np.ndarray, *, centred: bool) -> None:
         """Solve ``c K = r`` by least squares and use the components that contribute most."""
-        middle = K.mean(axis=0) if centred else np.zeros(K.shape[1])
-        level = r.mean() if centred else 0.0
-        c = np.linalg.lstsq(K - middle, r - level, rcond=None)[0]
-        self.order_ = order_of_components(c, K.std(axis=0, ddof=1), self.order)
-        used = self.order_[: self._n_used(K.shape[1])]
-        self.coef_ = np.zeros_like(c)
-        self.coef_[used] = c[used]
-        self.intercept_ = float(level - middle @ self.coef_)
-        projections = K @ self.coef_
-        self.spread_ = float(projections.std(ddof=1))
-        self.pattern_ = np.zeros_like(c)
-        self.pattern_[used] = K[:, used].T @ (projections - projections.mean()) / (len(K) - 1)
+        fitted = discriminant_weights(
+            K, r, centred=centred, n_components=self._n_used(K.shape[1]), order=self.order
+        )
+        self.coef_, self.intercept_, self.order_, self.spread_, self.pattern_ = fitted
 
     def _n_used(self, n_columns: int) -> int:
         if self.n_components is None:
@@ -237,23 +228,6 @@ class DiscriminantRegressor(RegressorMixin, _Discriminant):
     def predict(self, X: ArrayLike) -> np.ndarray:
         """Return the trait of each walker, in its own units."""
         return self._projections(X)
-
-
-def order_of_components(c: np.ndarray, spread: np.ndarray, order: Order) -> np.ndarray:
-    """Return components from the highest contribution to the discriminant to the lowest.
-
-    Weights c have the shape (component, ...); the standard deviations of the scores, `spread`,
-    broadcast against it. Contributions within 1e-12 of the highest are ties, and keep their order.
-    """
-    if order not in get_args(Order):
-        raise ValueError(f"order={order!r} is unknown; choose from {', '.join(get_args(Order))}.")
-    contribution = {
-        "standardised": np.abs(c) * spread,
-        "raw": np.abs(c),
-        "variance": np.broadcast_to(spread, c.shape),
-    }[order]
-    highest = contribution.max(axis=0, initial=np.finfo(float).tiny)
-    return np.argsort(-np.round(contribution / highest, 12), axis=0, kind="stable")
 
 
 def two_classes(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

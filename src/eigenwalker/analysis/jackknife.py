@@ -17,7 +17,7 @@ from sklearn.metrics import r2_score, root_mean_squared_error
 
 from eigenwalker.analysis._leave_out import LeaveOutSVD, discriminant_sums
 from eigenwalker.analysis._task import Task, class_task, number_task
-from eigenwalker.analysis.discriminant import Order
+from eigenwalker.analysis.discriminant_weights import Order
 from eigenwalker.analysis.walker_space import Scale
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.progress import Progress, ticked

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eigenwalker.analysis.contrast import Contrast, trait_contrast
-from eigenwalker.analysis.direction import Discriminant, Kind, Units, direction
-from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis.direction import Kind, Units, step_in_scores
+from eigenwalker.analysis.discriminant_weights import Weights, discriminant_weights
+from eigenwalker.analysis.span import Span, span_of
 from eigenwalker.population.population import Population
+
+if TYPE_CHECKING:
+    from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
+    from eigenwalker.analysis.walker_space import WalkerSpace
 
 N_EIGENWALKERS = 10
 """Eigenwalkers that the synthesiser of Troje (2002) uses."""
@@ -27,12 +33,12 @@ class TraitAxis:
     step : array of shape (feature,)
         Add alpha times this to a walker; it leads towards ``contrast.positive``. Zero outside
         `columns`.
-    space : WalkerSpace
-        Fitted on these columns of the walkers.
-    discriminant : DiscriminantClassifier or DiscriminantRegressor
-        Fitted on their scores.
+    walkers : array of shape (walker, column)
+        What it was fitted on: these columns of the contrast's walkers.
     columns : array of int
         Features that the discriminant uses.
+    span, weights
+        What the walkers span, and the discriminant of their scores, in numbers.
 
     See Also
     --------
@@ -45,9 +51,27 @@ class TraitAxis:
 
     contrast: Contrast
     step: np.ndarray
-    space: WalkerSpace
-    discriminant: Discriminant
+    walkers: np.ndarray
     columns: np.ndarray
+    span: Span
+    weights: Weights
+
+    @cached_property
+    def space(self) -> WalkerSpace:
+        """The fitted space, as an estimator."""
+        from eigenwalker.analysis.walker_space import WalkerSpace
+
+        return WalkerSpace(n_components=len(self.span.eigenwalkers)).fit(self.walkers)
+
+    @cached_property
+    def discriminant(self) -> DiscriminantClassifier | DiscriminantRegressor:
+        """The discriminant of the walkers' scores, as a fitted estimator."""
+        from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
+
+        discriminant = (
+            DiscriminantClassifier() if self.contrast.two_classes else DiscriminantRegressor()
+        )
+        return discriminant.fit(self.space.transform(self.walkers), self.contrast.y)
 
     def __repr__(self) -> str:
         contrast = self.contrast
@@ -55,12 +79,12 @@ class TraitAxis:
 
     def positions(self, vectors: np.ndarray) -> np.ndarray:
         """Return where walkers (walker, feature) lie along the axis, in steps from the average."""
-        average = self._projections(self.space.average_walker_)
-        one_step = self._projections(self.space.average_walker_ + self.step[self.columns])
+        average = self._projections(self.span.average_walker)
+        one_step = self._projections(self.span.average_walker + self.step[self.columns])
         return (self._projections(vectors[:, self.columns]) - average) / (one_step - average)
 
     def _projections(self, walkers: np.ndarray) -> np.ndarray:
-        return self.space.transform(np.atleast_2d(walkers)) @ self.discriminant.coef_
+        return self.span.scores(np.atleast_2d(walkers)) @ self.weights.c
 
 
 def trait_axis(
@@ -117,18 +141,19 @@ def trait_axis(
     """
     contrast = trait_contrast(population, trait)
     columns = population.layout.columns(part)
-    space = strongest_space(population.X[np.ix_(contrast.rows, columns)], n_components)
-    return axis_within(space, population, contrast, columns, kind=kind, units=units)
+    span = strongest_span(population.X[np.ix_(contrast.rows, columns)], n_components)
+    return axis_within(span, population, contrast, columns, kind=kind, units=units)
 
 
-def strongest_space(walkers: np.ndarray, n_components: int = N_EIGENWALKERS) -> WalkerSpace:
-    """Return the space of the first few eigenwalkers, or of all where there are fewer."""
-    n_spanned = len(WalkerSpace().fit(walkers).eigenwalkers_)
-    return WalkerSpace(n_components=min(n_components, n_spanned)).fit(walkers)
+def strongest_span(walkers: np.ndarray, n_components: int = N_EIGENWALKERS) -> Span:
+    """Return the span of the first few eigenwalkers, or of all where there are fewer."""
+    if n_components < 1:
+        raise ValueError(f"n_components={n_components} must be 1 or more.")
+    return span_of(walkers).strongest(n_components)
 
 
 def axis_within(
-    space: WalkerSpace,
+    span: Span,
     population: Population,
     contrast: Contrast,
     columns: np.ndarray,
@@ -136,10 +161,15 @@ def axis_within(
     kind: Kind = "discriminant",
     units: Units = "sd",
 ) -> TraitAxis:
-    """Return the axis of a trait within a space fitted on these columns of the contrast's rows."""
-    scores = space.transform(population.X[np.ix_(contrast.rows, columns)])
-    discriminant = DiscriminantClassifier() if contrast.two_classes else DiscriminantRegressor()
-    discriminant.fit(scores, contrast.y)
+    """Return the axis of a trait within the span of these columns of the contrast's rows."""
+    walkers = population.X[np.ix_(contrast.rows, columns)]
+    scores, y = span.scores(walkers), contrast.y
+    two = contrast.two_classes
+    weights = discriminant_weights(scores, y, centred=not two)
+    means = np.array([scores[y == sign].mean(axis=0) for sign in (-1, 1)]) if two else None
     step = np.zeros(population.X.shape[1])
-    step[columns] = direction(space, discriminant, kind=kind, units=units)
-    return TraitAxis(contrast, step, space, discriminant, columns)
+    along = step_in_scores(
+        weights.c, weights.pattern, weights.spread, means, kind=kind, units=units
+    )
+    step[columns] = along @ span.eigenwalkers
+    return TraitAxis(contrast, step, walkers, columns, span, weights)

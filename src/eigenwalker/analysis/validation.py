@@ -14,7 +14,7 @@ from sklearn.metrics import r2_score, root_mean_squared_error
 
 from eigenwalker.analysis._leave_out import LeaveOutSVD
 from eigenwalker.analysis._task import rows_of_groups, task_of
-from eigenwalker.analysis.discriminant import Order
+from eigenwalker.analysis.discriminant_weights import Order
 from eigenwalker.analysis.jackknife import correlation
 from eigenwalker.analysis.walker_space import Scale
 from eigenwalker.core.blas_threads import one_blas_thread

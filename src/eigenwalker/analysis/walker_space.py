@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
 from sklearn.utils.validation import check_is_fitted
 
+from eigenwalker.analysis.span import Scale, Span, span_of
 from eigenwalker.core.sklearn_validation import validate_data
-
-Scale = str | None | ArrayLike
 
 
 class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):
@@ -92,28 +91,14 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
             `scale` is none of the above.
         """
         W: np.ndarray = validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
-        self.average_walker_ = W.mean(axis=0)
-        self.scale_ = divisors(W, self.scale)
-        standardised = (W - self.average_walker_) / self.scale_
-        constant = constant_features(W)
-        standardised[:, constant] = 0
-        # Once more, since the rounded mean of a feature far from 0 would look like variance.
-        standardised -= standardised.mean(axis=0)
-        singular_values, axes = _principal_axes(standardised)
-        axes[:, constant] = 0
-        n_used = self._n_used(len(axes), W.shape)
-        variances = singular_values**2 / (len(W) - 1)
-        self.eigenwalkers_ = axes[:n_used] * self.scale_  # eq. 7
-        self.explained_variance_ = variances[:n_used]
-        self.explained_variance_ratio_ = variances[:n_used] / variances.sum()
+        span = span_of(W, self.scale)
+        used = span.strongest(self._n_used(len(span.variances), W.shape))
+        self.average_walker_, self.scale_ = used.average_walker, used.scale
+        self.eigenwalkers_, self.explained_variance_ = used.eigenwalkers, used.variances
+        self.explained_variance_ratio_ = used.variances / span.variances.sum()
         return self
 
     def _n_used(self, n_spanned: int, shape: tuple[int, int]) -> int:
-        if n_spanned == 0:
-            raise ValueError(
-                f"All {shape[0]} walkers are the same in all {shape[1]} features; "
-                "a space needs walkers that differ."
-            )
         if self.n_components is None:
             return n_spanned
         if not 1 <= self.n_components <= n_spanned:
@@ -127,8 +112,8 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
         """Return the scores K (walker, component) of walkers (walker, feature): eq. 8."""
         check_is_fitted(self)
         W = validate_data(self, X, dtype=np.float64, reset=False)
-        axes = self.eigenwalkers_ / self.scale_
-        return ((W - self.average_walker_) / self.scale_) @ axes.T
+        span = Span(self.average_walker_, self.scale_, self.eigenwalkers_, self.explained_variance_)
+        return span.scores(W)
 
     def inverse_transform(self, K: ArrayLike) -> np.ndarray:
         """Return the walkers (walker, feature) of scores (walker, component): eq. 6."""
@@ -149,57 +134,3 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
     @property
     def _n_features_out(self) -> int:
         return len(self.eigenwalkers_)
-
-
-def divisors(X: np.ndarray, scale: Scale) -> np.ndarray:
-    """Return what each feature is divided by before PCA: u of Troje (2002), eq. 4.
-
-    Above 0 everywhere; 1 for a feature that does not vary.
-    """
-    n_features = X.shape[1]
-    if scale is None:
-        return np.ones(n_features)
-    if isinstance(scale, str):
-        if scale != "sd":
-            raise ValueError(
-                f"scale={scale!r} is unknown; give 'sd', None, or one divisor a feature."
-            )
-        return np.where(constant_features(X), 1.0, X.std(axis=0, ddof=1))
-    given = np.array(scale, dtype=float)
-    if given.shape != (n_features,) or not (np.isfinite(given).all() and (given > 0).all()):
-        raise ValueError(
-            f"scale must be one divisor above 0 for each of {n_features} features; "
-            f"got an array of shape {given.shape} with least value {given.min(initial=np.inf):.4g}."
-        )
-    return given
-
-
-def constant_features(X: np.ndarray) -> np.ndarray:
-    """Return which features do not vary, up to rounding of the largest number in the table.
-
-    A feature that is zero by construction, such as the mean position of the pelvis, is some 1e-14
-    mm in floating point; standardising would enlarge that to a unit.
-    """
-    rounding = 10 * np.finfo(float).eps * np.abs(X).max(initial=0)
-    return np.ptp(X, axis=0) <= rounding
-
-
-def _principal_axes(standardised: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values and axes (component, feature), signs fixed, as many as the walkers span."""
-    _, singular_values, axes = np.linalg.svd(standardised, full_matrices=False)
-    n_spanned = spanned_dimensions(singular_values, standardised.shape)
-    singular_values, axes = singular_values[:n_spanned], axes[:n_spanned]
-    weights = np.abs(axes)
-    nearly_strongest = weights >= (1 - 1e-6) * weights.max(axis=1, keepdims=True, initial=0)
-    strongest = nearly_strongest.argmax(axis=1)[:, None]
-    return singular_values, axes * np.sign(np.take_along_axis(axes, strongest, axis=1))
-
-
-def spanned_dimensions(singular_values: np.ndarray, shape: tuple[int, ...]) -> int:
-    """Return how many dimensions walkers span about their mean.
-
-    Singular values of the centred walkers above rounding, as in `numpy.linalg.matrix_rank`, and one
-    less than there are walkers at most; `shape` holds the numbers of walkers and features.
-    """
-    rounding = singular_values.max(initial=0) * max(shape) * np.finfo(float).eps
-    return min(int((singular_values > rounding).sum()), shape[0] - 1)

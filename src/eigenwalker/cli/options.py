@@ -6,7 +6,8 @@ import math
 import os
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +17,7 @@ from eigenwalker.core.wording import reworded
 
 if TYPE_CHECKING:
     import numpy as np
+    from rich.progress import Progress, TaskID
 
     from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.population.population import Population
@@ -142,20 +144,29 @@ def check_population_file(path: Path) -> None:
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """Show a progress bar on stderr, where that is a terminal; yield what to call as work is done.
+    """Yield what to call as work is done: the first call shows a bar on stderr, if a terminal.
 
     It is called with how much is done, and of how much.
     """
-    from rich.console import Console
-    from rich.progress import Progress
+    with ExitStack() as shown:
 
-    console = Console(stderr=True)
-    if not console.is_terminal:  # a bar that is not shown still ends a line, by rich below 15
-        yield lambda done, total: None
-        return
-    with Progress(console=console, transient=True) as progress:
-        task = progress.add_task(title, total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+        @cache
+        def bar() -> tuple[Progress, TaskID] | None:
+            from rich.console import Console
+            from rich.progress import Progress
+
+            console = Console(stderr=True)
+            if not console.is_terminal:  # a bar not shown still ends a line, by rich below 15
+                return None
+            progress = shown.enter_context(Progress(console=console, transient=True))
+            return progress, progress.add_task(title, total=None)
+
+        def update(done: int, total: int) -> None:
+            if (made := bar()) is not None:
+                progress, task = made
+                progress.update(task, completed=done, total=total)
+
+        yield update
 
 
 def open_in_browser(address: str) -> None:

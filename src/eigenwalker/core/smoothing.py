@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 
 def parabola_vertex(before: float, here: float, after: float) -> tuple[float, float]:
@@ -27,6 +26,8 @@ def running_mean(values: np.ndarray, width: int) -> np.ndarray:
     >>> running_mean(np.array([0.0, 3.0, 6.0, 9.0]), 3).tolist()
     [1.5, 3.0, 6.0, 7.5]
     """
+    from scipy.ndimage import uniform_filter1d
+
     width = min(width, len(values))
     counts = uniform_filter1d(np.ones(len(values)), width, mode="constant")
     return uniform_filter1d(values, width, mode="constant") / counts

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
-from eigenwalker.gait.in_place import in_place
-from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.datasets.code_hash import people_file
 from eigenwalker.population.population import Population
-from eigenwalker.simulation.people import simulate_captures, simulate_population
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _PEOPLE: dict[str, Any] = {"n_women": 20, "n_men": 20, "seed": 0, "balanced": True}
 BUILT_IN = "the built-in population, simulated: 20 women and 20 men who do not exist"
@@ -56,11 +55,26 @@ def load_population(path: str | Path | None = None) -> Population:
 
 @cache
 def _built_in() -> Population:
+    """The people that came with this code, or, where none did, the same ones simulated now."""
+    from eigenwalker.datasets.built_in_file import read_people
+
+    file = people_file()
+    return read_people(file) if file.exists() else simulate_built_in()
+
+
+def simulate_built_in() -> Population:
+    """Simulate the built-in people, as building the package does."""
+    from eigenwalker.simulation.people import simulate_population
+
     return simulate_population(**_PEOPLE)
 
 
 def built_in_capture() -> xr.DataArray:
     """Return the walk in place, at 120 Hz, of the first woman of the built-in population."""
+    from eigenwalker.gait.in_place import in_place
+    from eigenwalker.markers.virtual_markers import virtual_markers
+    from eigenwalker.simulation.people import simulate_captures
+
     capture, _ = next(simulate_captures(**_PEOPLE, markers="skin"))
     walk = in_place(virtual_markers(capture))
     return walk.assign_attrs(source="The first woman of the built-in population")

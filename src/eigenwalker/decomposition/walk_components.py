@@ -14,8 +14,6 @@ from typing import Self
 
 import numpy as np
 import xarray as xr
-from scipy.linalg.blas import dsyrk  # pyright: ignore[reportAttributeAccessIssue] - untyped
-from scipy.linalg.lapack import dsyevr  # pyright: ignore[reportAttributeAccessIssue] - untyped
 
 from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.fourier import centred_harmonics, fit_harmonics, shift_origin
@@ -124,6 +122,8 @@ def eigenpostures_of(postures: np.ndarray, rate_hz: float, n_harmonics: int = 2)
 
 def _mean_and_scatter(postures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the mean, and products about it; about the origin if that is near."""
+    from scipy.linalg.blas import dsyrk  # pyright: ignore[reportAttributeAccessIssue] - untyped
+
     n = len(postures)
     mean = np.full(n, 1 / n) @ postures
     scatter = dsyrk(1.0, postures.T, lower=True)
@@ -139,6 +139,8 @@ def _mean_and_scatter(postures: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _largest_eigenpairs(scatter: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Largest eigenvalues, and their eigenvectors as columns, of a lower triangle."""
+    from scipy.linalg.lapack import dsyevr  # pyright: ignore[reportAttributeAccessIssue] - untyped
+
     d = len(scatter)
     values, vectors, _, _, failed = dsyevr(scatter, range="I", il=d - n + 1, iu=d, lower=1)
     if failed:

@@ -10,8 +10,8 @@ import pandas as pd
 
 from eigenwalker.analysis.contrast import Contrast, trait_contrast
 from eigenwalker.analysis.direction import Kind, direction
-from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_space
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis.span import Span
+from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_span
 from eigenwalker.population.features import FeatureLayout
 from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import Population
@@ -52,15 +52,15 @@ class _Axes:
 
     def __init__(self, population: Population) -> None:
         self.population = population
-        self._spaces: dict[tuple[str, bytes], WalkerSpace] = {}
+        self._spans: dict[tuple[str, bytes], Span] = {}
 
     def axis(self, contrast: Contrast, part: str) -> TraitAxis:
         columns = self.population.layout.columns(part)
         key = part, contrast.rows.tobytes()
-        if key not in self._spaces:
+        if key not in self._spans:
             walkers = self.population.X[np.ix_(contrast.rows, columns)]
-            self._spaces[key] = strongest_space(walkers)
-        return axis_within(self._spaces[key], self.population, contrast, columns)
+            self._spans[key] = strongest_span(walkers)
+        return axis_within(self._spans[key], self.population, contrast, columns)
 
 
 def _trait(axes: _Axes, name: str) -> dict[str, Any]:

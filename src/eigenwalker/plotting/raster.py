@@ -11,8 +11,6 @@ import math
 import warnings
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 MAX_PIXELS = 2_000_000
 """Pixels of discs computed at once."""
@@ -115,6 +113,9 @@ def _cover(canvas: np.ndarray, top: int, left: int, patch: np.ndarray) -> None:
 
 def lettering(words: str, *, width: int, height: int, level: float = 1.0) -> np.ndarray:
     """Return a line of words centred on a canvas (height, width); long ones are set smaller."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     dots_an_inch = 72
     figure = Figure(figsize=(width / dots_an_inch, height / dots_an_inch), dpi=dots_an_inch)
     figure.set_facecolor("black")

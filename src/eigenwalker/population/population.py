@@ -24,12 +24,7 @@ from eigenwalker.population.correspondence import (
 )
 from eigenwalker.population.features import FeatureLayout, circular_mean, wrap_phase
 from eigenwalker.population.persons import name_persons, persons_of
-from eigenwalker.population.population_file import (
-    Stored,
-    check_traits,
-    read_population,
-    write_population,
-)
+from eigenwalker.population.trait_table import check_traits
 
 FLAG = "flag"
 """Column of the traits that says why a walker is left out of averages and curves; empty if not."""
@@ -413,6 +408,8 @@ class Population:
 
     def save(self, path: str | Path) -> Path:
         """Write the population to one self-describing NetCDF file, and return its path."""
+        from eigenwalker.population.population_file import Stored, write_population
+
         content = Stored(self.walkers, self.traits, self._correspondence, self.provenance)
         return write_population(content, Path(path))
 
@@ -425,6 +422,8 @@ class Population:
         UnreadableFile
             If the file holds no population or is damaged.
         """
+        from eigenwalker.population.population_file import read_population
+
         return cls(*read_population(Path(path)))
 
     @property

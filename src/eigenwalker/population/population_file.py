@@ -17,7 +17,7 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker._version import __version__
-from eigenwalker.core.arguments import LARGEST, check_kind, check_numbers
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import CaptureFit, Walker
@@ -26,6 +26,7 @@ from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.file_types import file_type_of
 from eigenwalker.io.readers.netcdf import dataset_of, looks_like_netcdf
 from eigenwalker.population.correspondence import Correspondence, ReferenceWalker
+from eigenwalker.population.trait_table import check_traits
 
 FORMAT = "eigenwalker population"
 VERSION = 1
@@ -136,21 +137,6 @@ def _dataset(
         "harmonics": ("component", first.harmonics),
     }
     return xr.Dataset(variables, coords)
-
-
-def check_traits(given: Any) -> pd.DataFrame:
-    """Return a table of traits, if no number in it is one that statistics cannot be made of."""
-    check_kind(given, (pd.DataFrame, Mapping), "a table of traits, one row a walker")
-    traits = pd.DataFrame(given).reset_index(drop=True)
-    for name in traits.select_dtypes("number"):
-        wrong = np.flatnonzero(traits[name].abs() > LARGEST)
-        if wrong.size:
-            row = int(wrong[0])
-            raise ValueError(
-                f"The trait {str(name)!r} of row {row + 1} is {traits[name].iloc[row]:g}; give "
-                f"numbers up to {LARGEST:g} in size, and leave empty what is not known."
-            )
-    return traits
 
 
 def _storable(column: pd.Series) -> np.ndarray:

@@ -16,7 +16,6 @@ from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.gait.in_place import in_place
-from eigenwalker.io.write import FORMATS, write_mocap
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.population.population import Population
 from eigenwalker.simulation.planted_effect import PlantedEffect, add_effect
@@ -237,6 +236,8 @@ def write_captures(
     >>> sorted(path.name for path in folder.iterdir())
     ['traits.csv', 'truth.csv', 'walker_0001.csv', 'walker_0002.csv']
     """
+    from eigenwalker.io.write import FORMATS, write_mocap
+
     if f".{format}" not in FORMATS:
         known = [suffix.removeprefix(".") for suffix in FORMATS]
         raise ValueError(f"format={format!r} is not known; give one of {known}.")

@@ -46,8 +46,8 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
 
     The vertical range grows from 27 mm at 0.7 m/s to 48 mm at 1.6, the lateral one shrinks from
     70 to 39 mm (Orendurff et al. 2004), both in bodies of average size: larger ones move by as
-    much more, at speeds that rise with the root of the leg (dynamic similarity, Alexander 1989). A negative lateral
-    range is a path away from the foot that stands.
+    much more, at speeds that rise with the root of the leg (dynamic similarity, Alexander 1989).
+    A negative lateral range is a path away from the foot that stands.
     """
     stride_length = person["stride_share"] * body.height
     speed = stride_length * person["frequency_hz"]

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.io import savemat
 
 from eigenwalker.core.atomic_write import write_table
 from eigenwalker.plotting.shades import rgb
@@ -82,6 +81,8 @@ def write_mat(stimulus: Stimulus, path: Path) -> None:
     picture, NaN where a dot is not seen: ``Screen('DrawDots', window, xy(:,ok,frame), dot_px,
     colour, [xc yc], 1)`` draws a frame, where ``ok = ~isnan(xy(1,:,frame))``.
     """
+    from scipy.io import savemat
+
     arrays = frame_arrays(stimulus)
     display = stimulus.display
     middle = np.array([display.width_px, display.height_px]) / 2

@@ -8,19 +8,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from matplotlib.image import imsave
 
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.progress import Progress, ticked
-from eigenwalker.io.write import write_mocap
-from eigenwalker.plotting.encoding import encode_film, film_format, frame_delays
-from eigenwalker.stimulus import position_tables
-from eigenwalker.stimulus.animation import animated
-from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades
-from eigenwalker.stimulus.gltf import write_glb
 from eigenwalker.stimulus.html_page import stand_alone_page
 from eigenwalker.stimulus.stimulus import Stimulus
-from eigenwalker.stimulus.svg import svg_drawing
 
 
 def write_stimulus(
@@ -78,8 +70,10 @@ def write_stimulus(
         if suffix in FILMS:
             _write_film(stimulus, unfinished, progress)
         elif suffix == ".py":
+            from eigenwalker.stimulus.position_tables import psychopy_script
+
             table = path.with_suffix(".npz")
-            _write_text(position_tables.psychopy_script(stimulus, table), unfinished)
+            _write_text(psychopy_script(stimulus, table), unfinished)
             write_stimulus(stimulus, table)
         else:
             WRITERS[suffix](stimulus, unfinished)
@@ -103,6 +97,9 @@ def _write_film(stimulus: Stimulus, path: Path, progress: Progress | None) -> No
     second, has 50 a second where the stimulus has another rate than 50, 25 or 20, and lasts as
     long. A picture of an odd size gets one more row or column of ground.
     """
+    from eigenwalker.plotting.encoding import encode_film, film_format, frame_delays
+    from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades
+
     rate_hz = stimulus.timing.rate_hz
     gif = path.suffix.lower() == ".gif"
     form = film_format(path, None if gif and rate_hz not in (50, 25, 20) else rate_hz)
@@ -128,6 +125,10 @@ def _write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None) -
 
     They appear once all are drawn.
     """
+    from matplotlib.image import imsave
+
+    from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades
+
     times = stimulus.frame_times
     colours = np.rint(drawn_shades(stimulus)).astype(np.uint8)
     frames = drawn_frames(stimulus, times)
@@ -141,6 +142,10 @@ def _write_frames(stimulus: Stimulus, folder: Path, progress: Progress | None) -
 
 def _write_png(stimulus: Stimulus, path: Path) -> None:
     """Write the first moment as a PNG."""
+    from matplotlib.image import imsave
+
+    from eigenwalker.stimulus.drawing import drawn_frames, drawn_shades
+
     (shades,) = drawn_frames(stimulus, np.zeros(1))
     imsave(path, np.rint(drawn_shades(stimulus)).astype(np.uint8)[shades], format="png")
 
@@ -149,7 +154,30 @@ def _write_text(text: str, path: Path) -> None:
     path.write_text(text, encoding="utf-8")
 
 
+def _write_svg(stimulus: Stimulus, path: Path) -> None:
+    from eigenwalker.stimulus.svg import svg_drawing
+
+    _write_text(svg_drawing(stimulus), path)
+
+
+def _write_table(stimulus: Stimulus, path: Path) -> None:
+    from eigenwalker.stimulus import position_tables
+
+    write = {".csv": "write_csv", ".npz": "write_npz", ".mat": "write_mat"}[path.suffix.lower()]
+    getattr(position_tables, write)(stimulus, path)
+
+
+def _write_bvh(stimulus: Stimulus, path: Path) -> None:
+    from eigenwalker.io.write import write_mocap
+    from eigenwalker.stimulus.animation import animated
+
+    write_mocap(animated(stimulus).walk, path)
+
+
 def _write_glb(stimulus: Stimulus, path: Path) -> None:
+    from eigenwalker.stimulus.animation import animated
+    from eigenwalker.stimulus.gltf import write_glb
+
     animation = animated(stimulus)
     write_glb(animation.walk, path, about={**stimulus.provenance, "feet": str(animation.slide)})
 
@@ -158,12 +186,12 @@ FILMS = (".mp4", ".webm", ".gif")
 WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
     ".json": lambda stimulus, path: _write_text(stimulus.to_json(), path),
     ".png": _write_png,
-    ".svg": lambda stimulus, path: _write_text(svg_drawing(stimulus), path),
-    ".csv": position_tables.write_csv,
-    ".npz": position_tables.write_npz,
-    ".mat": position_tables.write_mat,
+    ".svg": _write_svg,
+    ".csv": _write_table,
+    ".npz": _write_table,
+    ".mat": _write_table,
     ".html": lambda stimulus, path: _write_text(stand_alone_page(stimulus), path),
-    ".bvh": lambda stimulus, path: write_mocap(animated(stimulus).walk, path),
+    ".bvh": _write_bvh,
     ".glb": _write_glb,
 }
 SUFFIXES = [*FILMS, *WRITERS, ".py"]

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.io.read import SUFFIXES, is_capture
-from eigenwalker.population.population_file import check_traits
+from eigenwalker.population.trait_table import check_traits
 
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
