@@ -78,7 +78,7 @@ def constant_features(X: np.ndarray) -> np.ndarray:
     mm in floating point; standardising would enlarge that to a unit.
     """
     rounding = 10 * np.finfo(float).eps * np.abs(X).max(initial=0)
-    return X.max(axis=0) - X.min(axis=0) <= rounding
+    return np.less_equal(np.ptp(X, axis=0), rounding)
 
 
 def _principal_axes(standardised: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
