@@ -53,9 +53,9 @@ def test_spellings_of_one_class_are_one_class(folder) -> None:
     )
     with pytest.warns(UserWarning, match="taken as one") as warned:
         found = capture_table(folder, table)
-    assert found["sex"].tolist() == ["female", "female", "MALE", "MALE"]
+    assert found["sex"].tolist() == ["female", "female", "male", "male"]
     assert found["person"].tolist() == ["p1", "p1", "p2", ""]
-    assert "sex: 'Female', 'female' are taken as one, 'female'." in [
+    assert "sex: 'Female' (1), 'female' (1) are taken as one, 'female'." in [
         str(each.message) for each in warned
     ]
 
@@ -71,9 +71,25 @@ def test_names_that_differ_in_case_only_are_not_guessed(folder) -> None:
     (folder / "C.c3d").touch()
     if len(list(folder.glob("*.c3d"))) == 3:
         pytest.skip("this file system has one name for both")
-    assert capture_table(folder, pd.DataFrame({"file": ["C.C3D"]}))["file"].tolist() == ["C.C3D"]
+    with pytest.warns(UserWarning, match=r"C.C3D .* is not in the folder; did you mean C.c3d"):
+        table = capture_table(folder, pd.DataFrame({"file": ["C.C3D"]}))
+    assert table["file"].tolist() == ["C.C3D"]
     with pytest.raises(ValueError, match=r"\['c.c3d'\] more than once"):
         capture_table(folder, pd.DataFrame({"file": ["c.c3d", "./c.c3d"]}))
+
+
+@pytest.mark.parametrize("head", ["Datei", "File name", "Trial"])
+@pytest.mark.parametrize("name", ["c", "C.C3D", "S:\\\\x\\\\c.c3d", "/data/c.c3d"])
+def test_captures_are_found_without_suffix_and_folder(folder, head, name) -> None:
+    (folder / "people.csv").write_text(f"{head};sex\n{name};f\n")
+    with pytest.warns(UserWarning, match=f"'{head}' is taken to name the files"):
+        assert capture_table(folder, folder / "people.csv")["file"].tolist() == ["c.c3d"]
+
+
+def test_a_table_without_headings_is_refused(folder) -> None:
+    (folder / "people.csv").write_text("c.c3d,f\nd.c3d,m\n")
+    with pytest.raises(ValueError, match=r"first line .* names a capture; put headings"):
+        capture_table(folder, folder / "people.csv")
 
 
 def test_a_pattern_of_composed_letters_fits_decomposed_names(folder) -> None:

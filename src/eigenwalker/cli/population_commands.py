@@ -36,7 +36,7 @@ def fit(
     folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
     output: PopulationFile,
     traits: Annotated[
-        Path | None, option("CSV with a column 'file' (relative to FOLDER) and the traits.")
+        Path | None, option("CSV or XLSX with a column 'file' (relative to FOLDER) and the traits.")
     ] = None,
     trait_from_name: TraitFromName = None,
     form: Annotated[
@@ -142,7 +142,11 @@ def _print_problems(study: Study) -> None:
 
 
 def _print_summary(study: Study, output: Path) -> None:
-    from eigenwalker.study.messages import persons_in_words, summary_in_words
+    from eigenwalker.study.messages import (
+        persons_in_words,
+        summary_in_words,
+        traits_in_words,
+    )
 
     assert study.population is not None
     read = study.files[study.files["status"] != "refused"]
@@ -152,6 +156,10 @@ def _print_summary(study: Study, output: Path) -> None:
     )
     for name, value in summary_in_words(study.files).items():
         print(f"  {name + ':':<23}{value}")
+    if traits := traits_in_words(study.population.traits):
+        print("Traits:")
+        for line in traits:
+            print(f"  {printable(line)}")
     for sentence in persons_in_words(study.population.traits):
         print(in_options(sentence))
     for assumed in ("units", "rates"):

@@ -2,20 +2,38 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 import unicodedata
 import warnings
 from collections import Counter
+from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from eigenwalker.io.read import SUFFIXES, is_capture
+from eigenwalker.population.persons import person_column
+from eigenwalker.population.population import FLAG
 from eigenwalker.population.trait_table import check_traits
+from eigenwalker.study.trait_values import in_one_spelling, trait_values
+from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, read_traits_file
 
+_FILES = (
+    "file",
+    "files",
+    "filename",
+    "filenames",
+    "path",
+    "filepath",
+    "datei",
+    "dateiname",
+    "capture",
+)
+"""Headings, in small letters alone, that name the captures."""
+MAX_NAMED = 5
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
 
@@ -75,49 +93,77 @@ def _known() -> str:
 
 
 def _traits_table(traits: pd.DataFrame | str | Path, folder: Path) -> pd.DataFrame:
-    if not isinstance(traits, pd.DataFrame):
-        traits = _read_table(Path(traits))
-    names = [unicodedata.normalize("NFC", str(name)).strip() for name in traits]
-    names = [FILE if name in ("File", "FILE") else name for name in names]
-    if FILE not in names:
-        raise ValueError(
-            f"The traits table needs a column 'file' (relative to the folder); it has {names}."
-        )
+    cells = traits if isinstance(traits, pd.DataFrame) else read_traits_file(Path(traits))
+    names = [unicodedata.normalize("NFC", str(name)).strip() for name in cells]
+    names = _with_file(names, cells, folder)
     if twice := sorted(name for name, count in Counter(names).items() if count > 1):
         raise ValueError(f"The traits table has the columns {twice} more than once.")
-    table = traits.set_axis(names, axis=1)
+    table = cells.set_axis(names, axis=1)
     table = pd.DataFrame({name: _tidied(table[name]) for name in table})
-    empty = [name for name in names if name.startswith("Unnamed: ") and table[name].isna().all()]
-    table = table.drop(columns=empty)
     blank = table.isna() | (table == "")
+    lines = np.array(cells.attrs.get(LINE, np.arange(len(cells)) + 1))
     if (unnamed := np.flatnonzero(blank[FILE] & ~blank.all(axis=1))).size:
-        raise ValueError(f"Row {unnamed[0] + 1} of the traits table names no file.")
-    table = table[~blank.all(axis=1)].reset_index(drop=True)
+        kind = "Line" if LINE in cells.attrs else "Row"
+        raise ValueError(f"{kind} {lines[unnamed[0]]} of the traits table names no file.")
+    keep = ~blank.all(axis=1)
+    table, lines = table[keep].reset_index(drop=True), lines[keep.to_numpy()]
     table[FILE] = _as_on_disk(table[FILE].astype(str), folder)
     if (twice := table[FILE][table[FILE].duplicated()]).any():
         raise ValueError(f"The traits table lists {sorted(set(twice))[:5]} more than once.")
-    return pd.DataFrame({name: _in_one_spelling(table[name]) for name in table})
+    persons = person_column(table)
+    letters = cells.attrs.get("letters", {})
+    for given, name in zip(cells, names, strict=True):
+        if name in (FILE, FLAG):
+            continue
+        if name == persons:
+            table[name] = _persons(table[name])
+        elif LINE in cells.attrs:
+            column = letters.get(given, "")
+            table[name] = trait_values(
+                table[name].tolist(),
+                name,
+                lambda at, column=column: f"cell {column}{lines[at]}",
+                decimal_comma=cells.attrs[DECIMAL_COMMA],
+            )
+        elif _holds_text(table[name]):
+            table[name] = in_one_spelling(_numbers_where_all_are(table[name]))
+    return pd.DataFrame({name: table[name] for name in table})
 
 
-def _read_table(path: Path) -> pd.DataFrame:
-    try:
-        return pd.read_csv(
-            path,
-            sep=None,
-            engine="python",
-            encoding="utf-16" if _begins_as_utf16(path) else "utf-8-sig",
-            converters={FILE: str, "person": str},
-        )
-    except (OSError, ValueError, csv.Error) as error:
-        why = str(error).strip().rstrip(".")
+def _persons(cells: pd.Series) -> pd.Series:
+    return in_one_spelling(cells) if _holds_text(cells) else cells
+
+
+def _with_file(names: Sequence[str], cells: pd.DataFrame, folder: Path) -> list[str]:
+    """Return the headings with ``file`` for the one that names the captures."""
+    if FILE in names:
+        return list(names)
+    plain = [re.sub(r"[\W_]", "", name.casefold()) for name in names]
+    at = next((at for at, name in enumerate(plain) if name in _FILES), None)
+    if at is None:  # the column whose cells are captures of the folder
+        known = {_stem(name) for name in captures_in(folder)}
+        if not known.isdisjoint(map(_stem, names)):
+            raise ValueError(
+                "The first line of the traits table names a capture; put headings above it, such "
+                "as file and sex."
+            )
+        stems = [[_stem(str(cell)) for cell in cells[name]] for name in cells]
+        found = [sum(stem in known for stem in column) for column in stems]
+        best = int(np.argmax(found)) if found else 0
+        at = best if found and 2 * found[best] > len(cells) else None
+    if at is None:
         raise ValueError(
-            f"The traits table {path} could not be read: {why}. Save it as CSV in UTF-8."
-        ) from error
+            f"The traits table needs a column 'file' (relative to the folder); it has "
+            f"{list(names)[:20]}."
+        )
+    if names[at].casefold() != FILE:
+        warnings.warn(f"The column {names[at]!r} is taken to name the files.", stacklevel=2)
+    return [FILE if number == at else name for number, name in enumerate(names)]
 
 
-def _begins_as_utf16(path: Path) -> bool:
-    with path.open("rb") as file:
-        return file.read(2) in (b"\xff\xfe", b"\xfe\xff")
+def _stem(name: str) -> str:
+    name = Path(unicodedata.normalize("NFC", name).replace("\\", "/").casefold()).name
+    return Path(name).stem if Path(name).suffix in SUFFIXES else name
 
 
 def _holds_text(values: pd.Series) -> bool:
@@ -133,37 +179,15 @@ def _tidied(values: pd.Series) -> pd.Series:
             unicodedata.normalize("NFC", value).strip() if isinstance(value, str) else value
         )
     )
-    if values.name in (FILE, "person"):
-        return tidy
-    return _numbers_where_all_are(tidy.where(tidy != "")) if (tidy == "").any() else tidy
-
-
-def _in_one_spelling(values: pd.Series) -> pd.Series:
-    """Return a column in which texts that differ in case only are the same, with a warning.
-
-    The spelling in small letters is taken where there is one, else the most frequent one.
-    """
-    if values.name == FILE or not _holds_text(values):
-        return values
-    counts = values[values.map(lambda value: isinstance(value, str))].value_counts()
-    spelled: dict[str, list[str]] = {}
-    for text in counts.index:
-        spelled.setdefault(text.casefold(), []).append(text)
-    chosen = {}
-    for folded, several in spelled.items():
-        if len(several) > 1:
-            best = folded if folded in several else several[0]
-            chosen |= dict.fromkeys(several, best)
-            named = ", ".join(map(repr, sorted(several)))
-            warnings.warn(f"{values.name}: {named} are taken as one, {best!r}.", stacklevel=2)
-    return values.replace(chosen)
+    return tidy.astype(object)
 
 
 def _as_on_disk(names: pd.Series, folder: Path) -> list[str]:
     r"""Return listed files by the names that they have in the folder.
 
     A name that is not there as it is written is compared with those of the captures: both composed
-    (NFC), with ``/`` for ``\\``, and then in small letters. It is taken where one capture has it.
+    (NFC), with ``/`` for ``\\``, then in small letters, without suffix and without folder. It is
+    taken where one capture has it.
     """
     written = [Path(name).as_posix() for name in names]
     if all(os.path.lexists(folder / name) for name in written):
@@ -173,15 +197,32 @@ def _as_on_disk(names: pd.Series, folder: Path) -> list[str]:
         # Where the system speaks ASCII, names on disk have escapes for all other letters.
         text = os.fsencode(name).decode("utf-8", "surrogateescape")
         composed = unicodedata.normalize("NFC", text)
-        for key in {composed, f"folded {composed.casefold()}"}:
+        folded = Path(composed.casefold())
+        stem = folded.with_suffix("")
+        keys = {composed, f"folded {folded.as_posix()}", f"stem {stem.as_posix()}"}
+        for key in keys | {f"alone {folded.name}", f"alone stem {stem.name}"}:
             known.setdefault(key, []).append(name)
 
     def found(name: str) -> str:
         plain = Path(unicodedata.normalize("NFC", name).replace("\\", "/")).as_posix()
-        same = known.get(plain) or known.get(f"folded {plain.casefold()}", [])
+        folded = plain.casefold()
+        stem = (
+            Path(folded).with_suffix("").as_posix() if Path(folded).suffix in SUFFIXES else folded
+        )
+        ways = (plain, f"folded {folded}", f"stem {folded}", f"alone {folded.rpartition('/')[2]}")
+        ways += (f"alone stem {stem.rpartition('/')[2]}",)
+        same = next((known[way] for way in ways if way in known), [])
         return name if os.path.lexists(folder / name) or len(same) != 1 else same[0]
 
-    return [found(name) for name in written]
+    names_found = [found(name) for name in written]
+    missing = [name for name in names_found if not os.path.lexists(folder / name)]
+    for name in missing[:MAX_NAMED]:
+        if near := get_close_matches(name, captures_in(folder), n=1):
+            warnings.warn(
+                f"{name} of the traits table is not in the folder; did you mean {near[0]}?",
+                stacklevel=2,
+            )
+    return names_found
 
 
 def _named_traits(names: pd.Series, pattern: str) -> pd.DataFrame:
@@ -199,7 +240,7 @@ def _named_traits(names: pd.Series, pattern: str) -> pd.DataFrame:
     traits = pd.DataFrame(
         [match.groupdict() if match else dict.fromkeys(compiled.groupindex) for match in matches]
     )
-    return traits.apply(_numbers_where_all_are).apply(_in_one_spelling)
+    return traits.apply(_numbers_where_all_are).apply(in_one_spelling)
 
 
 def _numbers_where_all_are(column: pd.Series) -> pd.Series:

@@ -123,6 +123,29 @@ def repair_in_words(repair: Repair) -> str:
     return f"{markers}, frames {repair.first_frame} to {repair.last_frame}"
 
 
+def traits_in_words(traits: pd.DataFrame) -> list[str]:
+    """Return of what kind each trait is, its classes or range, and how many values are missing."""
+    return [
+        _trait_in_words(str(name), traits[name])
+        for name in traits
+        if name not in ("file", "flag", PERSON)
+    ]
+
+
+def _trait_in_words(name: str, values: pd.Series) -> str:
+    known = values[values.notna() & (values.astype(str) != "")]
+    missing = f"; {len(values) - len(known)} missing" if len(known) < len(values) else ""
+    if not len(known):
+        return f"{name}: no values{missing}"
+    if known.dtype.kind in "iuf":
+        ends = f"{known.min():g}" if known.nunique() == 1 else f"{known.min():g} to {known.max():g}"
+        return f"{name}: numbers, {ends}, {len(known)} values{missing}"
+    counts = known.astype(str).value_counts()
+    shown = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
+    more = f" and {len(counts) - 8} more" if len(counts) > 8 else ""
+    return f"{name}: classes, {shown}{more}, {len(known)} values{missing}"
+
+
 def persons_in_words(traits: pd.DataFrame) -> list[str]:
     """Return who walked, by a table of traits, or what to do where that is not known.
 

@@ -1,0 +1,62 @@
+"""Cells of traits as people write them become numbers, classes and unknowns, and it is said."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from eigenwalker.study.trait_values import trait_values
+
+
+def _values(*cells: str, decimal_comma: bool = False) -> tuple[list, list[str]]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = trait_values(cells, "x", lambda at: f"cell B{at + 2}", decimal_comma=decimal_comma)
+    return found.tolist(), [str(each.message) for each in caught]
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected", "said"),
+    [
+        (("60.5", "61", "1e2"), (60.5, 61, 100), ()),
+        (("60,5", "61", "1.062,5"), (60.5, 61, 1062.5), ()),
+        (("1,234.5", "61"), (1234.5, 61), ()),
+        (("1'234.5", "1\u2019061"), (1234.5, 1061), ()),
+        (("42 years", "43 years", "44"), (42, 43, 44), ("'years'", "cell B2 ('42 years')")),
+        (("175 cm", "1.80 m", "1700mm"), (175, 180, 170), ("'1.80 m' in cell B3 is taken as 180",)),
+        (("60.5", "61,5", "62"), (60.5, 61.5, 62), ("'61,5' in cell B3 is taken as 61.5",)),
+        (("23", "-999", "n/a", "-", "", "31"), (23, np.nan, np.nan, np.nan, np.nan, 31),
+         ("'n/a' (1), '-' (1)", "'-999' (1)")),
+        (("23", "999", "31"), (23, np.nan, 31), ("'999' (1)",)),
+        (("61", "about 80", "62", "63"), (61, np.nan, 62, 63), ("'about 80' in cell B3",)),
+        (("-3", "-99", "2"), (-3, -99, 2), ()),
+    ],
+)  # fmt: skip
+def test_numbers_are_read_as_people_write_them(cells, expected, said):
+    values, warned = _values(*cells)
+    np.testing.assert_allclose(values, expected)
+    for part in said:
+        assert any(part in each for each in warned), warned
+    assert bool(said) == bool(warned)
+
+
+def test_three_digits_behind_a_comma_are_decimals_only_where_it_is_known():
+    with pytest.raises(ValueError, match=r"'1,705' in cell B2, which may be 1705 or 1\.705"):
+        _values("1,705", "1,715")
+    assert _values("1,705", "1,715", decimal_comma=True) == ([1.705, 1.715], [])
+    assert _values("1,705", "1,7")[0] == [1.705, 1.7]
+
+
+def test_numbers_of_two_kinds_of_unit_are_refused():
+    with pytest.raises(ValueError, match=r"'kg', but has '150 lbs' in cell B3"):
+        _values("60 kg", "150 lbs")
+
+
+def test_words_for_the_sexes_are_two_classes():
+    values, warned = _values("f", "F", "female", "woman", "w", "m", "Man", "unknown")
+    assert values == ["female"] * 5 + ["male"] * 2 + [None]
+    assert any("'F' (1), 'f' (1), 'female' (1), 'w' (1), 'woman' (1)" in each for each in warned)
+    assert _values("f", "m", "f") == (["f", "m", "f"], [])
+    assert _values("w", "b", "W")[0] == ["w", "b", "w"]

@@ -1,0 +1,74 @@
+"""Traits tables are read as spreadsheets save them."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from eigenwalker.study.traits_file import read_traits_file
+
+ROWS = [["file", "sex", "gewicht"], ["Mü_1.c3d", "f", "60,5"], ["b.c3d", "m", "71"]]
+
+
+def _text(separator: str, *, quote: str = "", end: str = "\r\n") -> str:
+    return end.join(separator.join(f"{quote}{cell}{quote}" for cell in row) for row in ROWS) + end
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        _text(";").encode("cp1252"),
+        _text("\t").encode("utf-16"),
+        _text(";").encode("utf-8-sig"),
+        ("sep=;\r\n" + _text(";")).encode(),
+        _text(",", quote='"').encode(),
+        _text(";").replace("\r\n", "\r\n;;\r\n").encode(),
+        b'"","file","sex","gewicht"\n"1","M\xc3\xbc_1.c3d","f","60,5"\n"2","b.c3d","m",71\n',
+        b'"file" "sex" "gewicht"\n"1" "M\xc3\xbc_1.c3d" "f" "60,5"\n"2" "b.c3d" "m" 71\n',
+    ],
+)
+def test_text_tables_of_many_programs_hold_the_same(tmp_path, content):
+    (tmp_path / "t.csv").write_bytes(content)
+    table = read_traits_file(tmp_path / "t.csv")
+    assert [list(table), *table.to_numpy().tolist()] == ROWS
+
+
+def _workbook(path: Path, rows) -> Path:
+    book = openpyxl.Workbook()
+    sheet = book.create_sheet("people")
+    for row in rows:
+        sheet.append(row)
+    book.save(path)
+    return path
+
+
+def test_a_workbook_is_read_from_its_first_sheet_that_has_cells(tmp_path):
+    rows = [["file", "age", None], ["a.c3d", 23, None], [None], ["b.c3d", 24.5, None]]
+    table = read_traits_file(_workbook(tmp_path / "t.xlsx", rows))
+    assert table.to_numpy().tolist() == [["a.c3d", "23"], ["b.c3d", "24.5"]]
+    assert table.attrs["line"] == [2, 4]
+
+
+def test_what_is_no_table_is_refused_with_the_way_out(tmp_path):
+    bomb = tmp_path / "bomb.xlsx"
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("xl/workbook.xml", "")
+        archive.writestr("xl/a.xml", bytes(60_000_000))
+    (tmp_path / "a.ods").write_bytes(b"PK\3\4")
+    (tmp_path / "b.xlsx").write_bytes(b"PK\3\4 junk")
+    for name, why in (("bomb.xlsx", "unpacks"), ("a.ods", "LibreOffice"), ("b.xlsx", "zip")):
+        with pytest.raises(ValueError, match=f"{why}.*Save it as CSV in UTF-8 or as XLSX"):
+            read_traits_file(tmp_path / name)
+
+
+def test_headings_that_repeat_or_lack_are_refused(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("file,sex,sex\na,f,m\n")
+    with pytest.raises(ValueError, match=r"\['sex'\] more than once \(columns B, C\)"):
+        read_traits_file(path)
+    path.write_text("file,sex,\na,f,m\n")
+    with pytest.raises(ValueError, match=r"Column C .* no heading"):
+        read_traits_file(path)
