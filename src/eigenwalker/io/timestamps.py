@@ -10,7 +10,7 @@ import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
 from eigenwalker.io.errors import UnreadableFile
-from eigenwalker.io.rounded_times import (
+from eigenwalker.io.frame_time import (
     MAX_ROUNDING,
     TIME_NOISE_S,
     rate_of_step,

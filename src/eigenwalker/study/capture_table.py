@@ -18,7 +18,7 @@ from eigenwalker.io.read import SUFFIXES, is_capture
 from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import FLAG
 from eigenwalker.population.trait_table import check_traits
-from eigenwalker.study.trait_values import in_one_spelling, trait_values
+from eigenwalker.study.trait_cells import in_one_spelling, trait_values
 from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, read_traits_file
 
 _FILES = (

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eigenwalker.io.capture_file import CaptureFile
-from eigenwalker.io.rounded_times import rate_of_step
+from eigenwalker.io.frame_time import rate_of_step
 from eigenwalker.io.text_cells import number, plain_numbers
 from eigenwalker.io.timestamps import RATES_HZ
 

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
-from eigenwalker.study.trait_values import trait_values
+from eigenwalker.study.trait_cells import trait_values
 
 
 def _values(*cells: str, decimal_comma: bool = False) -> tuple[list, list[str]]:
