@@ -27,6 +27,7 @@ ARGUMENTS = {
     "subject": "--subject {value}",
     "part": "--part {value}",
     "rate_hz": "--rate {value}",
+    "up": "--up {value}",
     "size_px": "--size {value}",
     "unit": "--unit {value}",
 }

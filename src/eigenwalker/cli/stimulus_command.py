@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.core.walker import Walker
     from eigenwalker.population.population import Population
+    from eigenwalker.stimulus.rig_choices import RigChoices
     from eigenwalker.stimulus.stimulus import Stimulus
 
 Texts = list[str] | None
@@ -113,6 +114,15 @@ def stimulus(
     ] = None,
     distance: Annotated[float, option("From the eye to the screen, mm.")] = 570.0,
     px_per_cm: Annotated[float, option("Pixels a centimetre of the screen.")] = 38.0,
+    skeleton: Annotated[
+        str, option("Bones of .bvh and .glb: plain, mixamo, unreal or unity.")
+    ] = "plain",
+    rest_pose: Annotated[str, option("Its arms at rest: t or a.")] = "t",
+    in_place: Annotated[
+        bool, option("The rig walks on the spot; else it travels.", "--in-place")
+    ] = False,
+    rig_unit: Annotated[str | None, option("cm (.bvh) or m (.glb), if left out.")] = None,
+    up: Annotated[str, option("Axis that points up in .bvh: y or z.")] = "y",
     with_flagged: WithFlagged = False,
     *,
     context: typer.Context,
@@ -128,6 +138,7 @@ def stimulus(
     film = str(context.info_name).endswith("synthesize")
     output = output or Path("walker.mp4" if film else "stim.json")
     check_suffix(output)
+    rig = _rig_choices(options, output)
     if strides is not None and (strides < 1 or duration is not None):
         raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
     if not (trait or morph_to) and (kind, part, components) != ("discriminant", "all", 10):
@@ -144,17 +155,35 @@ def stimulus(
     if height_deg is not None:
         made = made.sized(height_deg, viewing_distance_mm=distance, px_per_cm=px_per_cm)
     with progress_bar("Writing") as progress:
-        path = write_stimulus(made, output, progress=progress)
+        path = write_stimulus(made, output, progress=progress, rig=rig)
     names = ", then ".join(step["name"] for step in made.transforms)
     print(f"{names or 'No transforms'}; {made.timing.duration_s:g} s")
     if path.suffix.lower() in (".bvh", ".glb"):
         from eigenwalker.stimulus.animation import animated
 
-        print(animated(made).slide)
+        print(animated(made, choices=rig))
     print(f"{'Film' if path.suffix.lower() in FORMATS else 'Stimulus'}: {path}")
 
 
 synthesize = stimulus
+
+
+def _rig_choices(options: dict[str, Any], output: Path) -> RigChoices:
+    """How a rig is written; refused for files that hold none."""
+    from eigenwalker.cli.options import check_choice
+    from eigenwalker.stimulus.rig_choices import RigChoices
+
+    names = {"skeleton": "skeleton", "rest_pose": "rest_pose", "in_place": "in_place",
+             "rig_unit": "unit", "up": "up"}  # fmt: skip
+    choices = RigChoices(**{field: options[name] for name, field in names.items()})
+    if choices != RigChoices() and output.suffix.lower() not in (".bvh", ".glb"):
+        typed = [f"--{name.replace('_', '-')}" for name in names]
+        raise ValueError(f"{', '.join(typed)} are for .bvh and .glb; {output} holds no rig.")
+    check_choice(choices.skeleton, ("plain", "mixamo", "unreal", "unity"), "--skeleton")
+    check_choice(choices.rest_pose, ("t", "a"), "--rest-pose")
+    check_choice(choices.unit or "cm", ("cm", "m"), "--rig-unit")
+    check_choice(choices.up, ("y", "z"), "--up")
+    return choices
 
 
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -58,6 +59,8 @@ def write_mocap(
     overground: bool = False,
     unit: str | None = None,
     up: Up | None = None,
+    skeleton: str = "plain",
+    rest_pose: str = "t",
 ) -> Path:
     """Write trajectories, or a walker that walks, as a file of motion capture.
 
@@ -92,6 +95,10 @@ def write_mocap(
         Unit of length in the file.
     up : {"y", "z"}, optional
         Axis that points up in the file.
+    skeleton : {"plain", "mixamo", "unreal", "unity"}
+        Names and hierarchy of the bones of a BVH file; plain ones are called as the joints.
+    rest_pose : {"t", "a"}
+        Pose of its arms at rest.
 
     Returns
     -------
@@ -132,6 +139,11 @@ def write_mocap(
         raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
     if up not in ("y", "z"):
         raise ValueError(f"up={up!r} is not known; give 'y' or 'z'.")
+    write = form.write
+    if path.suffix.lower() == ".bvh":
+        write = partial(write_bvh, skeleton=skeleton, rest_pose=rest_pose)
+    elif (skeleton, rest_pose) != ("plain", "t"):
+        raise ValueError(f"skeleton and rest_pose are for .bvh; {path.name!r} has no bones.")
     if isinstance(trajectories, Walker):
         walk = _sampled_walk(trajectories, n_strides, duration_s, rate_hz or RATE_HZ)
     elif (n_strides, duration_s, rate_hz) != (None, None, None):
@@ -146,7 +158,7 @@ def write_mocap(
     sampling_rate(walk)  # which refuses uneven times
     turned = walk.copy(data=walk.values @ turn_upright(up) / MILLIMETRES[unit]).rename(path.name)
     with atomic_write(path) as unfinished:
-        form.write(turned, unit, up, unfinished)
+        write(turned, unit, up, unfinished)
     return path
 
 

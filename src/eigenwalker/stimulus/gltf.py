@@ -1,25 +1,28 @@
-"""glTF 2.0 binary (.glb): a skeleton with a simple body, animated, for browsers and game engines.
+"""glTF 2.0 binary (.glb): skeletons with simple bodies, animated, for browsers and game engines.
 
-The skeleton is in centimetres, y up, facing z, under a node that scales it by 0.01, since glTF
-counts in metres.
+Metres, y up, facing z. Each joint has its own axes, y along its bone, as Mixamo has them.
 """
 
 from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from eigenwalker._version import __version__
+from eigenwalker.core.quaternions import Rotation
+from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.up_axis_and_unit import turn_upright
-from eigenwalker.io.writers.bvh import Bones, fit_bones
+from eigenwalker.io.writers.rig import Rig
 
 FLOAT, SHORT, VERTICES = 5126, 5123, 34962
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+SPACING_M = 1.0
+"""From one figure to the next."""
 THICK = 0.09
 """Half the thickness of a bone, as a share of its length."""
 
@@ -62,28 +65,29 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = None) -> None:
-    """Write the 15 joints of a walk (time, marker, axis), mm, as an animated skeleton."""
-    turn = turn_upright("y")
-    bones = fit_bones(walk.copy(data=walk.values @ turn / 10), turn)
+def write_glb(
+    rigs: Mapping[str, Rig],
+    path: Path,
+    *,
+    rate_hz: float,
+    unit: str = "m",
+    about: Mapping[str, str] | None = None,
+) -> None:
+    """Write rigs as skeletons with bodies, side by side, each with its animation.
+
+    In centimetres, skeletons stand under a node that scales them to the metres of glTF.
+    """
     buffer = _Buffer()
-    first = 2  # the nodes before the joints: what scales them, and the body
-    nodes: list[dict[str, Any]] = [
-        {"name": "walker", "scale": [0.01] * 3, "children": [first]},
-        {"name": "body", "mesh": 0, "skin": 0},
-        *_joints(bones, first),
-    ]
-    times = buffer.put(walk.time.values - walk.time.values[0], "SCALAR", limits=True)
-    content = {
+    content: dict[str, Any] = {
         "asset": {
             "version": "2.0",
             "generator": f"eigenwalker {__version__}",
-            **({"extras": about} if about else {}),
+            **({"extras": dict(about)} if about else {}),
         },
         "scene": 0,
-        "scenes": [{"nodes": [0, 1]}],
-        "nodes": nodes,
-        "meshes": [{"name": "body", "primitives": [_body(bones, buffer)]}],
+        "scenes": [{"nodes": []}],
+        "nodes": [],
+        "meshes": [],
         "materials": [
             {
                 "name": "body",
@@ -94,8 +98,13 @@ def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = 
                 },
             }
         ],
-        "skins": [_skin(bones, buffer, first)],
-        "animations": [_animation(bones, buffer, times, first)],
+        "skins": [],
+        "animations": [],
+    }
+    for number, (name, rig) in enumerate(rigs.items()):
+        aside = np.array([number * SPACING_M, 0.0, 0.0])
+        _add_figure(content, buffer, name, _in_gltf(rig, unit), rate_hz, unit, aside)
+    content |= {
         "buffers": [{"byteLength": len(buffer.data)}],
         "bufferViews": buffer.views,
         "accessors": buffer.accessors,
@@ -103,21 +112,91 @@ def write_glb(walk: xr.DataArray, path: Path, *, about: dict[str, str] | None = 
     path.write_bytes(_binary(content, bytes(buffer.data)))
 
 
-def _joints(bones: Bones, first: int) -> list[dict[str, Any]]:
+class _Bones(NamedTuple):
+    """A rig in the frame and unit of glTF, with each joint's own axes."""
+
+    names: list[str]
+    parents: tuple[int, ...]
+    places: np.ndarray
+    axes: np.ndarray
+    offsets: np.ndarray
+    moves: dict[int, np.ndarray]
+    rotations: np.ndarray
+
+
+def _in_gltf(rig: Rig, unit: str) -> _Bones:
+    turn, length = turn_upright("y"), MILLIMETRES[unit]
+    rest, places = rig.rest @ turn / length, rig.rest_positions @ turn / length
+    axes = turn.T @ rig.axes  # columns
+    parents = rig.parents
+    offsets = np.stack(
+        [rest[j] if parent < 0 else axes[parent].T @ rest[j] for j, parent in enumerate(parents)]
+    )
+    moves = {
+        joint: way @ turn / length @ (axes[parents[joint]] if parents[joint] >= 0 else np.eye(3))
+        for joint, way in rig.moves.items()
+    }
+    rotations = rig.oriented_rotations.copy()
+    rotations[:, 0] = _of_root(rig, axes)
+    names = [name or f"{rig.names[parents[joint]]}_end" for joint, name in enumerate(rig.names)]
+    return _Bones(names, parents, places, axes, offsets, moves, rotations)
+
+
+def _of_root(rig: Rig, axes: np.ndarray) -> np.ndarray:
+    """Return how the root turns in the frame of glTF."""
+    turn = turn_upright("y")
+    matrices = turn.T @ Rotation.from_quat(rig.turns[:, 0]).as_matrix() @ turn
+    return Rotation.from_matrix(matrices @ axes[0]).as_quat()
+
+
+def _add_figure(
+    content: dict[str, Any],
+    buffer: _Buffer,
+    name: str,
+    bones: _Bones,
+    rate_hz: float,
+    unit: str,
+    aside: np.ndarray,
+) -> None:
+    """Add a figure: a node that places it, its body, its joints, and its animation."""
+    nodes = content["nodes"]
+    holder, first = len(nodes), len(nodes) + 2
+    scale = MILLIMETRES[unit] / 1000
+    nodes.append({"name": name, "children": [first]})
+    if scale != 1:
+        nodes[holder]["scale"] = [scale] * 3
+    if aside.any():
+        nodes[holder]["translation"] = aside.tolist()
+    nodes.append(
+        {"name": f"{name} body", "mesh": len(content["meshes"]), "skin": len(content["skins"])}
+    )
+    nodes += _joints(bones, first)
+    content["scenes"][0]["nodes"] += [holder, holder + 1]
+    content["meshes"].append({"name": f"{name} body", "primitives": [_body(bones, buffer)]})
+    content["skins"].append(_skin(bones, buffer, first))
+    content["animations"].append(_animation(bones, buffer, first, name, rate_hz))
+
+
+def _joints(bones: _Bones, first: int) -> list[dict[str, Any]]:
     nodes = []
     for joint, name in enumerate(bones.names):
         children = [first + c for c, parent in enumerate(bones.parents) if parent == joint]
-        place = bones.root[0] if joint == 0 else bones.rest[joint]
+        own = bones.axes[joint]
+        if bones.parents[joint] >= 0:
+            own = bones.axes[bones.parents[joint]].T @ own
         node = {
             "name": name,
-            "translation": place.tolist(),
-            "rotation": _unit(bones.rotations[0, joint]).tolist(),
+            "translation": bones.offsets[joint].tolist(),
+            "rotation": Rotation.from_matrix(own).as_quat().tolist(),
         }
         nodes.append({**node, **({"children": children} if children else {})})
     return nodes
 
 
-def _animation(bones: Bones, buffer: _Buffer, times: int, first: int) -> dict[str, Any]:
+def _animation(
+    bones: _Bones, buffer: _Buffer, first: int, name: str, rate_hz: float
+) -> dict[str, Any]:
+    times = buffer.put(np.arange(len(bones.rotations)) / rate_hz, "SCALAR", limits=True)
     samplers, channels = [], []
 
     def channel(joint: int, path: str, values: np.ndarray, kind: str) -> None:
@@ -125,12 +204,11 @@ def _animation(bones: Bones, buffer: _Buffer, times: int, first: int) -> dict[st
         channels.append({"sampler": len(samplers), "target": {"node": first + joint, "path": path}})
         samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
 
-    channel(0, "translation", bones.root, "VEC3")
+    for joint, way in bones.moves.items():
+        channel(joint, "translation", way, "VEC3")
     for joint in range(len(bones.names)):
-        turns = _unit(bones.rotations[:, joint])
-        if np.ptp(turns, axis=0).max() > 1e-9:
-            channel(joint, "rotation", _steady(turns), "VEC4")
-    return {"name": "walk", "samplers": samplers, "channels": channels}
+        channel(joint, "rotation", _steady(_unit(bones.rotations[:, joint])), "VEC4")
+    return {"name": name, "samplers": samplers, "channels": channels}
 
 
 def _unit(turns: np.ndarray) -> np.ndarray:
@@ -144,10 +222,11 @@ def _steady(turns: np.ndarray) -> np.ndarray:
     return turns * np.concatenate([[1.0], signs])[:, None]
 
 
-def _skin(bones: Bones, buffer: _Buffer, first: int) -> dict[str, Any]:
+def _skin(bones: _Bones, buffer: _Buffer, first: int) -> dict[str, Any]:
     """The joints that carry the body, and the way from rest into each joint's frame."""
     inverse = np.tile(np.eye(4), (len(bones.names), 1, 1))
-    inverse[:, :3, 3] = -_at_rest(bones)
+    inverse[:, :3, :3] = bones.axes.transpose(0, 2, 1)
+    inverse[:, :3, 3] = -np.einsum("jki,jk->ji", bones.axes, bones.places)
     columns = inverse.transpose(0, 2, 1).reshape(-1, 16)  # glTF writes column after column
     return {
         "joints": [first + joint for joint in range(len(bones.names))],
@@ -156,23 +235,14 @@ def _skin(bones: Bones, buffer: _Buffer, first: int) -> dict[str, Any]:
     }
 
 
-def _at_rest(bones: Bones) -> np.ndarray:
-    """Places of the joints at rest, the root at the origin."""
-    places = np.zeros((len(bones.names), 3))
-    for joint, parent in enumerate(bones.parents):
-        if parent >= 0:
-            places[joint] = places[parent] + bones.rest[joint]
-    return places
-
-
-def _body(bones: Bones, buffer: _Buffer) -> dict[str, Any]:
+def _body(bones: _Bones, buffer: _Buffer) -> dict[str, Any]:
     """An octahedron along each bone, carried by the joint it begins at."""
-    rest = _at_rest(bones)
+    rest = bones.places
     corners, carriers = [], []
     for joint, parent in enumerate(bones.parents):
-        bone = bones.rest[joint]
+        bone = rest[joint] - rest[parent] if parent >= 0 else np.zeros(3)
         length = np.linalg.norm(bone)
-        if parent < 0 or length == 0:
+        if length == 0 or {joint, parent} <= set(bones.moves):
             continue
         along = bone / length
         aside = np.cross(along, np.eye(3)[np.abs(along).argmin()])

@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.stimulus.html_page import stand_alone_page
+from eigenwalker.stimulus.rig_choices import RigChoices
 from eigenwalker.stimulus.stimulus import Stimulus
+
+if TYPE_CHECKING:
+    from eigenwalker.stimulus.animation import Animation
 
 
 def write_stimulus(
-    stimulus: Stimulus, path: str | os.PathLike[str], *, progress: Progress | None = None
+    stimulus: Stimulus,
+    path: str | os.PathLike[str],
+    *,
+    progress: Progress | None = None,
+    rig: RigChoices | None = None,
 ) -> Path:
     """Write a stimulus as a file, which appears when it is complete, and return its path.
 
@@ -39,6 +48,8 @@ def write_stimulus(
         File to write, or to replace, or the folder of frames.
     progress : callable, optional
         Called with the number of frames done and of all, where frames are drawn.
+    rig : RigChoices, optional
+        Skeleton, pose at rest, place, unit and axes of .bvh and .glb.
 
     Returns
     -------
@@ -75,6 +86,16 @@ def write_stimulus(
             table = path.with_suffix(".npz")
             _write_text(psychopy_script(stimulus, table), unfinished)
             write_stimulus(stimulus, table)
+        elif suffix in RIGS:
+            from eigenwalker.stimulus.animation import animated
+
+            choices = rig or RigChoices()
+            figure = animated(stimulus, choices=choices, closed=suffix == ".glb")
+            about = {**stimulus.provenance, "feet": str(figure.slide)}
+            rate_hz = stimulus.timing.rate_hz
+            write_animation(
+                {"walker": figure}, unfinished, rate_hz=rate_hz, choices=choices, about=about
+            )
         else:
             WRITERS[suffix](stimulus, unfinished)
     return path
@@ -167,19 +188,27 @@ def _write_table(stimulus: Stimulus, path: Path) -> None:
     getattr(position_tables, write)(stimulus, path)
 
 
-def _write_bvh(stimulus: Stimulus, path: Path) -> None:
-    from eigenwalker.io.write import write_mocap
-    from eigenwalker.stimulus.animation import animated
-
-    write_mocap(animated(stimulus).walk, path)
-
-
-def _write_glb(stimulus: Stimulus, path: Path) -> None:
-    from eigenwalker.stimulus.animation import animated
+def write_animation(
+    animations: Mapping[str, Animation],
+    path: Path,
+    *,
+    rate_hz: float,
+    choices: RigChoices,
+    about: Mapping[str, str] | None = None,
+) -> None:
+    """Write figures that walk as rigs: one in a BVH, one or several, by name, in a GLB."""
+    from eigenwalker.io.writers.bvh import write_rig
     from eigenwalker.stimulus.gltf import write_glb
 
-    animation = animated(stimulus)
-    write_glb(animation.walk, path, about={**stimulus.provenance, "feet": str(animation.slide)})
+    first = next(iter(animations.values()))
+    if path.suffix.lower() == ".bvh":
+        write_rig(first.rig, path, rate_hz=rate_hz, unit=choices.unit or "cm", up=choices.up)
+        return
+    if choices.up != "y":
+        raise ValueError(f"up={choices.up!r}: a .glb has y up, by its standard; write .bvh.")
+    rigs = {name: animation.rig for name, animation in animations.items()}
+    unit = choices.unit or "m"
+    write_glb(rigs, path, rate_hz=rate_hz, unit=unit, about=about)
 
 
 FILMS = (".mp4", ".webm", ".gif")
@@ -191,7 +220,6 @@ WRITERS: dict[str, Callable[[Stimulus, Path], object]] = {
     ".npz": _write_table,
     ".mat": _write_table,
     ".html": lambda stimulus, path: _write_text(stand_alone_page(stimulus), path),
-    ".bvh": _write_bvh,
-    ".glb": _write_glb,
 }
-SUFFIXES = [*FILMS, *WRITERS, ".py"]
+RIGS = (".bvh", ".glb")
+SUFFIXES = [*FILMS, *WRITERS, *RIGS, ".py"]
