@@ -7,6 +7,7 @@ from .make import (
 )
 from .moving_dots import Moments as Moments, MovingDots as MovingDots
 from .player import Played as Played
+from .rig_choices import RigChoices as RigChoices
 from .schema import (
     Display as Display,
     StimulusFile as StimulusFile,

@@ -135,8 +135,8 @@ def fit_rig(
     `ground` is where the root on the floor is, (time, 3), in skeletons that have one.
     """
     _check(walk, skeleton, rest_pose)
-    ankles = walk.sel(marker=[f"{side}_ankle" for side in SIDES]).values[..., 2].mean()
-    if ankles > walk.sel(marker="pelvis").values[:, 2].mean():  # upside down
+    ankles = _places(walk, [f"{side}_ankle" for side in SIDES])[..., 2].mean()
+    if ankles > _places(walk, ["pelvis"])[..., 2].mean():  # upside down
         rig = fit_rig(walk * FLIP, skeleton, rest_pose, ground=ground)
         flip = Rotation.from_matrix(np.diag(FLIP))
         turned = [flip * _rotation(turn) for turn in np.moveaxis(rig.turns, 1, 0)]
@@ -167,16 +167,22 @@ def _check(walk: xr.DataArray, skeleton: str, rest_pose: str) -> None:
 def floor_of(walk: xr.DataArray) -> float:
     """Return the height of the floor: 0 where the feet say so, else below the lowest ankle."""
     ankle = _leg_of(walk) * ANKLE
-    ankles = walk.sel(marker=[f"{side}_ankle" for side in SIDES]).values[..., 2]
+    ankles = _places(walk, [f"{side}_ankle" for side in SIDES])[..., 2]
     lowest = float(np.quantile(ankles, 0.02))
-    toes = [name for name in walk.marker.values if str(name).endswith(("_toe", "_heel"))]
-    lowest_toe = float(walk.sel(marker=toes).values[..., 2].min()) if toes else 0.0
+    names = [str(name) for name in walk.marker.values]
+    toes = [name for name in names if name.endswith(("_toe", "_heel"))]
+    lowest_toe = float(_places(walk, toes)[..., 2].min()) if toes else 0.0
     return 0.0 if 0.5 * ankle < lowest < 2 * ankle and lowest_toe >= 0 else lowest - ankle
+
+
+def _places(walk: xr.DataArray, names: Sequence[str]) -> np.ndarray:
+    known = [str(name) for name in walk.marker.values]
+    return walk.values[:, [known.index(name) for name in names]]
 
 
 def _leg_of(walk: xr.DataArray) -> float:
     """Return the mean length of thigh and shank together."""
-    legs = [walk.sel(marker=[f"{s}_{j}" for j in ("hip", "knee", "ankle")]).values for s in SIDES]
+    legs = [_places(walk, [f"{s}_{j}" for j in ("hip", "knee", "ankle")]) for s in SIDES]
     lengths = np.linalg.norm(np.diff(legs, axis=2), axis=-1)
     return float(np.median(lengths, axis=1).sum(axis=1).mean())
 
@@ -185,7 +191,9 @@ class _Body:
     """All joints at rest and how they turn, from the pelvis outwards."""
 
     def __init__(self, walk: xr.DataArray, floor_mm: float | None) -> None:
-        self.seen = {str(name): walk.sel(marker=name).values for name in walk.marker.values}
+        self.seen = {
+            str(name): walk.values[:, number] for number, name in enumerate(walk.marker.values)
+        }
         self.leg = _leg_of(walk)
         self.floor = floor_of(walk) if floor_mm is None else floor_mm
         self.joints: dict[str, _Joint] = {}
@@ -299,7 +307,7 @@ class _Body:
             self.add(f"{side}_{following}", f"{side}_{joint}", bone)
 
     def _foot(self, side: str) -> None:
-        seen, ankle, toe = self.seen, f"{side}_ankle", f"{side}_toe"
+        seen, ankle, toe, heel = self.seen, f"{side}_ankle", f"{side}_toe", np.zeros(3)
         low = float(np.quantile(seen[ankle][:, 2], 0.1)) - self.floor
         height = max(low, 0.3 * ANKLE * self.leg)
         if toe in seen:
