@@ -41,6 +41,7 @@ function drawnState(seed: number): State {
     tempo: tidy(between(RANGES.tempo)),
     azimuth_deg: tidy(between([-180, 179.9])),
     elevation_deg: tidy(between(RANGES.elevation_deg)),
+    zoom: tidy(between(RANGES.zoom)),
     perspective: u() < 0.5,
     turning_deg_s: tidy(between(RANGES.turning_deg_s)),
     style: one(["dots", "sticks", "mannequin"]),

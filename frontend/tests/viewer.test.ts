@@ -52,6 +52,8 @@ describe("what is drawn quickly is what the stimulus says", () => {
     ["one that turns by itself", { turning_deg_s: 40 }],
     ["four panels in perspective", { scene: "four", perspective: true, azimuth_deg: 20, elevation_deg: -15 }],
     ["four at one tempo", { scene: "side", walkers: [0, 3, 5, 7] }],
+    ["one near", { zoom: 3, elevation_deg: 10 }],
+    ["four far away in perspective", { scene: "four", perspective: true, zoom: 0.4 }],
     ["a crowd", { scene: "crowd", traits: { weight_kg: 2 }, elevation_deg: 50 }],
   ])("%s", (_, part) => {
     const spec = specOf(part);
@@ -103,6 +105,16 @@ describe("walkers stay in their boxes", () => {
       });
     }
   });
+});
+
+it("zooms about the middle of the picture, walkers and places alike", () => {
+  const extent = { radius: 450, height: 1750 };
+  const [once, twice] = [1, 2].map((zoom) => arrange(3, extent, SIZE, 10, zoom));
+  expect(twice!.pxPerMm).toBeCloseTo(2 * once!.pxPerMm);
+  expect(twice!.eyeMm).toBeCloseTo(once!.eyeMm);
+  expect(twice!.offsets).toEqual(once!.offsets);
+  const middle = ({ left, width }: { left: number; width: number }): number => left + width / 2 - SIZE.width_px / 2;
+  twice!.boxes.forEach((box, i) => expect(middle(box)).toBeCloseTo(2 * middle(once!.boxes[i]!)));
 });
 
 describe("the chain", () => {
@@ -308,6 +320,16 @@ describe("the viewer", () => {
     Object.defineProperties(event, { pointerId: { value: 1 }, timeStamp: { value: (time += 30) } });
     canvas.dispatchEvent(event);
   };
+
+  it("reports how much nearer the wheel brings it", () => {
+    const zoomed = vi.fn();
+    staged({}, { zoomed });
+    canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: -120 }));
+    canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: 120 }));
+    const [near = 0, far = 0] = zoomed.mock.calls.flat();
+    expect(near).toBeGreaterThan(1.1);
+    expect(near * far).toBeCloseTo(1);
+  });
 
   it("is turned by dragging, and reports it", () => {
     const turned = vi.fn();

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eigenwalker.analysis import trait_axis
 from eigenwalker.core import JOINTS, Walker
 from eigenwalker.datasets.bml import POSITIVE_POLES, BmlModel, read_bml_axes
 from eigenwalker.gait import gait_parameters
@@ -141,3 +142,26 @@ def test_damaged_files_end_in_a_model_or_the_one_error(tmp_path, made_up):
             assert np.isfinite(model.mean).all()
             outcomes.add("read")
     assert outcomes == {"read", "refused"}
+
+
+@pytest.mark.parametrize("place", [{"sex": 3}, {"happy": -2}, {"weight": 1.5, "nervous": 2}])
+def test_steps_along_traits_of_its_population_are_those_of_the_tables(published, place):
+    people = published.population()
+    steps = [trait_axis(people, name).step * far for name, far in place.items()]
+    walker, exact = people.walker(people.average + sum(steps)), published.walker(**place)
+    cycle = 2 * np.pi * np.arange(100) / 100
+    mm = walker.positions(cycle + np.pi / 2)  # strides of a population begin a quarter later
+    pelvis = JOINTS.index("pelvis")
+    above_floor_mm = (exact.p0 - walker.p0)[pelvis]
+    np.testing.assert_allclose(mm + above_floor_mm, exact.positions(cycle), atol=0.1)
+    assert walker.frequency_hz == pytest.approx(exact.frequency_hz, rel=0.02)
+
+
+def test_tables_are_walkers_to_every_command_and_no_stimulus(tmp_path, made_up, run_command):
+    tables = _write(tmp_path, made_up)
+    code, said, _ = run_command("stimulus", tables, "--trait", "sex=2", "-o", tmp_path / "s.json")
+    assert (code, "sex: 2 standard deviations towards male" in said) == (0, True)
+    assert run_command("stimulus", tmp_path / "s.json", "-o", tmp_path / "s.svg")[0] == 0
+    code, said, _ = run_command("demo", tables, "-o", tmp_path / "page", "--no-open")
+    assert (code, "walkers are too few to tell sex from gait" in said) == (0, True)
+    assert [path.name for path in (tmp_path / "page").iterdir()] == ["index.html"]

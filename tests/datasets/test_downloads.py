@@ -81,6 +81,7 @@ def small(server, monkeypatch) -> Collection:
     collection = Collection(
         "small",
         "walks of nobody",
+        "tests",
         0.1,
         "CC BY 4.0",
         "Say whose it is.",
@@ -123,7 +124,9 @@ def test_a_collection_is_fetched_once(small, server, tmp_path: Path):
 
 
 def test_the_licence_comes_first(small, server, tmp_path: Path):
-    with pytest.raises(ValueError, match=r"(?s)CC BY 4\.0\. Say whose it is\..*Nobody \(2024\)"):
+    with pytest.raises(
+        ValueError, match=r"(?s)Good for tests\..*CC BY 4\.0\. Say whose it is\..*Nobody \(2024\)"
+    ):
         fetch_captures("small", tmp_path)
     assert not server.asked
     assert not _there(tmp_path)

@@ -128,3 +128,9 @@ def test_files_without_walkers_in_the_mm_format_are_refused(tmp_path):
     savemat(tmp_path / "mm.mat", {"still": np.zeros((46, 5))})
     with pytest.raises(UnreadableFile, match="period"):
         read_mm(tmp_path / "mm.mat")
+
+
+def test_the_file_is_a_population_to_every_command(tmp_path, tables, run_command):
+    savemat(tmp_path / "walkers.mat", tables)
+    where = ("--trait", "sex=1", "-o", tmp_path / "s.json")
+    assert run_command("stimulus", tmp_path / "walkers.mat", *where)[0] == 0

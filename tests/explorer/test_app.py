@@ -247,18 +247,23 @@ def test_names_lead_nowhere(sent, safe):
     assert safe_name(sent) == safe
 
 
-def test_a_film_is_made_of_a_stimulus(client, people):
+def test_a_film_and_the_movement_are_made_of_a_stimulus(client, people):
     shown = ew.make_stimulus(people.walkers[0], duration_s=0.5, size_px=(64, 64))
-    answer = client.post("/api/film?format=gif", content=shown.to_json())
-    assert answer.headers["content-type"] == "image/gif"
-    assert answer.content.startswith(b"GIF89a")
+    for format, kind, begins in (
+        ("gif", "image/gif", b"GIF89a"),
+        ("bvh", "text/plain; charset=utf-8", b"HIERARCHY"),
+        ("glb", "model/gltf-binary", b"glTF"),
+    ):
+        answer = client.post(f"/api/film?format={format}", content=shown.to_json())
+        assert answer.headers["content-type"] == kind
+        assert answer.content.startswith(begins)
 
 
 def test_films_that_cannot_be_made_are_refused(client, people):
     shown = ew.make_stimulus(people.walkers[0], duration_s=3000)
     for query, content, said in (
         ("format=mp4", shown.to_json(), "of 3000 s with 512 x 512 pixels at 60 Hz is too long"),
-        ("format=exe", "{}", "mp4, webm, gif, not as 'exe'"),
+        ("format=exe", "{}", "mp4, webm, gif, bvh, glb, not as 'exe'"),
         ("", "{}", "not as it should be: format"),
     ):
         answer = client.post(f"/api/film?{query}", content=content)

@@ -35,7 +35,7 @@ async function answerAbout<T>(files: readonly File[], schema: Schema<T>, what: s
   return explained(`The server's answer about ${files[0]?.name} is no ${what}`, () => checked(content, schema, "answer"));
 }
 
-export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif"): Promise<Blob> {
+export async function makeFilm(stimulus: string, format: "mp4" | "webm" | "gif" | "bvh" | "glb"): Promise<Blob> {
   return (await post("film", { format }, stimulus)).blob();
 }
 

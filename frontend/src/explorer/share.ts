@@ -13,8 +13,11 @@ import { note } from "./parts";
 import { hasServer, makeFilm } from "./server";
 import type { Part, Store } from "./store";
 
+/** The movement of the first walker, for programs of animation. */
+const MOVEMENTS = ["bvh", "glb"] as const;
 const FORMATS =
   "A picture is PNG, a film MP4 or WebM, a page one file of HTML that plays by itself; a stimulus is JSON.";
+const WITH_SERVER = " BVH and GLB hold the first walker's movement, for programs of animation.";
 
 export function share(store: Store, notices: Notices): Part {
   const python = make("pre", { class: "line", tabindex: 0, "aria-label": "Python that makes this walker" });
@@ -43,9 +46,10 @@ export function share(store: Store, notices: Notices): Part {
         film.button,
         saveButton("Page", pageFile),
         saveButton("Stimulus", stimulusFile),
+        ...(hasServer() ? MOVEMENTS : []).map((format) => saveButton(format.toUpperCase(), (now) => served(now, format))),
       ),
       film.progress,
-      note(FORMATS),
+      note(FORMATS + (hasServer() ? WITH_SERVER : "")),
       python,
     ),
     show: ({ model, state, own }) => void (python.textContent = pythonCode(model, state, own)),
@@ -93,8 +97,13 @@ function filmButton(store: Store, notices: Notices): { button: HTMLButtonElement
 async function makeFilmFile(snapshot: Snapshot, options: Parameters<typeof filmFile>[1]): Promise<SavedFile> {
   const encoding = await chooseEncoding({ width: 720, height: 720, rateHz: 60 }).catch(() => null);
   if (!hasServer() || encoding?.suffix === "mp4") return filmFile(snapshot, options);
+  return served(snapshot, "mp4");
+}
+
+/** The server makes the file of the stimulus. */
+async function served(snapshot: Snapshot, format: Parameters<typeof makeFilm>[1]): Promise<SavedFile> {
   const { name, blob } = stimulusFile(snapshot);
-  return { name: name.replace(/json$/, "mp4"), blob: await makeFilm(await blob.text(), "mp4") };
+  return { name: name.replace(/json$/, format), blob: await makeFilm(await blob.text(), format) };
 }
 
 async function copy(text: string, what: string, notices: Notices): Promise<void> {

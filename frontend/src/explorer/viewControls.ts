@@ -22,6 +22,12 @@ export function viewControls(store: Store): Part {
     });
     return bound(one, (state) => state[name]);
   };
+  const factor = slider({
+    label: "Zoom", min: Math.log2(RANGES.zoom[0]), max: Math.log2(RANGES.zoom[1]), step: 0.05, initial: 0,
+    format: (value) => `\u00d7 ${Number((2 ** value).toFixed(2))}`,
+    onInput: (value) => store.change({ zoom: 2 ** value }),
+  });
+  const zoom = bound({ ...factor, show: (value: number) => factor.show(Math.log2(value)) }, (state) => state.zoom);
   return group({},
     group({ class: "row switches" },
       flag("Trails", "trails", "Where each point has been"),
@@ -29,7 +35,8 @@ export function viewControls(store: Store): Part {
     group({ class: "sliders" },
       angle("Seen from", "azimuth_deg", 1),
       angle("Height of the eye", "elevation_deg", 1),
-      angle("Turns by itself", "turning_deg_s", 5, " a second")));
+      angle("Turns by itself", "turning_deg_s", 5, " a second"),
+      zoom));
 }
 
 /** Seeds can be any whole number; the slider gives the first few. */

@@ -16,6 +16,8 @@ const PAUSE_MS = 1200;
 const MAX_NAMES = 4;
 /** Degrees for each press of an arrow key. */
 const TURN = 5;
+/** Factor for each press of + or -. */
+const ZOOM = 1.15;
 const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
   ArrowLeft: [TURN, 0],
   ArrowRight: [-TURN, 0],
@@ -36,6 +38,7 @@ export function viewerPanel(store: Store): View {
       store.change({ azimuth_deg, elevation_deg });
     },
     ticked: (phase) => tools.tick(phase),
+    zoomed: (factor) => zoomBy(store, factor),
     picked: (known) => store.change({ from: known, scene: "one" }),
     arranged: (boxes) => showNames(labels, last?.figures ?? [], boxes),
   });
@@ -71,10 +74,14 @@ function turnByKey(store: Store, event: KeyboardEvent): void {
       azimuth_deg: wrappedDegrees(azimuth_deg + arrow[0]),
       elevation_deg: clamped(RANGES.elevation_deg, elevation_deg + arrow[1]),
     });
-  } else if (event.key === "Home") store.change({ azimuth_deg: 0, elevation_deg: 0 });
+  } else if (event.key === "+" || event.key === "-") zoomBy(store, event.key === "+" ? ZOOM : 1 / ZOOM);
+  else if (event.key === "Home") store.change({ azimuth_deg: 0, elevation_deg: 0, zoom: 1 });
   else return;
   event.preventDefault();
 }
+
+const zoomBy = (store: Store, factor: number): void =>
+  store.change({ zoom: clamped(RANGES.zoom, store.state.zoom * factor) });
 
 /** The names of a few walkers, below each of them. */
 function showNames(element: HTMLElement, figures: readonly SceneFigure[], boxes: readonly Box[]): void {

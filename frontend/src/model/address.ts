@@ -61,6 +61,7 @@ const CODES: { readonly [Part in CodedPart]: Code<State[Part]> } = {
     read: (text) => numbersIn(text, [-1e6, 1e6]).map(wrappedDegrees)[0],
   },
   elevation_deg: number("el", RANGES.elevation_deg),
+  zoom: number("z", RANGES.zoom),
   perspective: flag("eye"),
   turning_deg_s: number("turn", RANGES.turning_deg_s),
   style: choice("as", { dots: "dots", sticks: "sticks", mannequin: "body" }),

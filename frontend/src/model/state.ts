@@ -33,6 +33,8 @@ export interface State {
   readonly tempo: number;
   readonly azimuth_deg: number;
   readonly elevation_deg: number;
+  /** Factor of the size that fills the picture. */
+  readonly zoom: number;
   readonly perspective: boolean;
   /** Speed at which the figure turns by itself. */
   readonly turning_deg_s: number;
@@ -61,6 +63,7 @@ export const RANGES = {
   tempo: [0.1, 3],
   azimuth_deg: [-180, 180],
   elevation_deg: [-30, 90],
+  zoom: [0.25, 8],
   turning_deg_s: [-180, 180],
   cycle: [0, 1],
 } as const satisfies Record<string, readonly [number, number]>;
@@ -106,6 +109,7 @@ export function initialState(model: Model): State {
     tempo: 1,
     azimuth_deg: 30,
     elevation_deg: 0,
+    zoom: 1,
     perspective: false,
     turning_deg_s: 0,
     style: "dots",

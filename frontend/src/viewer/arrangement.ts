@@ -79,8 +79,8 @@ export function sharedExtent(average: Walker, walkers: readonly Walker[]): Exten
   };
 }
 
-/** Arrange a number of walkers in rows and columns, as large as the picture allows. */
-export function arrange(count: number, extent: Extent, size: Size, elevationDeg: number): Arrangement {
+/** Arrange a number of walkers in rows and columns, as large as the picture allows times `zoom`. */
+export function arrange(count: number, extent: Extent, size: Size, elevationDeg: number, zoom = 1): Arrangement {
   const tilt = Math.abs(Math.sin(radians(elevationDeg)));
   const across = (2 * extent.radius) / FILL;
   const above = (extent.height * Math.cos(radians(elevationDeg)) + 2 * extent.radius * tilt) / FILL;
@@ -91,8 +91,8 @@ export function arrange(count: number, extent: Extent, size: Size, elevationDeg:
   const choices = Array.from({ length: count }, (_, i) => i + 1);
   const columns = choices.reduce((best, n) => (scaleOf(n) > scaleOf(best) * 1.0001 ? n : best), 1);
   const rows = Math.ceil(count / columns);
-  const pxPerMm = Math.max(scaleOf(columns), 1e-4);
-  const [width, height] = [size.width_px / columns, size.height_px / rows];
+  const pxPerMm = Math.max(zoom * scaleOf(columns), 1e-4);
+  const [width, height] = [(zoom * size.width_px) / columns, (zoom * size.height_px) / rows];
   const offsets = Array.from({ length: count }, (_, i) => {
     const [row, column] = [Math.floor(i / columns), i % columns];
     const inRow = Math.min(columns, count - row * columns);
@@ -108,7 +108,7 @@ export function arrange(count: number, extent: Extent, size: Size, elevationDeg:
     pxPerMm,
     dotPx: Math.max(DOT_MM * pxPerMm, MIN_DOT_PX),
     middleMm: extent.height / 2,
-    eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, (1.5 * Math.max(size.width_px, size.height_px)) / pxPerMm),
+    eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, (1.5 * zoom * Math.max(size.width_px, size.height_px)) / pxPerMm),
     offsets,
     boxes,
   };

@@ -48,8 +48,13 @@ export interface Gestures {
   thrown(rightPerS: number, downPerS: number): void;
   /** Released without moving, at a place in pixels from the left and upper edge. */
   tapped(x: number, y: number): void;
+  /** The wheel was turned, or two fingers moved apart on a touchpad: by this factor nearer. */
+  zoomed(factor: number): void;
 }
 
+/** Pixels of the wheel that make everything e times as large; lines of 16 pixels. */
+const WHEEL_PX = 600;
+const LINE_PX = 16;
 /** Movements of a tap are no longer than this. */
 const TAP_PX = 6;
 /** The speed of a throw is measured over this time before the release. */
@@ -92,6 +97,12 @@ export function watchGestures(element: HTMLElement, signal: AbortSignal, gesture
   const cancel = (event: PointerEvent): void => {
     if (event.pointerId === held?.id) held = null;
   };
+  const wheel = (event: WheelEvent): void => {
+    event.preventDefault();
+    const px = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? LINE_PX : 1);
+    gestures.zoomed(Math.exp(-px / WHEEL_PX));
+  };
+  element.addEventListener("wheel", wheel, { signal, passive: false });
   element.addEventListener("pointerdown", down, { signal });
   element.addEventListener("pointermove", move, { signal });
   element.addEventListener("pointerup", up, { signal });

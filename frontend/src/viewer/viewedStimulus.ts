@@ -23,7 +23,7 @@ export function stimulusOf(scene: Scene, size: Size = DEFAULT_SIZE): Stimulus {
 }
 
 export const arrangementFor = (scene: Scene, size: Size): Arrangement =>
-  arrange(scene.figures.length, extentFor(scene), size, scene.state.elevation_deg);
+  arrange(scene.figures.length, extentFor(scene), size, scene.state.elevation_deg, scene.state.zoom);
 
 export const extentFor = ({ model, figures }: Scene): Extent =>
   sharedExtent(walkerOf(model, model.average), figures.map(({ walker }) => walker));

@@ -21,6 +21,8 @@ export interface ViewerEvents {
   ticked?(phase: number): void;
   /** One of several walkers was tapped: its number among the model's walkers. */
   picked?(known: number): void;
+  /** The wheel was turned: by this factor nearer. */
+  zoomed?(factor: number): void;
   /** The cells of the walkers have changed, in CSS pixels. */
   arranged?(boxes: readonly Box[]): void;
   /** The mannequin is drawn flat, as its module is missing; the message says why. */
@@ -39,7 +41,7 @@ interface Built extends Scene {
 
 /** Parts of the state that need a new animation, beside the figures. */
 const ANIMATED_PARTS = [
-  "perspective", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms",
+  "perspective", "zoom", "turning_deg_s", "style", "trails", "dark", "scene", "tempo", "transforms",
 ] as const;
 
 const DEGREES_PER_PX = 0.5;
@@ -157,7 +159,7 @@ export class Viewer {
   #arrange(scene: Scene, elevationDeg: number): Arrangement {
     const { figures } = scene;
     if (this.#extent?.figures !== figures) this.#extent = { figures, extent: extentFor(scene) };
-    const arrangement = arrange(figures.length, this.#extent.extent, this.#size, elevationDeg);
+    const arrangement = arrange(figures.length, this.#extent.extent, this.#size, elevationDeg, scene.state.zoom);
     this.#boxes = arrangement.boxes;
     this.#events.arranged?.(this.#boxes);
     return arrangement;
@@ -263,6 +265,7 @@ export class Viewer {
         this.#wake();
       },
       tapped: (x, y) => this.#pick(x, y),
+      zoomed: (factor) => this.#events.zoomed?.(factor),
     });
   }
 

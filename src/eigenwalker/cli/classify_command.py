@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from eigenwalker.population.population import Population
 
 INDEX = "index.html"
+FEWEST_WALKERS = 4
+"""Walkers of whom three are left to learn from while one is predicted."""
 BUILT_IN_TITLE = "How people walk"
 
 
@@ -69,6 +71,7 @@ def demo(
     index.html holds the walkers, report.html beside it what tells the trait from gait; both work
     from the disk, without a network.
     """
+    from eigenwalker.analysis.contrast import trait_contrast
     from eigenwalker.analysis.trait_study import study_trait
     from eigenwalker.core.atomic_write import atomic_write
     from eigenwalker.datasets.built_in import built_in_capture
@@ -79,20 +82,27 @@ def demo(
 
     population = load_people(people, with_flagged)
     trait = trait or _usual_trait(population)
-    with progress_bar("Classifying and filming") as progress:
-        result = _classify(population, trait, progress=progress)
-        page = write_classification_report(
-            study_trait(population, result),
-            output,
-            example=built_in_capture() if people is None else None,
-            beside=Link("Play with these walkers", INDEX),
-        )
+    index, report = output / INDEX, ""
+    n_walkers = len(trait_contrast(population, trait).rows)
+    if n_walkers >= FEWEST_WALKERS:
+        with progress_bar("Classifying and filming") as progress:
+            result = _classify(population, trait, progress=progress)
+            page = write_classification_report(
+                study_trait(population, result),
+                output,
+                example=built_in_capture() if people is None else None,
+                beside=Link("Play with these walkers", INDEX),
+            )
+        report = page.name
+        _print_result(result, population)
+        print(f"Report: {page}")
+    else:
+        output.mkdir(parents=True, exist_ok=True)
+        print(f"{n_walkers} walkers are too few to tell {trait} from gait: the page has no report.")
     model = page_model(population, first=trait, **model_names(people))
-    index = page.with_name(INDEX)
     with atomic_write(index) as unfinished:
-        unfinished.write_text(interactive_page(model, report=page.name), encoding="utf-8")
-    _print_result(result, population)
-    print(f"Report: {page}\nPage to play with: {index}")
+        unfinished.write_text(interactive_page(model, report=report), encoding="utf-8")
+    print(f"Page to play with: {index}")
     if open_page:
         open_in_browser(str(index))
 

@@ -26,6 +26,7 @@ def list_collections() -> None:
     print("name          files       MB  licence       what")
     for name, each in sorted(collections().items()):
         print(f"{name:<13}{len(each.files):>6}{each.size_mb:>9g}  {each.licence:<13} {each.about}")
+        print(f"{'':<13}good for {each.good_for}")
 
 
 @data.command()

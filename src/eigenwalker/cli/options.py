@@ -30,7 +30,10 @@ def option(about: str, *names: str) -> Any:
 
 People = Annotated[
     Path | None,
-    typer.Argument(help="Population file (.nc); left out, the built-in simulated population."),
+    typer.Argument(
+        help="Population file (.nc), or published walkers (bml_axes.json, walkers.mat); left out, "
+        "the built-in simulated population."
+    ),
 ]
 WithFlagged = Annotated[bool, option("Count flagged walkers too.", "--with-flagged")]
 Unit = Annotated[

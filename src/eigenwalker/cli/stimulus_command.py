@@ -49,7 +49,8 @@ def stimulus(
     people: Annotated[
         Path | None,
         typer.Argument(
-            help="Population (.nc) or a stimulus (.json); left out, the built-in population."
+            help="Population (.nc), published walkers (.json, .mat) or a stimulus (.json); left "
+            "out, the built-in population."
         ),
     ] = None,
     output: Annotated[
@@ -132,6 +133,7 @@ def stimulus(
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
     options = dict(locals())
+    from eigenwalker.datasets.bml import looks_like_bml
     from eigenwalker.plotting.encoding import FORMATS
     from eigenwalker.stimulus.write_stimulus import check_suffix, write_stimulus
 
@@ -143,7 +145,7 @@ def stimulus(
         raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
     if not (trait or morph_to) and (kind, part, components) != ("discriminant", "all", 10):
         raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
-    if people is not None and people.suffix.lower() == ".json":
+    if people is not None and people.suffix.lower() == ".json" and not looks_like_bml(people):
         made, population = _of_a_stimulus(options), None
     else:
         population = load_people(people, with_flagged)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
@@ -21,6 +23,7 @@ from eigenwalker.io.walker_tables import (
     on_the_floor,
     walker_from_mm,
 )
+from eigenwalker.population.population import Population
 
 POSITIVE_POLES = {"sex": "male", "weight": "heavy", "nervous": "nervous", "happy": "happy"}
 """The axes and their positive poles."""
@@ -30,6 +33,7 @@ _N_ROWS = 3 * len(JOINTS.markers) + 1
 _N_NUMBERS = _N_ROWS * len(SIN_FIRST)
 _MAX_BYTES = 10**7
 _MAX_MM = 1e5
+_CITATION = "Troje, N. F. (2002). The little difference. Dynamic Perception, 115-120."
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +90,23 @@ class BmlModel:
         mm[:-1] = mm[:-1, [0, cosine, sine, cosine + 2, sine + 2]]
         return on_the_floor(walker_from_mm(mm, rate_hz=BML_RATE_HZ))
 
+    def population(self, *, source: str = "the BML tables") -> Population:
+        """Return the mean walker and walkers on either side of it along each axis.
+
+        A step along a trait of this population is one standard deviation along the axis of that
+        name, so that all commands and pages that take a population show the published axes. Sex has
+        two walkers, ``female`` and ``male``; the others have three, -1, 0 and 1.
+        """
+        walkers, traits = [self.walker()], [dict.fromkeys(set(self.axes) - {"sex"}, 0.0)]
+        for axis in self.axes:
+            # As many as make the standard deviation of the walkers that differ in the trait 1.
+            far = np.sqrt(0.5) if axis == "sex" else 1.0
+            for sign, sex in ((-1, "female"), (1, "male")):
+                walkers.append(self.walker(**{axis: sign * far}))
+                traits.append({axis: sex if axis == "sex" else float(sign)})
+        table = pd.DataFrame(traits, columns=list(self.axes))
+        return Population(walkers, table, provenance={"source": source, "citation": _CITATION})
+
 
 def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     """Return the mean walker and the axes of a file of the published BML tables.
@@ -141,6 +162,14 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     except ValueError as error:
         raise UnreadableFile(path.name, "a mean walker that can walk", f"{error}") from error
     return model
+
+
+def looks_like_bml(path: Path) -> bool:
+    """Whether a file is JSON with the tables, in which the mean walker is a list of numbers."""
+    if path.suffix.lower() != ".json" or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return re.search(rb'"walker"\s*:\s*\[\s*[-\d]', file.read(_MAX_BYTES)) is not None
 
 
 def _tables(content: Any) -> dict[str, Any] | None:

@@ -22,7 +22,8 @@ def load_population(path: str | Path | None = None) -> Population:
     Parameters
     ----------
     path : str or Path, optional
-        File of ``Population.save`` or ``eigenwalker fit``. Left out, it is the built-in population
+        File of ``Population.save`` or ``eigenwalker fit``; or published walkers: the BML tables
+        (`read_bml_axes`) or Moler's walkers.mat. Left out, it is the built-in population
         of 20 women and 20 men, who are simulated: good to learn and test with, no evidence about
         people.
 
@@ -50,7 +51,17 @@ def load_population(path: str | Path | None = None) -> Population:
     >>> len(people), people.X.shape
     (40, (40, 229))
     """
-    return _built_in() if path is None else Population.load(path)
+    if path is None:
+        return _built_in()
+    if Path(path).suffix.lower() == ".json":
+        from eigenwalker.datasets.bml import read_bml_axes
+
+        return read_bml_axes(path).population(source=Path(path).name)
+    if Path(path).suffix.lower() == ".mat":
+        from eigenwalker.datasets.moler import read_walkers_mat
+
+        return read_walkers_mat(path)
+    return Population.load(path)
 
 
 @cache

@@ -52,6 +52,7 @@ class Collection:
 
     name: str
     about: str
+    good_for: str
     size_mb: float
     licence: str
     terms: str
@@ -62,6 +63,7 @@ class Collection:
         """Return contents, licence and citation, to be shown before it is fetched."""
         return (
             f"{self.name}: {self.about}\n"
+            f"Good for {self.good_for}.\n"
             f"{len(self.files)} files, {self.size_mb:g} MB\n"
             f"Licence: {self.licence}. {self.terms}\n"
             f"Please cite: {self.citation}"

@@ -22,7 +22,14 @@ from eigenwalker.web.run import new_app, while_connected
 from eigenwalker.web.task_runner import Refused, TaskRunner
 from eigenwalker.web.upload import receive_files, stream_to_file
 
-FILMS = {"mp4": "video/mp4", "webm": "video/webm", "gif": "image/gif"}
+FILMS = {
+    "mp4": "video/mp4",
+    "webm": "video/webm",
+    "gif": "image/gif",
+    "bvh": "text/plain",
+    "glb": "model/gltf-binary",
+}
+"""What is made of a stimulus; BVH and GLB hold the movement of its first walker."""
 MAX_MEMORY = 4 * 2**30
 """Bytes that a task may take, where the system can limit that (Linux)."""
 SECONDS = {"capture": 90, "population": 90, "study": 900, "film": 180}
@@ -51,7 +58,7 @@ def make_app(
     ``GET /``                 the page
     ``POST /api/capture``     a capture as a point of the population's space
     ``POST /api/population``  the model of a population's file, or of many captures
-    ``POST /api/film``        a film of a stimulus
+    ``POST /api/film``        a film of a stimulus, or the movement of its first walker
     ========================= ===================================================================
 
     Files that are sent are read by child processes, a few at a time, within limits of time and
