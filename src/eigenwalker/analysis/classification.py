@@ -231,7 +231,7 @@ def classify(
     population : Population
         Its flagged walkers are left out.
     trait : str
-        As `trait_contrast` takes it: ``"sex"``, ``"style=feminine:masculine"``.
+        A trait of two classes, ``"sex"``, or two of its classes, ``"style=feminine:masculine"``.
     inputs : sequence of Input
         What to classify from; parts that the population lacks are skipped.
     n_permutations : int
@@ -291,8 +291,18 @@ def regress(
 
     Parameters
     ----------
-    population, trait, inputs, n_permutations, random_state, progress
-        As in `classify`.
+    population : Population
+        Its flagged walkers are left out.
+    trait : str
+        A trait that is a number, ``"weight"``.
+    inputs : sequence of Input
+        What to predict from; parts that the population lacks are skipped.
+    n_permutations : int
+        Permuted traits to compare with.
+    random_state : int or numpy.random.Generator
+        Seed of the permutations, or their generator.
+    progress : callable, optional
+        Called with the number of steps done and of all steps: the folds of all inputs.
 
     Returns
     -------

@@ -162,22 +162,31 @@ class DiscriminantClassifier(ClassifierMixin, _Discriminant):
 class DiscriminantRegressor(RegressorMixin, _Discriminant):
     """Predicts a trait that is a number (age, weight, a rating) by a weighted sum of scores.
 
-    The discriminant c solves ``c K = r`` as in `DiscriminantClassifier`, with r_j the trait of
+    The discriminant c is the least-squares solution of ``c K = r`` (eq. 10), with r_j the trait of
     walker j minus the mean trait. A prediction is the walker's sum ``c k`` plus that mean.
 
     Parameters
     ----------
     n_components : int, optional
-        As in `DiscriminantClassifier`.
+        Components to use, those that contribute most first; all if not given.
     order : {"standardised", "raw", "variance"}
-        As in `DiscriminantClassifier`.
+        Contribution: ``|c_i| sd(k_i)``, which goes with the correlation of score and trait;
+        ``|c_i|``; or the variance of the scores.
 
     Attributes
     ----------
     positive_pole_, negative_pole_ : str
         "more" and "less" of the trait, with its name where y is a named pandas Series.
-    coef_, intercept_, order_, spread_, pattern_
-        As in `DiscriminantClassifier`; c is in units of the trait.
+    coef_ : array of shape (column,)
+        The discriminant c, in the unit of the trait, 0 where a component is left out.
+    intercept_ : float
+        Prediction at scores of 0, in the unit of the trait.
+    order_ : array of int of shape (column,)
+        Columns of K from the highest contribution to the lowest.
+    spread_ : float
+        Standard deviation (ddof 1) of c K over the walkers fitted on.
+    pattern_ : array of shape (column,)
+        cov(K) c within the components used: what varies along with c.
 
     See Also
     --------

@@ -191,9 +191,10 @@ def jackknife_curves(
     scale : {"sd"}, None, or array of shape (feature,)
         What features are divided by, as in `WalkerSpace`.
     order : {"standardised", "raw", "variance"}
-        Which components come first, as in `DiscriminantClassifier`.
+        Which components come first: by ``|c_i| sd(k_i)``, ``|c_i|`` or the variance of the scores
+        (`DiscriminantClassifier`).
     fit_intercept : bool
-        As in `DiscriminantClassifier`.
+        Whether the discriminant has a constant; the paper's has none.
     scale_in_fold : bool
         Whether to standardise again without the walker left out. Standardising once for all lets
         its scale, though not its class, leak into the training.
@@ -255,24 +256,36 @@ def regression_curves(
 ) -> RegressionCurves:
     """Return how well a trait that is a number is predicted for walkers left out.
 
-    As `jackknife_curves`, with the trait about its mean for r; the mean of the walkers trained on
-    is added to the prediction.
+    Each walker is left out in turn, and its trait predicted from the others (`jackknife_curves`),
+    with the trait about its mean for r; the mean of the walkers trained on is added.
 
     Parameters
     ----------
-    X, scale, order, scale_in_fold, groups, progress
-        As in `jackknife_curves`.
+    X : array of shape (walker, feature)
+        Walkers, or a part of their features.
     y : array of shape (walker,)
         The trait: age, weight, a rating.
+    scale : {"sd"}, None, or array of shape (feature,)
+        What features are divided by: each one's standard deviation, nothing, or these.
+    order : {"standardised", "raw", "variance"}
+        Which components come first: by ``|c_i| sd(k_i)``, ``|c_i|`` or the variance of the scores.
+    scale_in_fold : bool
+        Whether to standardise again without the walkers left out.
+    groups : array of shape (walker,), optional
+        The person of each row: all walks of a person are left out together.
+    progress : callable, optional
+        Called with the number of folds done and of all folds.
 
     Returns
     -------
     RegressionCurves
+        Predictions and errors for 1, 2, ... components, in the unit of the trait.
 
     Raises
     ------
     ValueError
-        As `jackknife_curves`, or if the trait does not vary.
+        If there are fewer than three walkers or groups, no feature or trait that varies, or missing
+        numbers.
 
     See Also
     --------

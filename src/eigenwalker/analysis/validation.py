@@ -90,20 +90,32 @@ def nested_leave_one_out(
 
     Parameters
     ----------
-    X, scale, order, scale_in_fold, groups, progress
-        As in `jackknife_curves`. Every pair of walkers is left out once, so n walkers take
-        n (n + 1) / 2 folds; `progress` counts the pairs.
+    X : array of shape (walker, feature)
+        Walkers, or a part of their features.
     y : array of shape (walker,)
         Two classes: text, or numbers of two values. Or else a trait that is a number.
+    scale : {"sd"}, None, or array of shape (feature,)
+        What features are divided by: each one's standard deviation, nothing, or these.
+    order : {"standardised", "raw", "variance"}
+        Which components come first: by ``|c_i| sd(k_i)``, ``|c_i|`` or the variance of the scores.
+    scale_in_fold : bool
+        Whether to standardise again without the walkers left out.
+    groups : array of shape (walker,), optional
+        The person of each row: all walks of a person are left out together.
+    progress : callable, optional
+        Called with the number of pairs of walkers that are done, and of all. Every pair is left out
+        once, so n walkers take n (n + 1) / 2 folds.
 
     Returns
     -------
     NestedPredictions
+        A prediction for each walker, and with how many components.
 
     Raises
     ------
     ValueError
-        As `jackknife_curves`; four walkers or groups are needed.
+        If there are fewer than four walkers or groups, no feature or trait that varies, missing
+        numbers, or if all walkers of a class would be left out at once.
 
     Notes
     -----
@@ -203,17 +215,30 @@ def permutation_test(
 
     Parameters
     ----------
-    X, y, scale, order, scale_in_fold, groups, progress
-        As in `nested_leave_one_out`. With `groups`, the trait is permuted among whole groups where
-        it is constant within each, and within groups otherwise.
+    X : array of shape (walker, feature)
+        Walkers, or a part of their features.
+    y : array of shape (walker,)
+        Two classes: text, or numbers of two values. Or else a trait that is a number.
     n_permutations : int
         Number of permutations.
     random_state : int or numpy.random.Generator
         Seed of the permutations, or their generator.
+    scale : {"sd"}, None, or array of shape (feature,)
+        What features are divided by: each one's standard deviation, nothing, or these.
+    order : {"standardised", "raw", "variance"}
+        Which components come first: by ``|c_i| sd(k_i)``, ``|c_i|`` or the variance of the scores.
+    scale_in_fold : bool
+        Whether to standardise again without the walkers left out.
+    groups : array of shape (walker,), optional
+        The person of each row: all walks of a person are left out together, and the trait is
+        permuted among persons where it is constant within each, and within persons otherwise.
+    progress : callable, optional
+        Called with the number of folds done and of all folds.
 
     Returns
     -------
     PermutationTest
+        The error, those of the permutations, and p.
 
     See Also
     --------

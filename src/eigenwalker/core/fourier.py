@@ -29,6 +29,10 @@ def harmonic_basis(cycles: np.ndarray, n_harmonics: int) -> np.ndarray:
     -------
     array of shape (time, 1 + 2 * harmonic)
 
+    See Also
+    --------
+    share_explained : How well harmonics describe a movement.
+
     References
     ----------
     Troje (2002), eq. 15. Troje (2002), The little difference, eq. 1.

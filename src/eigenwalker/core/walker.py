@@ -291,6 +291,10 @@ def fourier_coefficients(walker: Walker, n_harmonics: int) -> np.ndarray:
     array of shape (2 * harmonic, marker, axis)
         Millimetres.
 
+    See Also
+    --------
+    shift_origin : The same on a later clock.
+
     References
     ----------
     Troje (2002), The little difference, eq. 1.

@@ -44,6 +44,11 @@ def interactive_page(model: Mapping[str, Any], *, report: str = "", server: bool
     FileNotFoundError
         If the package was installed without its built pages.
 
+    See Also
+    --------
+    page_model : The numbers of the page.
+    show : The same in a notebook.
+
     Examples
     --------
     >>> page = interactive_page(ew.explorer.page_model(ew.load_population(), traits=["sex"]))

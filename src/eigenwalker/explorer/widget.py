@@ -60,6 +60,10 @@ def show(
     ValueError
         If a walker cannot be compared with the population.
 
+    See Also
+    --------
+    WalkerWidget : The widget itself.
+
     References
     ----------
     Troje (2002), eq. 13 and demonstration 1.

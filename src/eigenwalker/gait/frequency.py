@@ -116,6 +116,10 @@ def frequency_of_scores(
     NoStrideError
         If nothing moves or there is less than about a stride.
 
+    See Also
+    --------
+    fundamental_frequency : Of a capture.
+
     References
     ----------
     Troje (2002), eq. 2. Golub & Pereyra (1973), SIAM J. Numer. Anal. 10, 413-432.

@@ -69,13 +69,25 @@ def clip_components(a: Clip, b: Clip, *, metric: str | Metric = POSITIONS) -> pd
 
     Parameters
     ----------
-    a, b, metric
-        As in `clip_distance`; the weights of the metric are not used.
+    a, b : DataArray of shape (time, marker, axis) in mm, Walker, Loop or PreparedClip
+        Clips, of which the points that both have are compared.
+    metric : str, FrameMetric or GroupMetric
+        What is compared and how (F), or the name of a published metric (`PUBLISHED`); its weights
+        are not used. Left out, positions in mm.
 
     Returns
     -------
     Series of points
-        In the unit of F(d).
+        In the unit of F(d): the clip distance is the sum of these times the weights.
+
+    See Also
+    --------
+    clip_distance : The sum.
+    step_distances : Each moment.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3.
 
     Examples
     --------
@@ -93,14 +105,25 @@ def step_distances(a: Clip, b: Clip, *, by: By = "positions") -> pd.DataFrame:
 
     Parameters
     ----------
-    a, b
-        As in `clip_distance`.
+    a, b : DataArray of shape (time, marker, axis) in mm, Walker, Loop or PreparedClip
+        Clips, of which the points that both have are compared.
     by : {"positions", "velocities", "angles"}
-        In mm, mm/s or radians.
+        What is compared.
 
     Returns
     -------
     DataFrame of steps by points
+        Distance d_k in mm, mm/s or radians at each step (i, j) of the path on which the clips are
+        registered, always by their positions.
+
+    See Also
+    --------
+    clip_components : The means over the path.
+    motion_map : All frames with all.
+
+    References
+    ----------
+    Pražák et al. (2010), section 2 and eqs. 1 to 3.
 
     Examples
     --------
@@ -170,6 +193,11 @@ def compare_walks(a: Clip, b: Clip, *, metric: str | Metric = "positions-sigmoid
     Returns
     -------
     Comparison
+
+    See Also
+    --------
+    clip_distance : The distance alone.
+    prepare_walk : Makes a walk of a capture.
 
     References
     ----------

@@ -39,6 +39,10 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
         Positions in mm. ``attrs["hidden_markers"]`` names hands, feet and the like that were
         hidden for too long and are left out.
 
+    See Also
+    --------
+    prepare : Of any clip, as it is.
+
     References
     ----------
     Pražák et al. (2010), section 3.

@@ -110,11 +110,23 @@ class GroupMetric:
     ----------
     name : str
         Name for tables and reports.
-    by, shape, scale, exponent
-        As in `FrameMetric`.
+    by : {"positions", "velocities", "angles"}
+        Whether d_k is a distance of positions (mm) or velocities (mm/s), or an angle between
+        orientations of bones (radians).
+    shape : {"absolute", "squared", "sigmoid", "power"}
+        F(d): d, d^2, d / (d + scale) or d^exponent.
     group_weights : mapping of str to float
         Weight of each of `GROUPS`, 0 or more; other groups have none. The points of a group, left
         and right (`group_points`), share its weight.
+    scale : float, optional
+        Distance at which the sigmoid is a half, in the unit of d; left out, a metre, a metre a
+        second or a radian.
+    exponent : float, optional
+        For "power".
+
+    See Also
+    --------
+    FrameMetric : A weight for each point, and the equation.
 
     References
     ----------

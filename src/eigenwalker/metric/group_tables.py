@@ -26,11 +26,14 @@ def group_table(
 
     Parameters
     ----------
-    clips, progress
-        As in `pair_table`; walks best from `prepare_walk`.
+    clips : mapping of str to clip, or sequence of clips
+        Two or more walks, best from `prepare_walk` (else DataArray of shape (time, marker, axis) in
+        mm, Walker or Loop), by name or in order. The points that all have are compared.
     *metrics : str, FrameMetric or GroupMetric
         One or several; their weights are not used. With several, such as positions and velocities,
         a fit weighs these components too.
+    progress : callable, optional
+        Called with the number of clips and pairs that are done, and of all.
 
     Returns
     -------
@@ -39,6 +42,11 @@ def group_table(
         `itertools.combinations`. Columns are groups (``"forearm"``), or with several metrics
         ``"positions forearm"``. Groups without points are left out, among them the clavicles of
         the mannequin, whose shoulders are fixed to its sternum.
+
+    See Also
+    --------
+    pair_components : The same by points.
+    missing_groups : What the table lacks.
 
     References
     ----------
@@ -74,6 +82,10 @@ def missing_groups(table: pd.DataFrame) -> list[str]:
     Returns
     -------
     list of str
+
+    See Also
+    --------
+    group_table : Makes the table.
 
     Examples
     --------

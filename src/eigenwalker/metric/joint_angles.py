@@ -96,6 +96,10 @@ def joint_quaternions(
     ValueError
         If pelvis, sternum, a hip or a shoulder is missing.
 
+    See Also
+    --------
+    angle_between : The distance of two of them.
+
     References
     ----------
     Pražák et al. (2010), eq. 1; Lee et al. (2002), Interactive control of avatars animated with
@@ -232,6 +236,11 @@ def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") 
     Returns
     -------
     array of shape (...)
+
+    See Also
+    --------
+    joint_quaternions : What it compares.
+    FrameMetric : The metric of which it is d_k.
 
     References
     ----------

@@ -54,6 +54,10 @@ def group_points(
         Points by group, in the order of `GROUPS`, without groups that the clip lacks. Where one
         side is missing, the other stands for both.
 
+    See Also
+    --------
+    GroupMetric : Weights of the groups.
+
     References
     ----------
     Pražák et al. (2010), fig. 5 and section 5.

@@ -87,6 +87,10 @@ def loop(clip: Clip, *, already_in_place: bool = False) -> Loop:
     NoStrideError
         A ValueError: if the clip holds less than one period, or nothing repeats.
 
+    See Also
+    --------
+    prepare_walk : Also places the walk on a mannequin.
+
     References
     ----------
     Pražák et al. (2010), section 3 and fig. 1, left.

@@ -76,6 +76,11 @@ def motion_map(
     ValueError
         If the clips have no points in common, or lack what the metric needs.
 
+    See Also
+    --------
+    motion_maps : One map for each group of points.
+    find_transitions : Where one clip can pass into the other.
+
     References
     ----------
     Pražák et al. (2010), eqs. 1 to 3, figs. 1 and 6; Kovar, Gleicher & Pighin (2002), section 3.1.
@@ -108,16 +113,27 @@ def motion_maps(
 
     Parameters
     ----------
-    a, b, metric, window_s, align
-        As in `motion_map`; the weights of the metric are not used: the points of a group have the
-        same weight.
+    a, b : DataArray of shape (time, marker, axis) in mm, Walker, Loop or PreparedClip
+        Clips; points are compared that both have. Without b, a is compared with itself.
     groups : mapping of str to sequence of str
-        The points of each group. Groups without points in both clips are left out.
+        The points of each group, which have the same weight. Groups without points in both clips
+        are left out.
+    metric : str, FrameMetric or GroupMetric
+        What is compared and how (F), or the name of a published metric; its weights are not used.
+        Left out, positions in mm.
+    window_s : float
+        Seconds over which each map is averaged along its diagonals.
+    align : bool
+        Whether the second clip is turned and moved along the floor for each cell on its own.
 
     Returns
     -------
     DataArray of shape (group, time_a, time_b)
-        In the unit of F(d).
+        In the unit of F(d): the mean over the points of a group; NaN where all are missing.
+
+    See Also
+    --------
+    motion_map : All points in one, and how windows and alignment are computed.
 
     References
     ----------

@@ -31,14 +31,24 @@ def nearest_walks(
     walks : mapping of str to DataArray, Walker, Loop or PreparedClip
         The walks to search, by name.
     metric : str, FrameMetric or GroupMetric
-        As in `clip_distance`; left out, the metric that predicted observers best in Pražák et al.
-        (2010).
+        What is compared and how, or the name of a published metric (`PUBLISHED`); left out, the
+        metric that predicted observers best in Pražák et al. (2010).
     progress : callable, optional
         Called with the number of walks that are done, and of all.
 
     Returns
     -------
     Series of walks
+        Distance in the unit of the metric, by name, ascending.
+
+    See Also
+    --------
+    pair_table : All from all.
+    clip_distance : One pair, and what is computed.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3 and section 5.
 
     Examples
     --------
@@ -79,6 +89,11 @@ def label_table(
         where there are none); ``nearest``, the share of its walks whose nearest walk has the same
         label; and ``by_chance``, the mean share of that label among the walks that could be
         nearest.
+
+    See Also
+    --------
+    pair_table : Makes the table.
+    nearest_walks : The neighbours of one walk.
 
     Examples
     --------

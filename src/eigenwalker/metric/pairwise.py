@@ -43,14 +43,15 @@ def pair_table(
         name, or in order, such as ``population.walkers``. The points that all have are compared. If
         one clip does not repeat, all are registered from end to end.
     metric : str, FrameMetric or GroupMetric
-        As in `clip_distance`.
+        What is compared and how, or the name of a published metric (`PUBLISHED`); left out, the
+        mean Euclidean distance of positions in mm, all points with the same weight.
     progress : callable, optional
         Called with the number of clips and pairs that are done, and of all.
 
     Returns
     -------
     DataFrame of clips by clips
-        Symmetric, 0 on the diagonal.
+        In the unit of the metric; symmetric, 0 on the diagonal.
 
     See Also
     --------
@@ -83,13 +84,29 @@ def pair_distances(
 
     Parameters
     ----------
-    clips, metric, progress
-        As in `pair_table`.
+    clips : mapping of str to clip, or sequence of clips
+        Two or more clips (DataArray of shape (time, marker, axis) in mm, Walker, Loop or
+        PreparedClip), by name or in order. The points that all have are compared.
+    metric : str, FrameMetric or GroupMetric
+        What is compared and how, or the name of a published metric (`PUBLISHED`); left out, the
+        mean Euclidean distance of positions in mm, all points with the same weight.
+    progress : callable, optional
+        Called with the number of clips and pairs that are done, and of all.
 
     Returns
     -------
     Series of pairs
-        In the order of `itertools.combinations`.
+        In the unit of the metric: the mean of D along the path on which two clips are registered;
+        pairs of names in the order of `itertools.combinations`.
+
+    See Also
+    --------
+    pair_table : The same as a square.
+    clip_distance : One pair, and what is computed.
+
+    References
+    ----------
+    Pražák et al. (2010), section 2 and eqs. 1 to 3.
 
     Examples
     --------
@@ -113,8 +130,9 @@ def distances_by_metric(
 
     Parameters
     ----------
-    clips
-        As in `pair_table`.
+    clips : mapping of str to clip, or sequence of clips
+        Two or more clips (DataArray of shape (time, marker, axis) in mm, Walker, Loop or
+        PreparedClip), by name or in order. The points that all have are compared.
     metrics : sequence of str
         Names in `PUBLISHED`; left out, all.
     progress : callable, optional
@@ -123,7 +141,17 @@ def distances_by_metric(
     Returns
     -------
     DataFrame of pairs by metrics
-        Each on a scale of its own.
+        Each in its own unit: compare columns by their ranks. Pairs of names in the order of
+        `itertools.combinations`.
+
+    See Also
+    --------
+    pair_distances : One metric, also of one's own.
+    PUBLISHED : The metrics, with their papers.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5, which compares such metrics with observers.
 
     Examples
     --------
@@ -146,13 +174,25 @@ def pair_components(
 
     Parameters
     ----------
-    clips, metric, progress
-        As in `pair_table`; the weights of the metric are not used.
+    clips : mapping of str to clip, or sequence of clips
+        Two or more clips (DataArray of shape (time, marker, axis) in mm, Walker, Loop or
+        PreparedClip), by name or in order. The points that all have are compared.
+    metric : str, FrameMetric or GroupMetric
+        What is compared and how (F), or the name of a published metric (`PUBLISHED`); its weights
+        are not used. Left out, positions in mm.
+    progress : callable, optional
+        Called with the number of clips and pairs that are done, and of all.
 
     Returns
     -------
     DataFrame of pairs by points
-        Pairs in the order of `itertools.combinations`; points that are known in all clips.
+        In the unit of F(d). Pairs of names in the order of `itertools.combinations`; points that
+        are known in all clips.
+
+    See Also
+    --------
+    pair_distances : With the weights.
+    group_table : By joint groups.
 
     References
     ----------

@@ -38,6 +38,15 @@ def prepare(clip: Clip) -> PreparedClip:
     ValueError
         If it is one frame, or has gaps that are too long to be filled.
 
+    See Also
+    --------
+    prepare_walk : Of a capture, in place.
+    pair_table : Takes what it returns.
+
+    References
+    ----------
+    Pražák et al. (2010), section 2.
+
     Examples
     --------
     >>> prepare(ew.simulate_walk(seed=1)).cycle.sizes["time"]

@@ -275,6 +275,10 @@ def register_walks(a: Clip, b: Clip) -> Registration:
     Registration
         Of one stride of each. The path is the same whichever walk comes first.
 
+    See Also
+    --------
+    register : Of clips that do not repeat.
+
     References
     ----------
     Pražák et al. (2010), section 2; Kovar & Gleicher (2003), section 3; Kovar, Gleicher & Pighin

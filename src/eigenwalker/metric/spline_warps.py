@@ -48,6 +48,10 @@ def register_by_spline(a: Clip, b: Clip, *, n_pieces: int = 6, align: bool = Tru
     Registration
         With a step for each frame of the first clip; `times` are exact, `path` the nearest frames.
 
+    See Also
+    --------
+    register : By dynamic time warping.
+
     References
     ----------
     Troje (2002), discussion.

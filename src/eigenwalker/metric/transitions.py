@@ -42,7 +42,8 @@ def find_transitions(
         The clip that is left, and the one that is entered, at the same frame rate. Without b, the
         same clip, of which moments less than `window_s` apart are no transitions.
     metric : str, FrameMetric or GroupMetric
-        As in `motion_map`.
+        What is compared and how, or the name of a published metric (`PUBLISHED`); left out, the
+        mean Euclidean distance of positions in mm, all points with the same weight.
     window_s : float
         Seconds over which the map is averaged: as long as one would blend.
     threshold : float, optional
@@ -55,6 +56,10 @@ def find_transitions(
         The best first. Columns ``time_a``, ``time_b`` (s), ``distance``, and how the second clip is
         rotated about the vertical and then translated: ``angle_deg``, ``shift_x_mm``,
         ``shift_y_mm``.
+
+    See Also
+    --------
+    motion_map : The map of which these are minima.
 
     References
     ----------

@@ -47,6 +47,10 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     ValueError
         If no walker was decomposed from a capture.
 
+    See Also
+    --------
+    figure_eigenpostures : The postures.
+
     References
     ----------
     Troje (2002), fig. 2.
@@ -92,6 +96,10 @@ def figure_scores(walk: xr.DataArray, walker: Walker, *, n_frames: int = 600) ->
     Returns
     -------
     Figure
+
+    See Also
+    --------
+    figure_eigenpostures : The postures.
 
     References
     ----------

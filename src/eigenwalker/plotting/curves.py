@@ -69,6 +69,10 @@ def figure_curves(
     -------
     Figure
 
+    See Also
+    --------
+    figure_regression_curves : The same for a number.
+
     References
     ----------
     Troje (2002), fig. 4.
@@ -115,6 +119,10 @@ def figure_regression_curves(
     Returns
     -------
     Figure
+
+    See Also
+    --------
+    figure_curves : The same for two classes.
 
     References
     ----------

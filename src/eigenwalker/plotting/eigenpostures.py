@@ -63,6 +63,10 @@ def figure_eigenpostures(
     -------
     Figure
 
+    See Also
+    --------
+    figure_scores, figure_variance : How they move, and how much.
+
     References
     ----------
     Moler (2016), the four postures: stride, sway, hop and bounce.

@@ -57,6 +57,10 @@ def figure_space(
     Returns
     -------
     Figure
+
+    See Also
+    --------
+    trait_axis : The axis that it shows.
     """
     X = check_numbers(X, "X", "walker", "feature")
     across = [component - 1 for component in components]

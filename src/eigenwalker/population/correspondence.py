@@ -171,7 +171,8 @@ def correspond_to(walker: Walker, reference: ReferenceWalker) -> tuple[Walker, n
 
     References
     ----------
-    As `correspond`.
+    Not from the papers: Troje (2002) averages eigenpostures (eq. 5) without saying how they were
+    matched.
     """
     check_walkers([walker])
     check_kind(reference, ReferenceWalker, "population.correspondence.reference")

@@ -141,8 +141,10 @@ def bootstrap_choices(
 
     Parameters
     ----------
-    X, trials
-        As for `fit_choices`; two observers or more.
+    X : array of shape (pair, group)
+        Mean F(d_k) of all pairs, in the order of ``trials.pairs``.
+    trials : Trials
+        What was shown and chosen, by two observers or more.
     n_samples, random_state : int
         Number of samples, and seed of the random numbers.
     progress : callable, optional
@@ -151,7 +153,16 @@ def bootstrap_choices(
     Returns
     -------
     Bootstrap
-        Its constants are 0: a model of choices has none.
+        Weights of shape (sample, group), per unit of X. Its constants are 0: a model of choices has
+        none.
+
+    See Also
+    --------
+    fit_choices : The weights of all observers.
+
+    References
+    ----------
+    Efron & Tibshirani (1993), An introduction to the bootstrap, chapter 13.
     """
     problem = ChoiceProblem.from_trials(X, trials)
     if len(trials.observers) < 2:
@@ -187,6 +198,14 @@ def expected_differences(distances: ArrayLike, trials: Trials) -> np.ndarray:
     -------
     array of shape (pair,)
         Expected share of times that a pair is shown and not chosen; NaN if it is never shown.
+
+    See Also
+    --------
+    fit_choices : Fits the weights.
+
+    References
+    ----------
+    McFadden (1974), Conditional logit analysis of qualitative choice behavior.
     """
     check_kind(trials, Trials, "Trials, as read_trials() returns them")
     n_pairs = len(trials.pairs)

@@ -35,6 +35,10 @@ def goodness(observed: ArrayLike, predicted: ArrayLike) -> dict[str, float]:
         ``rss``, the sum of squared errors; ``rms``, the root of their mean; ``pearson`` and
         ``spearman`` correlations, NaN if one of the two does not vary or there is no pair.
 
+    See Also
+    --------
+    compare_metrics : The same for several metrics.
+
     References
     ----------
     Pražák et al. (2010), figure 5, whose "difference" can only be twice this ``rss``.
@@ -77,6 +81,14 @@ def leave_walkers_out(
     -------
     list of pairs of arrays
         Rows to fit to, and the one row to predict: scikit-learn's ``cv=leave_walkers_out(pairs)``.
+
+    See Also
+    --------
+    left_out_differences : The same split for `fit_choices`.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5: the fit that it tests.
 
     Examples
     --------
@@ -156,8 +168,10 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
 
     Parameters
     ----------
-    X, trials
-        As for `fit_choices`.
+    X : array of shape (pair, group)
+        Mean F(d_k) of all pairs, in the order of ``trials.pairs``.
+    trials : Trials
+        What was shown and chosen.
 
     Returns
     -------
@@ -169,6 +183,10 @@ def left_out_differences(X: ArrayLike, trials: Trials) -> np.ndarray:
     --------
     compare_by_choices : Several metrics, compared in this way.
     leave_walkers_out : The same split for `PerceptualMetric`.
+
+    References
+    ----------
+    McFadden (1974), Conditional logit analysis of qualitative choice behavior.
     """
     table = check_numbers(X, "X", "pair", "group")
     problem = ChoiceProblem.from_trials(table, trials)

@@ -27,6 +27,10 @@ def order_of_walks(table: ArrayLike) -> np.ndarray:
         Which walk comes first, second and so on; of the two directions that in which the first
         walk of the table comes in the first half.
 
+    See Also
+    --------
+    map_of_walks, clusters_of_walks : Other views of the table.
+
     References
     ----------
     Pražák et al. (2010), section 4 and figure 4.
@@ -53,7 +57,7 @@ def clusters_of_walks(
     table : array of shape (walk, walk)
         Differences, symmetric.
     n_clusters : int
-        As in the paper 2, which agreed with the walkers' sex.
+        How many to look for; 2 in the paper, which agreed with the walkers' sex.
     random_state : int
         Seed of the random starts.
 
@@ -61,6 +65,11 @@ def clusters_of_walks(
     -------
     array of int of shape (walk,)
         Numbers from 0, in the order in which `order_of_walks` comes to them.
+
+    See Also
+    --------
+    cluster_memberships : How much each walk belongs to each.
+    order_of_walks : The order of their numbers.
 
     References
     ----------
@@ -91,12 +100,16 @@ def cluster_memberships(table: ArrayLike, clusters: ArrayLike) -> np.ndarray:
     table : array of shape (walk, walk)
         Differences, symmetric.
     clusters : array of int of shape (walk,)
-        As `clusters_of_walks` gives them.
+        Number of each walk's cluster, from 0 (`clusters_of_walks`).
 
     Returns
     -------
     array of shape (walk, cluster)
         Shares; they sum to 1.
+
+    See Also
+    --------
+    clusters_of_walks : Makes the clusters.
 
     References
     ----------
@@ -140,6 +153,10 @@ def map_of_walks(table: ArrayLike, n_dimensions: int = 2) -> np.ndarray:
     -------
     array of shape (walk, n_dimensions)
         Centred; the widest dimension first, signs so that the walk furthest out is positive.
+
+    See Also
+    --------
+    order_of_walks, clusters_of_walks : Other views of the table.
 
     References
     ----------

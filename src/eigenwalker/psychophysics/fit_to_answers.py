@@ -85,7 +85,8 @@ def fit_to_answers(
     walks : mapping of str to DataArray, Walker or PreparedClip
         What observers saw, by name, five walks or more: such as ``walks_of_folder(folder).clips``.
     answers : DataFrame
-        As `read_trials` takes it.
+        One row a trial: ``observer``; the four walks shown, ``a`` to ``d``; and the two chosen as
+        the most similar, ``chosen_1`` and ``chosen_2`` (`read_trials`).
     metric : str
         Name of the published metric whose component and function F to take.
     others : mapping of str to array of shape (pair,), optional

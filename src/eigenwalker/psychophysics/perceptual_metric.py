@@ -157,12 +157,19 @@ def non_negative_fit(
 
     Parameters
     ----------
-    X, y, sample_weight, fit_constant
-        As `PerceptualMetric` takes them: of shape (pair, column), (pair,) and (pair,).
+    X : array of shape (pair, column)
+        Mean F(d_k) of each pair of walks.
+    y : array of shape (pair,)
+        Perceived differences.
+    sample_weight : array of shape (pair,), optional
+        How much each pair counts; left out, all the same.
+    fit_constant : bool
+        Whether there is a constant c; 0 otherwise.
 
     Returns
     -------
     Weights
+        w, per unit of the columns of X, and c, in the unit of y.
 
     See Also
     --------

@@ -85,6 +85,10 @@ def bootstrap_weights(
     --------
     bootstrap_choices : The same for weights fitted to choices.
 
+    References
+    ----------
+    Efron & Tibshirani (1993), An introduction to the bootstrap, chapter 13.
+
     Examples
     --------
     >>> X = np.array([[0.0], [1.0], [2.0]])
@@ -170,6 +174,10 @@ def split_half(
     Reliability
         Correlations: ``halves`` (r), ``whole`` and ``ceiling``; NaN, with a warning, where halves
         have no differences that could be correlated.
+
+    See Also
+    --------
+    bootstrap_weights : Intervals of the weights.
 
     Examples
     --------

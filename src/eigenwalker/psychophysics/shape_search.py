@@ -62,6 +62,10 @@ def search_shape(
     -------
     ShapeFit
 
+    See Also
+    --------
+    PerceptualMetric : Fitted for each shape.
+
     References
     ----------
     Pražák et al. (2010), section 5: a power near 0.3 fitted best, but the search over weights and
@@ -122,14 +126,22 @@ def fit_from_random_starts(
 
     Parameters
     ----------
-    X, y
-        As `PerceptualMetric` takes them.
+    X : array of shape (pair, group)
+        Mean F(d_k) of each pair of walks.
+    y : array of shape (pair,)
+        Perceived differences.
     n_starts, random_state : int
         Number of starts, and seed of the random numbers.
 
     Returns
     -------
     RandomStarts
+        The best weights, of shape (group,), per unit of X; their constant; and ``rss``, of shape
+        (start,), the sum of squared errors that each start ended at.
+
+    See Also
+    --------
+    PerceptualMetric : The same optimum, directly.
 
     References
     ----------

@@ -131,6 +131,14 @@ def read_answers(path: str | Path) -> pd.DataFrame:
     ValueError
         If the file cannot be read, or lacks columns.
 
+    See Also
+    --------
+    read_trials : Checks what it returns.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4.
+
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
@@ -184,6 +192,11 @@ def read_trials(answers: pd.DataFrame, *, walkers: Sequence[object] | None = Non
         If a column or an observer is missing, a trial does not show four different known walkers
         or shows none that was chosen, or `walkers` names one twice. Lines are counted as in a file
         whose first line is the headings.
+
+    See Also
+    --------
+    read_answers : Reads the table of a file.
+    count_pairs : The same by pairs.
 
     References
     ----------
@@ -253,8 +266,11 @@ def count_pairs(
 
     Parameters
     ----------
-    answers, walkers
-        As `read_trials` takes them; or `Trials`.
+    answers : DataFrame or Trials
+        One row a trial: ``observer``; the four walkers shown, ``a`` to ``d``; and the two chosen
+        as the most similar, ``chosen_1`` and ``chosen_2``.
+    walkers : sequence of str, optional
+        All walkers in the order of pairs wanted; left out, those that were shown, sorted.
 
     Returns
     -------

@@ -70,6 +70,10 @@ def load_metric(name_or_path: str | Path) -> GroupMetric:
     ValueError
         If there is no such metric, or the file holds none.
 
+    See Also
+    --------
+    save_weights : Writes the file.
+
     Examples
     --------
     >>> load_metric("positions-sigmoid").by

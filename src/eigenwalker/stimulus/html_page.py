@@ -39,6 +39,10 @@ def stand_alone_page(stimulus: Stimulus) -> str:
     FileNotFoundError
         If the package was installed without its built pages.
 
+    See Also
+    --------
+    write_stimulus : Writes it, as .html.
+
     Examples
     --------
     >>> from eigenwalker.stimulus import make_stimulus

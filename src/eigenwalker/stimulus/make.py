@@ -152,6 +152,10 @@ def with_information(
     -------
     Walker
 
+    See Also
+    --------
+    make_stimulus : Takes what it returns.
+
     References
     ----------
     Troje (2002), Methods, experiment, and eq. 12 (size); Mather and Murdoch (1994).

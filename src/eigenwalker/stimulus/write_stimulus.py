@@ -62,6 +62,10 @@ def write_stimulus(
     FileNotFoundError
         If the folder does not exist.
 
+    See Also
+    --------
+    make_stimulus : Makes the stimulus.
+
     Examples
     --------
     >>> from pathlib import Path

@@ -59,6 +59,10 @@ def capture_table(
     ------
     ValueError
         If folder, table or pattern make no sense.
+
+    See Also
+    --------
+    fit_folder : Makes what it shows.
     """
     folder = Path(folder)
     if not folder.is_dir():

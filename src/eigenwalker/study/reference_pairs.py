@@ -55,7 +55,7 @@ def compare_with_references(
     Parameters
     ----------
     comparison : Comparison
-        As `compare_walks` gives it.
+        Of two walks in mm, prepared (`compare_walks`).
     metrics : sequence of GroupMetric
         By which; that of the comparison is among them.
     mannequin : bool
@@ -116,12 +116,24 @@ def simulated_distances(
     ----------
     metrics : sequence of GroupMetric
         By which; those of angles are left out.
-    mannequin, progress
-        As in `compare_with_references`.
+    mannequin : bool
+        Whether to bring them to the neutral mannequin (`retarget`).
+    progress : callable, optional
+        Called with the number of metrics that are done, and of all.
 
     Returns
     -------
     DataFrame of pairs by metrics
+        Each in the metric's own unit; pairs of names in the order of `itertools.combinations`.
+
+    See Also
+    --------
+    compare_with_references : Two walks beside these.
+    pair_distances : The same of any walks.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3.
     """
     people = _simulated_people(mannequin)
     return pd.DataFrame(
@@ -166,6 +178,14 @@ def self_distance(prepared: PreparedClip, *, metric: GroupMetric) -> float:
     -------
     float
         In units of the metric.
+
+    See Also
+    --------
+    compare_with_references : Shows it beside a comparison.
+
+    References
+    ----------
+    Pražák et al. (2010), section 2.
     """
     clip = prepared.clip
     n_frames = clip.sizes["time"]

@@ -134,8 +134,10 @@ def walks_of_folder(
         Which group it is.
     with_flagged : bool
         Whether captures count that are flagged (`assess`).
-    mannequin, default_unit, default_rate_hz
-        As in `walk_of_capture`.
+    mannequin : bool
+        Whether to show the walks on the neutral mannequin (`retarget`).
+    default_unit, default_rate_hz : optional
+        Unit of length and frames a second, for files that name none.
     progress : callable, optional
         Called with the number of captures that are done, and of all.
 
