@@ -7,8 +7,12 @@ import json
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from eigenwalker.io.read import read_mocap
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.simulation import simulate_walk
 from eigenwalker.stimulus import Stimulus
 
 
@@ -89,6 +93,30 @@ def test_a_figure_for_animators_says_how_still_its_feet_stand(run):
     code, said, _ = run("--duration", "2", "-o", "walk.glb")
     assert code == 0
     assert "Standing feet slide at" in said
+
+
+def test_a_capture_in_another_style_keeps_its_bones(run, write_c3d, tmp_path):
+    walk = simulate_walk(seed=2, duration_s=6, markers="skin", rate_hz=60)
+    capture = write_c3d(tmp_path / "own.c3d", walk) or tmp_path / "own.c3d"
+    own = virtual_markers(read_mocap(capture), joints="full")
+    found = {}
+    for steps in ("0", "3"):
+        words = ("--from", str(capture), "--trait", f"sex={steps}", "--strides", "1")
+        code, said, complaint = run(*words, "-o", f"{steps}.bvh")
+        assert code == 0, complaint
+        assert "left_toe" in said
+        found[steps] = read_mocap(f"{steps}.bvh", unit="cm")
+    bones = [("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist")]
+    bones += [("ankle", "toe"), ("wrist", "hand")]
+    for side, (one, other) in itertools.product(("left", "right"), bones):
+        lengths = [
+            float(np.median(np.linalg.norm(np.diff(
+                each.sel(marker=[f"{side}_{one}", f"{side}_{other}"]).values, axis=1), axis=2)))
+            for each in (own, *found.values())
+        ]  # fmt: skip
+        assert lengths == pytest.approx([lengths[0]] * 3, rel=0.01, abs=2.5)
+    elbows = [each.sel(marker="left_elbow", axis="y").values.mean() for each in found.values()]
+    assert elbows[1] - elbows[0] > 10  # arms away from the body: the style is there
 
 
 @pytest.mark.parametrize(("words", "complaint"), [

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.population.population import Population
+    from eigenwalker.study.process_capture import CaptureResult
 
 
 def option(about: str, *names: str) -> Any:
@@ -110,6 +111,13 @@ def start_vector(population: Population, start: str) -> np.ndarray:
         return population.average
     if start.isdecimal() and int(start) < len(population):
         return population.X[int(start)]
+    return population.vector(start_capture(population, start).walker)
+
+
+def start_capture(
+    population: Population, start: str, joints: Literal["walker", "full"] = "walker"
+) -> CaptureResult:
+    """Return what the capture that ``--from`` names gave, decomposed as the population is."""
     if start.isdecimal() or not Path(start).exists():
         raise ValueError(
             f"--from {start}: expected 'average', a walker from 0 to {len(population) - 1}, or a "
@@ -120,7 +128,9 @@ def start_vector(population: Population, start: str) -> np.ndarray:
 
     first = population.walkers[0]
     try:
-        result = process_capture(start, form=first.form, n_harmonics=len(first.harmonics) // 2)
+        result = process_capture(
+            start, form=first.form, n_harmonics=len(first.harmonics) // 2, joints=joints
+        )
     except ValueError as error:
         literal = start.replace("{", "{{").replace("}", "}}")
         convert = f"eigenwalker convert {literal} walk.c3d"
@@ -128,7 +138,7 @@ def start_vector(population: Population, start: str) -> np.ndarray:
         raise ValueError(reworded(str(error), how)) from error
     if flag := flag_of(result.quality):
         print(f"eigenwalker: {start}: {flag}", file=sys.stderr)
-    return population.vector(result.walker)
+    return result
 
 
 def check_choice(value: str, known: Collection[str], option: str) -> None:

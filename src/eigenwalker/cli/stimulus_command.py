@@ -28,6 +28,7 @@ from eigenwalker.cli.options import (
     load_people,
     option,
     progress_bar,
+    start_capture,
     start_vector,
     trait_axes,
 )
@@ -38,8 +39,10 @@ if TYPE_CHECKING:
     from eigenwalker.analysis.trait_axis import TraitAxis
     from eigenwalker.core.walker import Walker
     from eigenwalker.population.population import Population
+    from eigenwalker.stimulus.figure import Figure
     from eigenwalker.stimulus.rig_choices import RigChoices
     from eigenwalker.stimulus.stimulus import Stimulus
+    from eigenwalker.study.process_capture import CaptureResult
 
 Texts = list[str] | None
 """Texts as typed, ``seed=3,keep=structure``, once or several times."""
@@ -149,6 +152,7 @@ def stimulus(
         made, population = _of_a_stimulus(options), None
     else:
         population = load_people(people, with_flagged)
+        options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
         made = _of_a_population(population, options)
     for name, parameters in _transforms(options, population):
         made = made.then(name, **parameters)
@@ -226,16 +230,52 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     )
 
 
-def _walker(population: Population, options: dict[str, Any]) -> Walker:
+def _walker(population: Population, options: dict[str, Any]) -> Walker | Figure:
     from eigenwalker.stimulus.make import with_information
 
-    start = start_vector(population, options["start_from"])
+    name = options["start_from"]
+    own = None
+    if options["as_rig"] and name != "average" and not name.isdecimal():
+        if options["information"]:
+            raise ValueError("--information is for stimuli; a rig keeps the bones of its capture.")
+        own = start_capture(population, name, joints="full")
+        start = population.vector(own.walker)
+    else:
+        start = start_vector(population, name)
     vector = _moved(population, start, options["trait"], options)
+    if own is not None:
+        return _own_figure(population, own, start, vector)
     if options["trait"]:
         _print_plausibility(population, vector)
     if options["information"]:
         return with_information(population, vector, options["information"])
     return population.walker(vector)
+
+
+def _own_figure(
+    population: Population, own: CaptureResult, start: np.ndarray, vector: np.ndarray
+) -> Figure:
+    """The person of a capture with all its joints and its own bones."""
+    import numpy as np
+
+    from eigenwalker.core.skeleton import JOINTS
+    from eigenwalker.decomposition.fourier import decompose_fourier
+    from eigenwalker.io.writers.rig import EXTRAS
+    from eigenwalker.stimulus.figure import Figure
+    from eigenwalker.stimulus.own_body import own_body
+
+    seen = ~np.isnan(own.walk.values).any(axis=(0, 2))
+    names = [str(name) for name in own.walk.marker.values[seen]]
+    names = [name for name in names if name in (*JOINTS.markers, *EXTRAS)]
+    captured = own.walk.sel(marker=names)
+    walker = decompose_fourier(captured, n_harmonics=N_OWN_HARMONICS)
+    walk = own_body(captured, walker, population.walker(start), population.walker(vector))
+    print(f"The bones of the capture, {len(names)} points: {', '.join(names[15:]) or 'no feet'}.")
+    return Figure(walk, repeat=True)
+
+
+N_OWN_HARMONICS = 6
+"""Of one's own capture: as much of its motion as repeats."""
 
 
 def _moved(

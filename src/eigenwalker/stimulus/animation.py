@@ -9,7 +9,6 @@ import xarray as xr
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import label_trajectories
-from eigenwalker.core.walker import Walker
 from eigenwalker.io.writers.rig import EXTRAS, SIDES, Rig, fit_rig, floor_of
 from eigenwalker.stimulus.foot_contacts import bent_leg, find_contacts, plant
 from eigenwalker.stimulus.rig_choices import RigChoices
@@ -121,7 +120,7 @@ def _moments(stimulus: Stimulus, figure: int, rate_hz: float) -> tuple[np.ndarra
     """
     duration_s, moving = stimulus.timing.duration_s, stimulus.scene[figure]
     n_frames = max(round(duration_s * rate_hz), 2)
-    if not isinstance(stimulus.figures[figure].motion, Walker):
+    if not stimulus.figures[figure].is_periodic:
         return np.arange(n_frames) / rate_hz, 0, 0.0
     strides = duration_s / moving.period_s
     pad = max(round(moving.period_s * rate_hz), 2)

@@ -212,6 +212,11 @@ class Figure:
     heading_deg: float = 0.0
     repeat: bool = False
 
+    @property
+    def is_periodic(self) -> bool:
+        """Whether it repeats: a walker, or trajectories that begin anew."""
+        return self.repeat or isinstance(self.motion, Walker)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the figure as it stands in a file, samples as an array."""
         if isinstance(self.motion, Walker):

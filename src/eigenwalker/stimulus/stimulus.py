@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_numbers
-from eigenwalker.core.walker import Walker
 from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
@@ -169,7 +168,7 @@ class Stimulus:
         ValueError
             If a number is given, and the figure has no period.
         """
-        if isinstance(self.figures[0].motion, Walker):
+        if self.figures[0].is_periodic:
             period_s = self.scene[0].period_s
             n_strides = n_strides or max(round(self.timing.duration_s / period_s), 1)
             return replace(self, timing=replace(self.timing, duration_s=n_strides * period_s))
