@@ -135,12 +135,33 @@ describe("the chain", () => {
     expect(other.map(({ name }) => name)).toEqual(actual);
   });
 
-  it("works out the box of a scrambled walker from the walker", () => {
-    const [front] = steps({ transforms: { scramble: initialSettings("scramble") }, azimuth_deg: 0 });
-    const [side] = steps({ transforms: { scramble: initialSettings("scramble") }, azimuth_deg: 90 });
-    const box = (step: typeof front): readonly number[] => (step?.name === "scramble" ? step.box_mm : []);
-    expect(box(front)[0]).toBeGreaterThan(box(side)[0]!);
-    expect(box(front)[1]).toBe(box(side)[1]);
+  it("draws dots, blobs and boxes as large for all walkers", () => {
+    const transforms = Object.fromEntries(
+      (["scramble", "blur", "mask"] as const).map((name) => [name, initialSettings(name)]),
+    );
+    const sizes = [-6, 0, 6].map((sex) => {
+      const state = chosen({ transforms, traits: { sex }, azimuth_deg: 15 * sex });
+      const { display, transforms: chain } = stimulusOf({ model, state, figures: figuresOf(model, state) });
+      const boxes = chain.flatMap((step) => ("box_mm" in step ? step.box_mm.map((side) => side * display.px_per_mm) : []));
+      const blobs = chain.flatMap((step) => (step.name === "blur" ? [step.sd_px!] : []));
+      return { scale: display.px_per_mm, drawn: [display.dot_px, ...blobs, ...boxes].map((size) => size.toFixed(2)) };
+    });
+    expect(sizes[0]!.scale).not.toBe(sizes[2]!.scale);
+    expect(sizes[0]!.drawn.length).toBe(6);
+    for (const { drawn } of sizes) expect(drawn).toEqual(sizes[0]!.drawn);
+  });
+
+  it("begins all saved walkers at one phase of the stride", () => {
+    for (const sex of [-6, 0, 6]) {
+      const state = chosen({ traits: { sex } });
+      const walker = stimulusOf({ model, state, figures: figuresOf(model, state) }).figures[0]!.walker!;
+      const [left, right] = ["left_ankle", "right_ankle"].map((name) => walker.markers.indexOf(name));
+      let cosine = 0;
+      walker.p.forEach((posture, i) => {
+        if (walker.harmonics[i] === 1) cosine += (posture[left!]![0] - posture[right!]![0]) * Math.sin(walker.phases[i]!);
+      });
+      expect(Math.abs(cosine)).toBeLessThan(1e-6);
+    }
   });
 
   it("names the figures of a mask one by one", () => {

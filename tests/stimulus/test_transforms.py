@@ -49,7 +49,8 @@ def of(name: str, positions: np.ndarray) -> np.ndarray:
     return positions[:, INDEX[name]]
 
 
-def test_a_plain_stimulus_is_the_walker_from_its_first_phase(walker, plain):
+def test_a_plain_stimulus_is_the_walker_from_its_first_phase(walker):
+    plain = make_stimulus(walker, phase_deg=None)
     same(at(plain), walker.trajectories(walker.time_origin_s + TIME).values)
 
 

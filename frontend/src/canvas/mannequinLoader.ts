@@ -20,7 +20,8 @@ export interface MannequinPainter {
 }
 
 /** Whether a figure can be a mannequin: masks, limb dots and blobs have no limbs. */
-export const hasLimbs = ({ body, blurMm }: MovingDots): boolean => body.segments.length > 0 && blurMm === 0;
+export const hasLimbs = ({ body, blurMm, blurPx }: MovingDots): boolean =>
+  body.segments.length > 0 && blurMm === 0 && blurPx === 0;
 
 /** The painter from the module in the script element `mannequin` of the page. */
 export async function mannequinInPage(): Promise<MannequinPainter> {

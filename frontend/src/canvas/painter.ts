@@ -52,7 +52,7 @@ export function drawingOf(stimulus: Stimulus, mannequin?: MannequinPainter): Dra
     if (solid) mannequin?.paint(context, frames, stimulus, pixelRatio);
     for (const frame of frames) {
       context.fillStyle = context.strokeStyle = stimulus.display.colour;
-      if (frame.moving.blurMm > 0) drawBlobs(context, layer, frame, stimulus);
+      if (frame.moving.blurMm > 0 || frame.moving.blurPx > 0) drawBlobs(context, layer, frame, stimulus);
       else if (!solid || !hasLimbs(frame.moving)) drawFrame(context, frame, stimulus.display);
     }
   };
@@ -151,7 +151,7 @@ function drawBlobs(
   light.setTransform(1, 0, 0, 1, 0, 0);
   light.clearRect(0, 0, width, height);
   light.globalCompositeOperation = "lighter";
-  const reach = BLOB_REACH_SD * moving.blurMm * display.px_per_mm;
+  const reach = BLOB_REACH_SD * (moving.blurPx + moving.blurMm * display.px_per_mm);
   light.fillStyle = gaussian(light, reach);
   visible.forEach((isVisible, dot) => {
     if (!isVisible) return;

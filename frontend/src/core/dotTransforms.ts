@@ -67,7 +67,7 @@ export const dotTransforms: Transforms<"scramble" | "limb_dots" | "blur" | "mask
   },
 
   /** Draw each dot as a Gaussian blob of this standard deviation. */
-  blur: (moving, { sd_mm }) => moving.with({ blurMm: sd_mm }),
+  blur: (moving, { sd_mm, sd_px }) => moving.with({ blurMm: sd_mm ?? 0, blurPx: sd_px ?? 0 }),
 
   /**
    * Noise dots in a box that faces the observer; they are a figure of their own.
@@ -100,7 +100,7 @@ export const dotTransforms: Transforms<"scramble" | "limb_dots" | "blur" | "mask
       }
       return { positions, visible };
     };
-    return new MovingDots(looseDots("noise", step.number), at, moving.periodS, moving.blurMm);
+    return new MovingDots(looseDots("noise", step.number), at, moving.periodS, moving.blurMm, moving.blurPx);
   },
 };
 

@@ -51,14 +51,15 @@ export class MovingDots {
     readonly at: At,
     /** Seconds after which the motion repeats; the duration of sampled trajectories. */
     readonly periodS: number,
-    /** Standard deviation of each dot's blob; 0 for discs. */
+    /** Standard deviation of each dot's blob, at the walker's scale or in the picture; 0 for discs. */
     readonly blurMm = 0,
+    readonly blurPx = 0,
   ) {}
 
   /** The same figure with other dots, another motion, another period, or blurred. */
-  with(change: { body?: Body; at?: At; periodS?: number; blurMm?: number }): MovingDots {
-    const { body, at, periodS, blurMm } = { ...this, ...change };
-    return new MovingDots(body, at, periodS, blurMm);
+  with(change: { body?: Body; at?: At; periodS?: number; blurMm?: number; blurPx?: number }): MovingDots {
+    const { body, at, periodS, blurMm, blurPx } = { ...this, ...change };
+    return new MovingDots(body, at, periodS, blurMm, blurPx);
   }
 
   /** The same figure with each moment changed in place. */

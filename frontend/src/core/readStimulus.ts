@@ -77,6 +77,8 @@ function checkChain({ figures, transforms }: Stimulus): void {
         ensure(fits, `${where}: the figure has no segments to put dots on; use joints.`);
         dots[figure] = Array.from({ length: step.number }, (_, dot) => `dot_${dot + 1}`);
         joined[figure] = false;
+      } else if (step.name === "blur") {
+        ensure((step.sd_mm === null) !== (step.sd_px === null), `${where}: expected either sd_mm or sd_px.`);
       } else if (step.name === "mask") {
         work += step.number + (step.phases ? step.number : 1) * evaluations[figure]! * known.length;
       }

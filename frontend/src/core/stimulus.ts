@@ -89,7 +89,7 @@ interface TransformParameters {
     places: "limbs" | "joints";
     seed: number;
   };
-  blur: { sd_mm: number };
+  blur: { sd_mm: number | null; sd_px: number | null };
   mask: {
     kind: "random" | "linear" | "scrambled";
     number: number;

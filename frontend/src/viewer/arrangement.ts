@@ -6,8 +6,8 @@ import { radians } from "../core/vector";
 
 /** Share of a cell that a walker fills. */
 const FILL = 0.84;
-/** Diameter of a dot at the scale of the walker, as in Python. */
-const DOT_MM = 36;
+/** Diameter of a dot relative to the cell, as in Python: it does not tell the size of the walker. */
+const DOT_SHARE = 0.02;
 const MIN_DOT_PX = 2;
 /** Least distance from the eye to the middle of the scene in perspective. */
 const MIN_EYE_MM = 3000;
@@ -106,7 +106,7 @@ export function arrange(count: number, extent: Extent, size: Size, elevationDeg:
   }));
   return {
     pxPerMm,
-    dotPx: Math.max(DOT_MM * pxPerMm, MIN_DOT_PX),
+    dotPx: Math.max(DOT_SHARE * Math.min(width, height), MIN_DOT_PX),
     middleMm: extent.height / 2,
     eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, (1.5 * zoom * Math.max(size.width_px, size.height_px)) / pxPerMm),
     offsets,

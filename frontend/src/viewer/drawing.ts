@@ -8,7 +8,8 @@ const TRAIL_S = 0.6;
 const N_TRAIL_STEPS = 18;
 /** Opacity of a trail at the dot. */
 const TRAIL_OPACITY = 0.8;
-const GROUND_MM = 470;
+/** Radius of the ground below a walker, in diameters of a dot: it does not go with the walker. */
+const GROUND_PER_DOT = 13;
 const N_GROUND_CORNERS = 48;
 
 /** Colours of the viewer; the style sheet of the page has the same. */
@@ -60,17 +61,18 @@ export function drawTrails(
 
 /** A disc on the floor below each walker, which shows the elevation of the view. */
 export function drawGround(
-  { context, palette }: Brush,
+  { context, palette, dotPx }: Brush,
   { offsets, middleMm, pxPerMm }: Arrangement,
   { axes: [right, up, towards], eyeMm }: ViewPoint,
   { width_px, height_px }: Size,
 ): void {
   context.fillStyle = palette.ground;
+  const radius = (GROUND_PER_DOT * dotPx) / pxPerMm;
   for (const [across, above] of offsets) {
     context.beginPath();
     for (let corner = 0; corner < N_GROUND_CORNERS; corner++) {
       const angle = (2 * Math.PI * corner) / N_GROUND_CORNERS;
-      const at: Vector = [GROUND_MM * Math.cos(angle), GROUND_MM * Math.sin(angle), -middleMm];
+      const at: Vector = [radius * Math.cos(angle), radius * Math.sin(angle), -middleMm];
       const scale = pxPerMm * (eyeMm === null ? 1 : eyeMm / (eyeMm - dot(at, towards)));
       context.lineTo(width_px / 2 + scale * (dot(at, right) + across), height_px / 2 - scale * (dot(at, up) + above));
     }

@@ -5,11 +5,14 @@ import { completeStep } from "../core/readStimulus";
 import { entry } from "../core/schema";
 import { scene } from "../core/scene";
 import type { Step, Stimulus } from "../core/stimulus";
-import { dot, observerAxes, type Vector } from "../core/vector";
 import type { Settings, State, TransformName, Transforms } from "../model/state";
 
-/** Width and height of the box of a mask relative to the figure. */
-const MASK_SIZE = [2, 1.15] as const;
+/** A usual walker's height in diameters of a dot: what does not go with the walkers goes by it. */
+const USUAL_HEIGHT_DOTS = 42;
+const USUAL_HEIGHT_MM = 1500;
+/** Width and height of boxes, in heights of a usual walker, as in Python. */
+const MASK_BOX = [0.75, 1.15] as const;
+const SCRAMBLE_BOX = [0.4, 1] as const;
 const N_SAMPLES = 64;
 const ARM_SWING = ["left_elbow", "left_wrist", "right_elbow", "right_wrist"];
 const TRUNK = ["left_shoulder", "right_shoulder", "left_hip", "right_hip"];
@@ -50,12 +53,12 @@ const STEPS: { readonly [Name in TransformName]: MakeStep<Name> } = {
   mirror: (settings) => settings,
   invert: (settings) => settings,
   occlude: ({ part }, before) => ({ markers: markersIn(part, before) }),
-  scramble: (settings, { stimulus, moving }) => ({ ...settings, box_mm: pictureExtent(moving(), stimulus) }),
+  scramble: (settings, { stimulus }) => ({ ...settings, box_mm: boxOf(SCRAMBLE_BOX, stimulus) }),
   limb_dots: (settings, { joined }) => ({ ...settings, places: joined ? settings.places : "joints" }),
-  blur: (settings) => settings,
+  blur: ({ sd_mm }, { stimulus: { display } }) => ({ sd_px: (sd_mm * USUAL_HEIGHT_DOTS * display.dot_px) / USUAL_HEIGHT_MM }),
   mask: (settings, { stimulus, moving }) => ({
     ...settings,
-    box_mm: pictureExtent(moving(), stimulus).map((size, i) => Math.round(MASK_SIZE[i]! * size)),
+    box_mm: boxOf(MASK_BOX, stimulus),
     centre_mm: moving().middle.map((at) => Math.round(at * 1000) / 1000),
   }),
 };
@@ -115,13 +118,6 @@ function merged(steps: readonly Step[]): readonly Step[] {
   return [{ ...steps[0]!, figures: steps.length === 1 ? null : steps.flatMap(({ figures }) => figures!) }];
 }
 
-/** Width and height in the picture of a figure's mean posture, in whole millimetres. */
-function pictureExtent({ body, mean }: MovingDots, { view }: Stimulus): readonly [number, number] {
-  const [right, up] = observerAxes(view.view_deg, view.elevation_deg);
-  const places = body.dots.map((_, i) => [...mean.subarray(3 * i, 3 * i + 3)] as unknown as Vector);
-  const along = (axis: Vector): number => {
-    const values = places.map((place) => dot(place, axis)).filter((value) => !Number.isNaN(value));
-    return Math.max(Math.ceil(Math.max(...values) - Math.min(...values)), 100);
-  };
-  return [along(right), along(up)];
-}
+/** A box in millimetres that is as large in the picture for all walkers. */
+const boxOf = (shape: readonly [number, number], { display: { dot_px, px_per_mm } }: Stimulus): number[] =>
+  shape.map((side) => Math.round((1000 * side * USUAL_HEIGHT_DOTS * dot_px) / px_per_mm) / 1000);

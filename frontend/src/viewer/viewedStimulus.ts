@@ -1,6 +1,6 @@
 /** The picture in the viewer as the content of a stimulus file. */
 
-import type { Figure, Step, Stimulus } from "../core/stimulus";
+import type { Figure, Step, Stimulus, Walker } from "../core/stimulus";
 import { observerAxes, type Vector } from "../core/vector";
 import { walkerOf } from "../model/features";
 import type { Scene, SceneFigure } from "../model/figures";
@@ -19,7 +19,28 @@ const DEFAULT_SIZE: Size = { width_px: 640, height_px: 640 };
 /** The present picture as a stimulus that Python's `Stimulus.from_json` reads. */
 export function stimulusOf(scene: Scene, size: Size = DEFAULT_SIZE): Stimulus {
   const some = { ...scene, figures: scene.figures.slice(0, MAX_FIGURES) };
-  return arrangedStimulus(some, size, arrangementFor(some, size));
+  const stimulus = arrangedStimulus(some, size, arrangementFor(some, size));
+  const figures = stimulus.figures.map((figure) => ({ ...figure, walker: figure.walker && beginning(figure.walker) }));
+  return { ...stimulus, figures };
+}
+
+/**
+ * A walker whose left ankle passes the right one, on its way forward, at 0 s: as Python's, all begin alike.
+ * Where phases are fixed, the walker as it is.
+ */
+function beginning(walker: Walker & { readonly form?: string }): Walker {
+  const { markers, p, harmonics, phases, form } = walker;
+  const [left, right] = [markers.indexOf("left_ankle"), markers.indexOf("right_ankle")];
+  if (form === "fourier" || left < 0 || right < 0) return walker;
+  let [sine, cosine] = [0, 0];
+  p.forEach((posture, i) => {
+    if (harmonics[i] !== 1) return;
+    const swing = posture[left]![0] - posture[right]![0];
+    sine += swing * Math.cos(phases[i]!);
+    cosine += swing * Math.sin(phases[i]!);
+  });
+  const own = Math.atan2(cosine, sine);
+  return { ...walker, phases: phases.map((phase, i) => phase - harmonics[i]! * own) };
 }
 
 export const arrangementFor = (scene: Scene, size: Size): Arrangement =>

@@ -81,7 +81,13 @@ def stimulus(
     ellipses: Annotated[Texts, option("shoulder=35/12,hip=15/20 mm (Cutting)")] = None,
     perturb: Annotated[Texts, option("markers=left_knee,amount=0/50/0,frequency=3")] = None,
     speed: Annotated[float | None, option("Playback speed; 1 is its own.")] = None,
-    start: Annotated[float | None, option("Starting phase, degrees of the stride.")] = None,
+    start: Annotated[
+        str | None,
+        option(
+            "Phase of the stride at which it begins, degrees, 0 if left out: the left ankle passes "
+            "the right one; or seed=3, one drawn at random."
+        ),
+    ] = None,
     reverse: Annotated[bool, option("Play backwards.", "--reverse")] = False,
     freeze: Annotated[float | None, option("Stand still as at this second.")] = None,
     delay: Annotated[Texts, option("parts=arms,phase=90: lag behind the rest")] = None,
@@ -99,7 +105,13 @@ def stimulus(
     show: Annotated[str | None, option("Parts to show; the others are hidden.")] = None,
     scramble: Annotated[str | None, option("seed=3,keep=structure,directions=horizontal")] = None,
     limb_dots: Annotated[str | None, option("number=8,lifetime=0.1,seed=1 (Beintema)")] = None,
-    blur: Annotated[float | None, option("Blobs of this standard deviation, mm.")] = None,
+    blur: Annotated[
+        str | None,
+        option(
+            "Blobs of this standard deviation in place of dots: 12px, 0.4deg, or mm on a walker of "
+            "usual height; the same for all walkers."
+        ),
+    ] = None,
     mask: Annotated[Texts, option("kind=scrambled,number=30,seed=2 or signal_to_noise=0.5")] = None,
     view: View = 30.0,
     elevation: Elevation = 0.0,
@@ -116,6 +128,13 @@ def stimulus(
     height_deg: Annotated[
         float | None, option("Height of the walker in degrees of visual angle.")
     ] = None,
+    dot_deg: Annotated[
+        float | None, option("Diameter of dots, degrees; 0.12 with --height-deg.")
+    ] = None,
+    dot_px: Annotated[
+        float | None, option("Diameter of dots, pixels; a fiftieth of the picture if left out.")
+    ] = None,
+    dot_mm: Annotated[float | None, option("Diameter of dots, mm of the screen.")] = None,
     distance: Annotated[float, option("From the eye to the screen, mm.")] = 570.0,
     px_per_cm: Annotated[float, option("Pixels a centimetre of the screen.")] = 38.0,
     skeleton: Annotated[
@@ -154,12 +173,14 @@ def stimulus(
         population = load_people(people, with_flagged)
         options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
         made = _of_a_population(population, options)
-    for name, parameters in _transforms(options, population):
+    steps = list(_transforms(options, population))
+    for name, parameters in [step for step in steps if step[0] not in OF_THE_DISPLAY]:
+        made = made.then(name, **parameters)
+    made = _on_screen(made, options)
+    for name, parameters in [step for step in steps if step[0] in OF_THE_DISPLAY]:
         made = made.then(name, **parameters)
     if strides or (film and duration is None):
         made = made.whole_strides(strides)
-    if height_deg is not None:
-        made = made.sized(height_deg, viewing_distance_mm=distance, px_per_cm=px_per_cm)
     with progress_bar("Writing") as progress:
         path = write_stimulus(made, output, progress=progress, rig=rig)
     names = ", then ".join(step["name"] for step in made.transforms)
@@ -190,6 +211,21 @@ def _rig_choices(options: dict[str, Any], output: Path) -> RigChoices:
     check_choice(choices.unit or "cm", ("cm", "m"), "--rig-unit")
     check_choice(choices.up, ("y", "z"), "--up")
     return choices
+
+
+def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
+    """The stimulus with its walker and its dots as large as asked for."""
+    from dataclasses import replace
+
+    from eigenwalker.stimulus.dot_size import with_dots
+
+    screen = {"viewing_distance_mm": options["distance"], "px_per_cm": options["px_per_cm"]}
+    sizes = {name: options[f"dot_{name}"] for name in ("px", "deg", "mm")}
+    if options["height_deg"] is not None:
+        made = made.sized(options["height_deg"], **screen)
+    elif sizes["deg"] is not None or sizes["mm"] is not None or "deg" in (options["blur"] or ""):
+        made = replace(made, display=replace(made.display, **screen))
+    return replace(made, display=with_dots(made.display, **sizes))
 
 
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
@@ -330,6 +366,10 @@ def _transforms(
             yield "morph", {"walker": population.walker(vector)}
         elif name in ("occlude", "show"):
             yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}
+        elif name == "blur":
+            yield name, _blob(value)
+        elif name == "start":
+            yield name, {"phase_deg": _phase_deg(value)}
         elif parameter is not None:
             yield name, {parameter: value}
         elif value is True:
@@ -341,13 +381,15 @@ def _transforms(
 
 ORDER: tuple[tuple[str, str | None], ...] = (
     *(("gain", None), ("arm_swing", "factor"), ("conflict", None), ("ellipses", None)),
-    *(("perturb", None), ("speed", "factor"), ("start", "phase_deg"), ("reverse", None)),
+    *(("perturb", None), ("speed", "factor"), ("start", None), ("reverse", None)),
     *(("freeze", "time_s"), ("delay", None), ("phase_scramble", None), ("morph_to", None)),
     *(("mirror", None), ("overground", None), ("rotate", None), ("invert", None)),
     *(("occlude", None), ("show", None), ("scramble", None), ("limb_dots", None)),
-    *(("blur", "sd_mm"), ("mask", None)),
+    *(("blur", None), ("mask", None)),
 )
 """Options in the order in which they act, and the parameter of those that take one number."""
+OF_THE_DISPLAY = ("blur", "mask")
+"""Transforms that go by the size in which the walker is shown."""
 SPECIAL_PARAMETERS = ("parts", "signal_to_noise", "dots_per_m2")
 """Texts of transforms that are not fields of theirs."""
 
@@ -370,6 +412,31 @@ def _parameters(option: str, text: str) -> dict[str, Any]:
         several = len(values) > 1 or full[0] in ("markers", "parts")
         parameters[full[0]] = values if several else values[0]
     return parameters
+
+
+def _blob(text: str) -> dict[str, Any]:
+    """Return the size of blobs: ``12px``, ``0.4deg``, or ``20`` mm on a walker of usual height."""
+    number = text.lower().removesuffix("px").removesuffix("deg").removesuffix("mm")
+    try:
+        size = float(number)
+    except ValueError:
+        raise ValueError(f"--blur {text}: expected a size, as in 12px, 0.4deg or 20mm.") from None
+    unit = text.lower().removeprefix(number)
+    return {f"sd_{'usual_mm' if unit in ('', 'mm') else unit}": size}
+
+
+def _phase_deg(text: str) -> float:
+    """Return a phase in degrees; of ``seed=3`` one drawn at random."""
+    name, equals, seed = text.partition("=")
+    if equals and name.strip() == "seed" and seed.strip().isdecimal():
+        from eigenwalker.stimulus.random_streams import Purpose, uniforms
+
+        drawn = uniforms(Purpose.START, int(seed), [0], 0, count=1)
+        return round(360 * float(drawn.ravel()[0]), 3)
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"--start {text}: expected degrees, or seed=3.") from None
 
 
 def _value(text: str) -> Any:

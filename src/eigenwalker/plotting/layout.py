@@ -18,15 +18,20 @@ from eigenwalker.plotting.raster import draw_discs, draw_lines, lettering
 
 Style = Literal["dots", "sticks"]
 STYLES = ("dots", "sticks")
-DOT_MM = 36.0
-"""Diameter of a dot of the point-light display, at the scale of the walker."""
+DOT_SHARE = 0.02
+"""Diameter of a dot of the point-light display, as a share of the picture's side.
+
+It does not go with the walker: dots tell nobody's height.
+"""
 DEFAULT_DURATION_S = 4.0
 """Seconds of a film or stimulus of walkers whose duration is left open."""
-STICK_MM = 22.0
-HEAD_MM = 170.0
-"""Diameter of a stick figure's head, drawn about the marker of that name."""
+STICK_PER_DOT = 0.6
+HEAD_PER_DOT = 4.7
+"""Diameter of a stick figure's head, drawn about the marker of that name, in dots."""
 MARGIN = 0.06
 """Share of the picture's height that stays empty on each side."""
+LEAST_MM = 36.0
+"""Extent of a picture that shows less."""
 SMALLEST_PX = 16
 TITLE = 0.08
 """Share of the picture's height that titles take, where there are any."""
@@ -46,6 +51,7 @@ class Layout:
     places: tuple[np.ndarray, ...]
     bodies: tuple[Skeleton, ...]
     pixels_per_mm: float
+    dot_px: float
     style: Style
     titles: tuple[str, ...] = ()
 
@@ -73,11 +79,10 @@ class Layout:
 
     def _draw(self, canvas: np.ndarray, places: np.ndarray, body: Skeleton) -> None:
         if self.style == "dots":
-            radius = max(DOT_MM / 2 * self.pixels_per_mm, 1.0)
-            draw_discs(canvas, places, radius=radius)
+            draw_discs(canvas, places, radius=self.dot_px / 2)
             return
-        reach = _radii(list(body.markers), self.style) * self.pixels_per_mm
-        width = max(STICK_MM * self.pixels_per_mm, 1.5)
+        reach = _radii(list(body.markers), self.style, self.dot_px)
+        width = max(STICK_PER_DOT * self.dot_px, 1.5)
         left = {marker for marker, _ in body.pairs}
         for level, far in ((FAR_SIDE, True), (1.0, False)):
             ends = [
@@ -120,18 +125,19 @@ def arrange(
         )
         for walk in walks
     ]
-    radii = [_radii(walk.marker.values.tolist(), style)[:, None] for walk in walks]
-    pairs = list(zip(views, radii, strict=True))
-    lows = np.array([np.nanmin(view - radius, axis=(0, 1)) for view, radius in pairs])
-    highs = np.array([np.nanmax(view + radius, axis=(0, 1)) for view, radius in pairs])
-    breadth = (highs - lows)[:, 0].max()
+    lows = np.array([np.nanmin(view, axis=(0, 1)) for view in views])
+    highs = np.array([np.nanmax(view, axis=(0, 1)) for view in views])
+    breadth = max((highs - lows)[:, 0].max(), LEAST_MM)
     bottom, top = lows[:, 1].min(), highs[:, 1].max()
-    width, height = _picture_size(size_px, len(walks), breadth, top - bottom, bool(titles))
+    rise = max(top - bottom, LEAST_MM)
+    width, height = _picture_size(size_px, len(walks), breadth, rise, bool(titles))
     panel = width / len(walks)
+    dot_px = max(DOT_SHARE * (min(height, panel) if isinstance(size_px, tuple) else height), 2.0)
+    below, above = _reach(views, walks, style, dot_px)
     margin = MARGIN * min(height, panel)
-    tall = height - margin - (TITLE * height if titles else margin)
-    scale = min((panel - 2 * margin) / breadth, tall / (top - bottom))
-    floor = height - margin - (tall - scale * (top - bottom)) / 2
+    tall = height - margin - (TITLE * height if titles else margin) - (below + above)[1]
+    scale = min((panel - 2 * margin - (below + above)[0]) / breadth, tall / rise)
+    floor = height - margin - below[1] - (tall - scale * (top - bottom)) / 2
     places = tuple(
         np.stack(
             [
@@ -144,14 +150,28 @@ def arrange(
         for index, (view, low, high) in enumerate(zip(views, lows, highs, strict=True))
     )
     bodies = tuple(skeleton.restricted_to(walk.marker.values.tolist()) for walk in walks)
-    return Layout((height, width), places, bodies, scale, style, tuple(titles))
+    return Layout((height, width), places, bodies, scale, dot_px, style, tuple(titles))
 
 
-def _radii(markers: list[str], style: Style) -> np.ndarray:
-    """How far what is drawn reaches around each marker, in millimetres."""
+def _reach(
+    views: Sequence[np.ndarray], walks: Sequence[xr.DataArray], style: Style, dot_px: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """How far what is drawn reaches beyond the lowest and the highest marker on each axis."""
+    below, above = np.zeros(2), np.zeros(2)
+    for view, walk in zip(views, walks, strict=True):
+        radii = _radii(walk.marker.values.tolist(), style, dot_px)
+        low, high = np.nanmin(view, axis=0), np.nanmax(view, axis=0)
+        below = np.maximum(below, radii[np.nanargmin(low, axis=0)])
+        above = np.maximum(above, radii[np.nanargmax(high, axis=0)])
+    return below, above
+
+
+def _radii(markers: list[str], style: Style, dot_px: float) -> np.ndarray:
+    """How far what is drawn reaches around each marker, in pixels."""
     if style == "dots":
-        return np.full(len(markers), DOT_MM / 2)
-    return np.where([marker == "head" for marker in markers], HEAD_MM / 2, 0.75 * STICK_MM)
+        return np.full(len(markers), dot_px / 2)
+    head = [marker == "head" for marker in markers]
+    return np.where(head, HEAD_PER_DOT / 2, 0.75 * STICK_PER_DOT) * dot_px
 
 
 def _picture_size(

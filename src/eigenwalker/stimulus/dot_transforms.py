@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from eigenwalker.core.skeleton import Skeleton
 from eigenwalker.stimulus.moving_dots import Moments, MovingDots
@@ -23,6 +23,7 @@ from eigenwalker.stimulus.transform_types import (
     Switch,
     Transform,
     Vector,
+    problem,
 )
 
 SHOWN_AXES = {"both": (1.0, 1.0), "horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
@@ -114,14 +115,26 @@ class Blur(Transform):
     """Draw each dot as a Gaussian blob of this standard deviation.
 
     Where blobs overlap their light adds up: with 80 mm and more the body is one blob that changes
-    its shape (Barclay, Cutting and Kozlowski, 1978, experiment 3). Keeps all places.
+    its shape (Barclay, Cutting and Kozlowski, 1978, experiment 3). In pixels the blobs are the same
+    for all walkers; in mm they go with the figure. Keeps all places.
     """
 
     name: Literal["blur"]
-    sd_mm: float = Field(strict=True, ge=0, le=1e4, description="standard deviation of the blobs")
+    sd_mm: Annotated[float, Field(strict=True, ge=0, le=1e4)] | None = Field(
+        None, description="standard deviation of the blobs at the walker's scale"
+    )
+    sd_px: Annotated[float, Field(strict=True, ge=0, le=1e4)] | None = Field(
+        None, description="or in pixels of the picture"
+    )
+
+    @model_validator(mode="after")
+    def _has_one_size(self) -> Blur:
+        if (self.sd_mm is None) == (self.sd_px is None):
+            raise problem("expected either sd_mm or sd_px")
+        return self
 
     def apply(self, moving: MovingDots, context: Context) -> MovingDots:
-        return replace(moving, blur_mm=self.sd_mm)
+        return replace(moving, blur_mm=self.sd_mm or 0.0, blur_px=self.sd_px or 0.0)
 
 
 class Mask(Transform):
@@ -176,7 +189,7 @@ class Mask(Transform):
             return Moments(positions, visible)
 
         skeleton = Skeleton(numbered("noise", self.number))
-        return MovingDots(skeleton, at, moving.period_s, moving.blur_mm)
+        return MovingDots(skeleton, at, moving.period_s, moving.blur_mm, moving.blur_px)
 
     def _motion(self, moving: MovingDots) -> Callable[[np.ndarray], Moments]:
         """How noise dots move about their places: the figure's dots about their means."""

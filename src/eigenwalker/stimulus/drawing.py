@@ -47,8 +47,8 @@ def drawn_frames(
             dots = places_now[played.figures == number]
             if number in bodies:
                 continue
-            if figure.blur_mm > 0:
-                draw_blobs(canvas, dots, sd_px=figure.blur_mm * display.px_per_mm)
+            if (sd_px := figure.blob_px(display.px_per_mm)) > 0:
+                draw_blobs(canvas, dots, sd_px=sd_px)
                 continue
             if display.style == "sticks" and figure.skeleton.segments:
                 start, end = np.transpose(figure.skeleton.segment_ends)
@@ -74,7 +74,7 @@ def mannequins(stimulus: Stimulus) -> dict[int, Mannequin]:
     return {
         number: mannequin_of(figure.skeleton, heights[number])
         for number, figure in enumerate(stimulus.scene)
-        if figure.skeleton.segments and figure.blur_mm == 0
+        if figure.skeleton.segments and not figure.blob_px(1)
     }
 
 

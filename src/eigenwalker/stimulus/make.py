@@ -12,10 +12,12 @@ import xarray as xr
 from eigenwalker._version import __version__
 from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.walker import Walker
-from eigenwalker.plotting.layout import DEFAULT_DURATION_S, DOT_MM
+from eigenwalker.plotting.layout import DEFAULT_DURATION_S
 from eigenwalker.population.population import Population, check_population
+from eigenwalker.stimulus.dot_size import usual_dot_px, with_dots
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
+from eigenwalker.stimulus.starting_phase import beginning_at
 from eigenwalker.stimulus.stimulus import Stimulus
 
 FILLED_SHARE = 0.84
@@ -35,6 +37,12 @@ def make_stimulus(
     size_px: tuple[int, int] = (512, 512),
     colour: str = "#ffffff",
     background: str = "#000000",
+    dot_px: float | None = None,
+    dot_deg: float | None = None,
+    dot_mm: float | None = None,
+    viewing_distance_mm: float | None = None,
+    px_per_cm: float | None = None,
+    phase_deg: float | None = 0.0,
     provenance: Mapping[str, str] | None = None,
 ) -> Stimulus:
     """Return a stimulus of one figure, or of several in one scene, as large as the picture allows.
@@ -56,6 +64,15 @@ def make_stimulus(
     size_px : (width, height)
     colour, background : str
         As in ``"#ffffff"``.
+    dot_px, dot_deg, dot_mm : float, optional
+        Diameter of dots on the screen, in pixels, degrees of visual angle or millimetres; left out,
+        a fiftieth of the picture's shorter side. It does not go with the figures: dots of a short
+        walker are as large as those of a tall one. Sticks are 0.6 times as wide.
+    viewing_distance_mm, px_per_cm : float, optional
+        The screen, for sizes in degrees and millimetres.
+    phase_deg : float, optional
+        Phase of the stride with which all walkers begin: with 0 the left ankle passes the right one
+        on its way forward. With None, and without ankles, each begins with its own first phase.
     provenance : mapping of str to str, optional
         Source, licence, citation; the program's version is added.
 
@@ -84,7 +101,7 @@ def make_stimulus(
     several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else list(figures)
     for item in several:
         check_kind(item, kinds, expected)
-    whole = [item if isinstance(item, Figure) else Figure(item) for item in several]
+    whole = [_beginning(item, phase_deg) for item in several]
     if not whole:
         raise ValueError("There is no figure to show; give one or more.")
     if duration_s is None:
@@ -93,21 +110,34 @@ def make_stimulus(
             (float(np.ptp(walk.time.values)) for walk in walks), default=DEFAULT_DURATION_S
         )
     program = f"eigenwalker {__version__}"
+    display = Display(
+        width_px=size_px[0],
+        height_px=size_px[1],
+        px_per_mm=1.0,
+        style=style,
+        colour=colour,
+        background=background,
+        viewing_distance_mm=viewing_distance_mm,
+        px_per_cm=px_per_cm,
+    )
     bare = Stimulus(
         figures=whole,
         view=View(centre_mm=(0, 0, 0), view_deg=azimuth_deg, elevation_deg=elevation_deg),
         timing=Timing(duration_s=duration_s, rate_hz=rate_hz),
-        display=Display(
-            width_px=size_px[0],
-            height_px=size_px[1],
-            px_per_mm=1.0,
-            style=style,
-            colour=colour,
-            background=background,
+        display=with_dots(
+            replace(display, dot_px=usual_dot_px(display)), px=dot_px, deg=dot_deg, mm=dot_mm
         ),
         provenance={**(provenance or {}), "program": program},
     )
     return _fitted(bare, eye_distance_mm)
+
+
+def _beginning(item: Walker | xr.DataArray | Figure, phase_deg: float | None) -> Figure:
+    """A figure whose walker begins at a phase of the stride."""
+    figure = item if isinstance(item, Figure) else Figure(item)
+    if phase_deg is None or not isinstance(figure.motion, Walker):
+        return figure
+    return replace(figure, motion=beginning_at(figure.motion, phase_deg))
 
 
 def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
@@ -125,8 +155,7 @@ def _fitted(bare: Stimulus, eye_distance_mm: float | None) -> Stimulus:
         extent = np.where(np.isfinite(seen), np.maximum(extent, seen), extent)
     room = FILLED_SHARE * np.array([bare.display.width_px, bare.display.height_px])
     scale = float((room / extent).min())
-    display = replace(bare.display, px_per_mm=scale, dot_px=max(DOT_MM * scale, 2.0))
-    return replace(bare, view=view, display=display)
+    return replace(bare, view=view, display=replace(bare.display, px_per_mm=scale))
 
 
 def with_information(

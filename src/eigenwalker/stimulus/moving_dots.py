@@ -43,14 +43,19 @@ class MovingDots:
         Takes seconds, an array of shape (time,), and returns `Moments`.
     period_s : float
         Seconds after which it repeats; of sampled trajectories, how long they last.
-    blur_mm : float
-        Standard deviation of each dot's blob; 0 for discs.
+    blur_mm, blur_px : float
+        Standard deviation of each dot's blob, at the walker's scale or in the picture; 0 for discs.
     """
 
     skeleton: Skeleton
     at: Callable[[np.ndarray], Moments]
     period_s: float
     blur_mm: float = 0.0
+    blur_px: float = 0.0
+
+    def blob_px(self, px_per_mm: float) -> float:
+        """Return the standard deviation of each dot's blob in pixels; 0 for discs."""
+        return self.blur_px + self.blur_mm * px_per_mm
 
     @property
     def dots(self) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ class Purpose(IntEnum):
     PHASE_SCRAMBLE = 3
     LIMB_DOTS = 4
     MASK = 5
+    START = 6
 
 
 def random_words(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_numbers
 from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.stimulus.dot_size import DOT_DEG, degrees_in_px, usual_dot_px, with_dots
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
 from eigenwalker.stimulus.player import Played, play, scene
@@ -115,11 +116,21 @@ class Stimulus:
         >>> shown.then("scramble", seed=3).transforms[-1]["name"]
         'scramble'
         """
-        situation = Situation(self.figures, self.scene, self.view, self.timing.duration_s)
+        situation = Situation(
+            self.figures, self.scene, self.view, self.display, self.timing.duration_s
+        )
         step = resolve_transform(name, parameters, situation)
         return replace(self, transforms=(*self.transforms, step))
 
-    def sized(self, height_deg: float, *, viewing_distance_mm: float, px_per_cm: float) -> Stimulus:
+    def sized(
+        self,
+        height_deg: float,
+        *,
+        viewing_distance_mm: float,
+        px_per_cm: float,
+        dot_deg: float | None = None,
+        dot_px: float | None = None,
+    ) -> Stimulus:
         """Return the stimulus with the first figure scaled to a visual angle.
 
         The figure's height is that of its dots as they are shown, from the lowest to the highest
@@ -133,22 +144,21 @@ class Stimulus:
             From the eye to the screen.
         px_per_cm : float
             Of the screen.
+        dot_deg, dot_px : float, optional
+            Diameter of dots. Left out, dots for which no size was given to `make_stimulus` get 0.12
+            degrees, and others keep theirs; neither goes with the figure.
 
         Returns
         -------
         Stimulus
         """
         low, high = self.extent(0)
-        height_px = 2 * viewing_distance_mm * np.tan(np.deg2rad(height_deg) / 2) * px_per_cm / 10
-        scale = float(height_px / (high[1] - low[1]))
-        display = replace(
-            self.display,
-            px_per_mm=scale,
-            dot_px=self.display.dot_px * scale / self.display.px_per_mm,
-            viewing_distance_mm=viewing_distance_mm,
-            px_per_cm=px_per_cm,
-        )
-        return replace(self, display=display)
+        screen = replace(self.display, viewing_distance_mm=viewing_distance_mm, px_per_cm=px_per_cm)
+        height_px = degrees_in_px(screen, height_deg, "height_deg")
+        display = replace(screen, px_per_mm=float(height_px / (high[1] - low[1])))
+        if dot_deg is None and dot_px is None and display.dot_px == usual_dot_px(display):
+            dot_deg = DOT_DEG
+        return replace(self, display=with_dots(display, px=dot_px, deg=dot_deg))
 
     def whole_strides(self, n_strides: int | None = None) -> Stimulus:
         """Return the stimulus with a duration of whole strides of its first figure, so it loops.

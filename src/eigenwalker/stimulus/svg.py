@@ -49,11 +49,12 @@ def svg_drawing(stimulus: Stimulus, time_s: float = 0.0) -> str:
             continue
         mine = np.flatnonzero(played.figures == number)
         seen, spot = played.visible[0, mine], places[mine]
-        if display.style == "sticks" and figure.blur_mm == 0:
+        sd_px = figure.blob_px(display.px_per_mm)
+        if display.style == "sticks" and sd_px == 0:
             lines += _svg_sticks(figure.skeleton, spot, seen, display.dot_px, display.colour)
         radius, fill = display.dot_px / 2, display.colour
-        if figure.blur_mm > 0:
-            radius, fill = BLOB_REACH_SD * figure.blur_mm * display.px_per_mm, f"url(#blob{number})"
+        if sd_px > 0:
+            radius, fill = BLOB_REACH_SD * sd_px, f"url(#blob{number})"
             lines.append(_svg_blob(number, display.colour))
         lines += [
             f'<circle class="figure{number} {_name(dot)}" '

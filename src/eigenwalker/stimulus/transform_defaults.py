@@ -14,13 +14,20 @@ import numpy as np
 
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
+from eigenwalker.stimulus.dot_size import USUAL_HEIGHT_MM, degrees_in_px
 from eigenwalker.stimulus.figure import Figure, WalkerPart
 from eigenwalker.stimulus.moving_dots import MovingDots
-from eigenwalker.stimulus.schema import TRANSFORMS, View
+from eigenwalker.stimulus.player import play
+from eigenwalker.stimulus.schema import TRANSFORMS, Display, View
+from eigenwalker.stimulus.starting_phase import beginning_at, leg_phase
 
 ARM_SWING = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("elbow", "wrist"))
-MASK_MARGIN = (2.0, 1.15)
-"""How much wider and higher than the figure the box of a mask is where none is given."""
+MASK_BOX, SCRAMBLE_BOX = (0.75, 1.15), (0.4, 1.0)
+"""Width and height of the boxes of masks and of scrambled dots where none are given.
+
+In heights of the figure, whatever its own width: noise is as dense about narrow walkers as about
+wide ones.
+"""
 
 Parameters = dict[str, Any]
 _Resolver = Callable[["Situation", Parameters], Parameters]
@@ -36,6 +43,7 @@ class Situation:
     figures: Sequence[Figure]
     scene: Sequence[MovingDots]
     view: View
+    display: Display
     duration_s: float
 
     def number(self, parameters: Parameters) -> int:
@@ -49,15 +57,27 @@ class Situation:
         """Return the first figure that a transform acts on."""
         return self.scene[self.number(parameters)]
 
+    def height(self, parameters: Parameters) -> float:
+        """Return the larger extent in the picture, mm, of the first figure before all transforms.
+
+        Over a period, as figures are fitted into the picture and sized: a box made by it is as
+        large in the picture for all figures that are as high there.
+        """
+        bare = self.figures[self.number(parameters)].moving_dots()
+        seen = play([bare], self.view, bare.sample_times).picture.reshape(-1, 2)
+        return max(float((np.nanmax(seen, axis=0) - np.nanmin(seen, axis=0)).max()), 100.0)
+
 
 def resolve_transform(name: str, parameters: Mapping[str, Any], situation: Situation) -> Parameters:
     """Return a transform as it stands in a file, in a situation that gives what is left out.
 
-    May be left out: the box of ``scramble`` (the figure's extent), the box of ``mask`` (twice as
-    wide, 1.15 times as high) and its centre, the end of ``reverse``, ``perturb`` and ``morph`` (the
-    duration), the phase of ``ellipses`` (that of the figure's legs). May be given otherwise:
-    markers as ``parts`` of the body or as those to ``show``, the number of a mask's dots as
-    ``signal_to_noise`` or ``dots_per_m2``, the walker of ``morph`` as a `Walker`. Two more names:
+    May be left out: the box of ``scramble`` (as high as the figure, 0.4 times as wide, whatever its
+    own width), the box of ``mask`` (1.15 times as high, 0.75 times as wide) and its centre, the end
+    of ``reverse``, ``perturb`` and ``morph`` (the duration), the phase of ``ellipses`` (that of the
+    figure's legs). May be given otherwise: markers as ``parts`` of the body or as those to
+    ``show``, the number of a mask's dots as ``signal_to_noise`` or ``dots_per_m2``, the blobs of
+    ``blur`` as ``sd_deg``, or as ``sd_usual_mm`` on a walker whose dots reach 1.5 m, the walker of
+    ``morph`` as a `Walker`. Two more names:
     ``"arm_swing"`` is the gain of elbows and wrists, ``"overground"`` the translation with a
     figure's own speed, in the middle of the picture at half time.
     """
@@ -118,17 +138,21 @@ def _overground(situation: Situation, given: Parameters) -> Parameters:
 
 def _morph(situation: Situation, given: Parameters) -> Parameters:
     if isinstance(given.get("walker"), Walker):
-        given["walker"] = WalkerPart.of(given["walker"])
+        motion = situation.figures[situation.number(given)].motion
+        phase = leg_phase(motion) if isinstance(motion, Walker) else None
+        other = (
+            given["walker"] if phase is None else beginning_at(given["walker"], np.rad2deg(phase))
+        )
+        given["walker"] = WalkerPart.of(other)
     return {"start_s": 0.0, "end_s": situation.duration_s, **given}
 
 
 def _mask(situation: Situation, given: Parameters) -> Parameters:
     moving = situation.moving(given)
-    extent = _extent(situation, given)
     given = {
         "figures": [situation.number(given)],
         "kind": "random",
-        "box_mm": [round(margin * size) for margin, size in zip(MASK_MARGIN, extent, strict=True)],
+        "box_mm": _box(situation, given, MASK_BOX),
         "centre_mm": moving.middle.round(3).tolist(),
         **given,
     }
@@ -150,11 +174,23 @@ def _phase_of_legs(situation: Situation, given: Parameters) -> float:
     return round(float(np.rad2deg(np.arctan2(cosine, sine))), 3)
 
 
-def _extent(situation: Situation, given: Parameters) -> list[float]:
-    """Width and height in the picture of a figure's mean posture, in whole millimetres."""
+def _box(situation: Situation, given: Parameters, shape: tuple[float, float]) -> list[float]:
+    """Width and height of a box, mm, of a shape in heights of the figure; it lies if that lies."""
     seen = situation.moving(given).mean @ situation.view.axes[:2].T
-    extent = np.nanmax(seen, axis=0) - np.nanmin(seen, axis=0)
-    return np.maximum(np.ceil(extent), 100.0).tolist()
+    width, height = np.nanmax(seen, axis=0) - np.nanmin(seen, axis=0)
+    box = [round(side * situation.height(given), 3) for side in shape]
+    return box if height >= width else box[::-1]
+
+
+def _blur(situation: Situation, given: Parameters) -> Parameters:
+    """Blobs in degrees, or in mm on a walker of usual height that is as high in the picture."""
+    if "sd_deg" in given:
+        size = degrees_in_px(situation.display, given.pop("sd_deg"), "sd_deg")
+        given["sd_px"] = round(size, 4)
+    elif "sd_usual_mm" in given:
+        height_px = situation.height(given) * situation.display.px_per_mm
+        given["sd_px"] = round(given.pop("sd_usual_mm") * height_px / USUAL_HEIGHT_MM, 4)
+    return given
 
 
 def _computed(name: str, compute: Callable[[Situation, Parameters], Any]) -> _Resolver:
@@ -173,7 +209,8 @@ _DEFAULTS: dict[str, _Resolver] = {
     "overground": _overground,
     "reverse": _computed("end_s", lambda situation, given: situation.duration_s),
     "morph": _morph,
-    "scramble": _computed("box_mm", _extent),
+    "scramble": _computed("box_mm", lambda situation, given: _box(situation, given, SCRAMBLE_BOX)),
+    "blur": _blur,
     "mask": _mask,
     "ellipses": _computed("phase_deg", _phase_of_legs),
 }
