@@ -88,6 +88,7 @@ describe("a chain that no browser could play in time", () => {
 });
 
 it("counts the frames that were dropped", () => {
-  expect(frameTiming([0, 10, 20, 50, 60])).toMatchObject({ interval: 10, dropped: 2 });
-  expect(frameTiming([0])).toMatchObject({ interval: null, dropped: 0 });
+  expect(frameTiming([0, 10, 20, 50, 60], 10)).toMatchObject({ interval: 10, dropped: 2 });
+  expect(frameTiming([0, 20, 40], 10, 70)).toMatchObject({ interval: 20, longest: 20, dropped: 4 });
+  expect(frameTiming([0], 10)).toMatchObject({ interval: null, dropped: 0 });
 });

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -30,8 +32,76 @@ def test_options_act_in_one_order_however_they_are_typed(run):
         code, said, _ = run(*itertools.chain(*order), "-o", f"{number}.json")
         assert code == 0
         assert "speed, then invert, then scramble" in said
-        files.append(Path(f"{number}.json").read_text())
+        made = json.loads(Path(f"{number}.json").read_text())
+        assert made["provenance"].pop("command").endswith(f"-o {number}.json")
+        files.append(json.dumps(made))
     assert len(set(files)) == 1
+
+
+def test_a_file_says_what_was_done_and_the_terminal_too(run):
+    typed = ("--trait", "sex=3", "--information", "structure", "--from", "4", "-o", "one.json")
+    _, said, _ = run(*typed)
+    assert "sex +3 SD towards male" in said
+    assert "structure only, from walker 4 of the population" in said
+    about = Stimulus.load("one.json").provenance
+    expected = {
+        "trait": "sex",
+        "standard_deviations": "+3",
+        "towards": "male",
+        "kind": "discriminant",
+        "part": "all",
+        "components": "10",
+        "adjust": "nothing",
+        "information": "structure",
+        "started_from": "walker 4 of the population",
+        "command": "eigenwalker stimulus " + " ".join(typed),
+    }
+    assert {name: about[name] for name in expected} == expected
+    assert len(about["population_sha256"]) == 64
+    assert about["program"].startswith("eigenwalker ")
+    _, said, _ = run("one.json", "--invert", "-o", "two.json")
+    assert "sex +3 SD towards male" in said
+    about = Stimulus.load("two.json").provenance
+    assert about["command"].endswith("; then eigenwalker stimulus one.json --invert -o two.json")
+    assert about["made_from"].startswith("one.json, sha256 ")
+
+
+def test_a_population_is_known_by_its_hash(run, run_command):
+    run_command("simulate", "--women", "3", "--men", "3", "-o", "people.nc")
+    assert run("people.nc", "-o", "one.json")[0] == 0
+    about = Stimulus.load("one.json").provenance
+    assert about["population"] == about["source"] == "people.nc"
+    content = Path("people.nc").read_bytes()
+    assert about["population_sha256"] == hashlib.sha256(content).hexdigest()
+
+
+def test_dots_and_blobs_are_as_large_as_typed_for_all_walkers(run):
+    sizes = set()
+    for sds in (-3, 3):
+        options = ("--trait", f"sex={sds}", "--height-deg", "5", "--blur", "20", "-o", "a.json")
+        assert run(*options, "--mask", "number=9,seed=1")[0] == 0
+        made = Stimulus.load("a.json")
+        blob, mask = made.transforms[-2:]
+        box = np.array(mask["box_mm"]) * made.display.px_per_mm
+        sizes.add((made.display.dot_px, round(blob["sd_px"], 2), *box.round(1)))
+    assert len(sizes) == 1
+    assert sizes.pop()[:2] == (4.5365, 2.52)
+    for option, px in (("--dot-px 7", 7), ("--dot-deg 0.2", 7.5608), ("--dot-mm 2", 7.6)):
+        assert run(*option.split(), "--blur", "0.1deg", "-o", "a.json")[0] == 0
+        made = Stimulus.load("a.json")
+        assert (made.display.dot_px, made.transforms[0]["sd_px"]) == (px, 3.7804)
+    assert run("a.json", "--dot-px", "3", "-o", "b.json")[0] == 0
+    assert Stimulus.load("b.json").display.dot_px == 3
+
+
+def test_a_random_start_is_stated_and_the_same_for_all_walkers(run):
+    phases = set()
+    for sds in (-3, 3):
+        assert run("--trait", f"sex={sds}", "--start", "seed=3", "-o", "a.json")[0] == 0
+        phases.add(Stimulus.load("a.json").transforms[0]["phase_deg"])
+    assert len(phases) == 1
+    assert 0 < phases.pop() < 360
+    assert "expected degrees, or seed=3" in run("--start", "random")[2]
 
 
 def test_every_transform_can_be_typed(run):
@@ -83,9 +153,10 @@ def test_synthesize_is_stimulus_by_another_name(run, run_command):
         assert code == 0, complaint
     assert said["stimulus"].replace("stimulus.json", "synthesize.json") == said["synthesize"]
     assert "sex: 2 standard deviations towards male" in said["stimulus"]
-    texts = {Path(f"{command}.json").read_text() for command in said}
-    assert len(texts) == 1
-    made = Stimulus.from_json(texts.pop())
+    made, other = (Stimulus.load(f"{command}.json") for command in said)
+    typed = [each.provenance.pop("command") for each in (made, other)]
+    assert typed[0].replace("stimulus", "synthesize") == typed[1]
+    assert replace(made, provenance=other.provenance).to_json() == other.to_json()
     assert made.timing.duration_s == pytest.approx(2 / made.figures[0].motion.frequency_hz)
 
 

@@ -11,7 +11,7 @@ import eigenwalker as ew
 from eigenwalker.plotting.layout import arrange, positions_at
 from eigenwalker.stimulus import Figure, make_stimulus
 from eigenwalker.stimulus.drawing import drawn_frames
-from eigenwalker.stimulus.starting_phase import beginning_at, leg_phase
+from eigenwalker.stimulus.start_phase import beginning_at, leg_phase
 
 SCREEN = {"viewing_distance_mm": 570, "px_per_cm": 38}
 

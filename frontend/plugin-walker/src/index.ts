@@ -1,7 +1,7 @@
 /** A jsPsych trial that shows a stimulus file and waits for a key or a button. */
 
 import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
-import { everyFrame, frameTiming } from "../../src/canvas/frameClock";
+import { everyFrame, frameTiming, RefreshClock } from "../../src/canvas/frameClock";
 import type { MannequinPainter } from "../../src/canvas/mannequinLoader";
 import { painterOn, type Painter } from "../../src/canvas/painter";
 import { readStimulus } from "../../src/core/readStimulus";
@@ -16,13 +16,47 @@ export interface WalkerData {
   readonly response: string | number | null;
   readonly response_by: "key" | "button" | null;
   readonly rt: number | null;
+  /** What it was given with: "keyboard", "mouse", "touch" or "pen". */
+  readonly response_device: string | null;
+  readonly first_frame: number | null;
   readonly frame_times: readonly number[];
+  readonly frames_shown: number;
+  readonly frames_planned: number | null;
   readonly frame_interval: number | null;
+  readonly frame_interval_min: number | null;
+  readonly frame_interval_max: number | null;
   readonly frames_dropped: number;
+  readonly shown_for: number | null;
+  readonly refresh_rate: number;
+  readonly page_hidden: number;
+  readonly focus_lost: number;
+  readonly clock_isolated: boolean;
 }
+
+/** The refresh of the screen is measured once, while the page is read, and by each trial. */
+const refresh = new RefreshClock();
+let measured: Promise<void> | undefined;
+let isMeasured = false;
+if (typeof requestAnimationFrame === "function") measured = refresh.measure().then(() => void (isMeasured = true));
 
 /** To microseconds, the resolution of browsers. */
 const rounded = (milliseconds: number): number => Math.round(milliseconds * 1000) / 1000;
+const roundedOrNull = (milliseconds: number | null): number | null =>
+  milliseconds === null ? null : rounded(milliseconds);
+
+/** Count how often the page is hidden, or the window left, until `stop`. */
+function watchPage(): { stop(): { page_hidden: number; focus_lost: number } } {
+  const ending = new AbortController();
+  let [page_hidden, focus_lost] = [document.hidden ? 1 : 0, 0];
+  document.addEventListener("visibilitychange", () => document.hidden && page_hidden++, { signal: ending.signal });
+  window.addEventListener("blur", () => focus_lost++, { signal: ending.signal });
+  return {
+    stop() {
+      ending.abort();
+      return { page_hidden, focus_lost };
+    },
+  };
+}
 
 class WalkerPlugin implements JsPsychPlugin<Info> {
   static readonly info = info;
@@ -47,11 +81,13 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       this.show(display, trial, painter, trial.stimulus_duration ?? fileMs, buttons);
       begun();
     };
-    if (stimulus.display.style === "mannequin") {
-      return new Promise((_, fail) => mannequinPainter().then(start).catch(fail));
+    const solid = stimulus.display.style === "mannequin";
+    if (!solid && isMeasured) {
+      start();
+      return undefined;
     }
-    start();
-    return undefined;
+    const ready = Promise.all([solid ? mannequinPainter() : undefined, measured]);
+    return new Promise((_, fail) => ready.then(([mannequin]) => start(mannequin)).catch(fail));
   }
 
   private show(
@@ -62,6 +98,14 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     buttons: readonly HTMLButtonElement[],
   ): void {
     const times: number[] = [];
+    const refreshMs = refresh.intervalMs;
+    const half = refreshMs / 2;
+    const planned = Math.max(Math.round(durationMs / refreshMs), 1);
+    const shownMs = planned * refreshMs; // a duration is a whole number of frames
+    const watch = watchPage();
+    let first: number | undefined;
+    let cleared: number | undefined;
+    let last = 0;
     let answer: (Answer & { readonly rt: number }) | undefined;
     let stopListening = (): void => {};
     painter.paint(0); // the first drawing is the slowest, so it is done before the first frame
@@ -70,15 +114,27 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     const end = (): void => {
       stop();
       stopListening();
-      const timing = frameTiming(times);
+      const timing = frameTiming(times, refreshMs, cleared);
+      const lost = watch.stop();
+      refresh.add(times);
       display.replaceChildren();
       this.jsPsych.finishTrial({
         response: answer?.response ?? null,
         response_by: answer?.by ?? null,
         rt: answer?.rt ?? null,
+        response_device: answer?.device ?? null,
+        first_frame: first === undefined ? null : rounded(first),
         frame_times: times.map(rounded),
-        frame_interval: timing.interval === null ? null : rounded(timing.interval),
+        frames_shown: times.length,
+        frames_planned: trial.repeat ? null : planned,
+        frame_interval: roundedOrNull(timing.interval),
+        frame_interval_min: roundedOrNull(timing.shortest),
+        frame_interval_max: roundedOrNull(timing.longest),
         frames_dropped: timing.dropped,
+        shown_for: roundedOrNull(cleared ?? (first === undefined ? null : last + refreshMs)),
+        refresh_rate: rounded(1000 / refreshMs),
+        ...lost,
+        clock_isolated: globalThis.crossOriginIsolated ?? false,
       } satisfies WalkerData);
     };
     const onAnswer = (firstMs: number) => (given: Answer) => {
@@ -87,15 +143,19 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       if (trial.response_ends_trial) end();
     };
     const stop = everyFrame((elapsedMs, firstMs) => {
-      if (trial.trial_duration !== null && elapsedMs >= trial.trial_duration!) {
+      first ??= firstMs;
+      if (trial.trial_duration !== null && elapsedMs > trial.trial_duration! - half) {
+        if (cleared === undefined) cleared = elapsedMs;
         end();
         return false;
       }
-      if (trial.repeat || elapsedMs < durationMs) {
-        painter.paint((elapsedMs % durationMs) / 1000);
-        times.push(elapsedMs);
-      } else {
+      if (trial.repeat || elapsedMs < shownMs - half) {
+        const moment = ((elapsedMs + half) % shownMs) - half;
+        painter.paint(Math.max(moment, 0) / 1000);
+        times.push((last = elapsedMs));
+      } else if (cleared === undefined) {
         painter.clear();
+        cleared = elapsedMs;
       }
       if (elapsedMs === 0) stopListening = listen(this.jsPsych, trial.choices!, buttons, onAnswer(firstMs));
       return true;
@@ -135,10 +195,21 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
         ? pluginAPI.getValidKey(trial.choices as string[] | "ALL_KEYS")
         : randomization.randomInt(0, Math.max(trial.buttons!.length - 1, 0)),
       response_by: byKey ? "key" : "button",
+      response_device: byKey ? "keyboard" : "mouse",
       rt: randomization.sampleExGaussian(500, 50, 1 / 150, true),
+      first_frame: null,
       frame_times: [],
+      frames_shown: 0,
+      frames_planned: null,
       frame_interval: null,
+      frame_interval_min: null,
+      frame_interval_max: null,
       frames_dropped: 0,
+      shown_for: null,
+      refresh_rate: rounded(1000 / refresh.intervalMs),
+      page_hidden: 0,
+      focus_lost: 0,
+      clock_isolated: globalThis.crossOriginIsolated ?? false,
     };
     return pluginAPI.mergeSimulationData(initial, options) as WalkerData;
   }
@@ -172,6 +243,7 @@ export default WalkerPlugin;
 export interface Answer {
   readonly response: string | number;
   readonly by: "key" | "button";
+  readonly device: string;
   /** On the clock of `performance.now()`. */
   readonly timeMs: number;
 }
@@ -183,6 +255,9 @@ function timeOf(event: Event): number {
   const now = performance.now();
   return event.timeStamp > 0 && event.timeStamp <= now ? event.timeStamp : now;
 }
+
+/** A click without a pointer comes from the keyboard. */
+const deviceOf = (event: MouseEvent): string => ("pointerType" in event && String(event.pointerType)) || "keyboard";
 
 /** Report each answer until the returned function is called. */
 export function listen(
@@ -204,11 +279,12 @@ export function listen(
           valid_responses: keys === "ALL_KEYS" ? keys : [...keys],
           persist: true,
           allow_held_key: false,
-          callback_function: ({ key }: { key: string }) => onAnswer({ response: key, by: "key", timeMs: pressedMs }),
+          callback_function: ({ key }: { key: string }) => onAnswer({ response: key, by: "key", device: "keyboard", timeMs: pressedMs }),
         });
   buttons.forEach((button, number) => {
     button.disabled = false;
-    button.onclick = (event) => onAnswer({ response: number, by: "button", timeMs: timeOf(event) });
+    button.onclick = (event) =>
+      onAnswer({ response: number, by: "button", device: deviceOf(event), timeMs: timeOf(event) });
   });
   return () => {
     document.removeEventListener("keydown", note, { capture: true });

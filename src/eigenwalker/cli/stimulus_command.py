@@ -155,6 +155,7 @@ def stimulus(
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
     options = dict(locals())
+    from eigenwalker.cli.provenance import walker_line
     from eigenwalker.datasets.bml import looks_like_bml
     from eigenwalker.plotting.encoding import FORMATS
     from eigenwalker.stimulus.write_stimulus import check_suffix, write_stimulus
@@ -184,7 +185,8 @@ def stimulus(
     with progress_bar("Writing") as progress:
         path = write_stimulus(made, output, progress=progress, rig=rig)
     names = ", then ".join(step["name"] for step in made.transforms)
-    print(f"{names or 'No transforms'}; {made.timing.duration_s:g} s")
+    print(walker_line(made.provenance))
+    print(f"Transforms: {names or 'none'}; {made.timing.duration_s:g} s")
     if path.suffix.lower() in (".bvh", ".glb"):
         from eigenwalker.stimulus.animation import animated
 
@@ -230,10 +232,10 @@ def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
 
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
     """The stimulus before any transform."""
-    from eigenwalker.datasets.built_in import BUILT_IN
+    from eigenwalker.cli.provenance import of_a_walker
     from eigenwalker.stimulus.make import make_stimulus
 
-    path, size = options["people"], options["size"]
+    size = options["size"]
     looks = {"style": options["style"], "rate_hz": options["rate"]}
     looks |= {"size_px": None if size is None else _size(size)}
     return make_stimulus(
@@ -242,7 +244,7 @@ def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulu
         elevation_deg=options["elevation"],
         eye_distance_mm=options["eye_distance"],
         duration_s=options["duration"],
-        provenance={"source": BUILT_IN if path is None else path.name, **population.provenance},
+        provenance={**population.provenance, **of_a_walker(population, options)},
         **{name: value for name, value in looks.items() if value is not None},
     )
 
@@ -251,6 +253,7 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     """The stimulus of a file with another duration, rate or style; its view stays."""
     from dataclasses import replace
 
+    from eigenwalker.cli.provenance import of_a_file
     from eigenwalker.stimulus.stimulus import Stimulus
 
     for name in ("trait", "start_from", "information", "morph_to", "size", "eye_distance"):
@@ -262,7 +265,10 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     timing = {name: value for name, value in timing.items() if value is not None}
     style = {} if options["style"] is None else {"style": options["style"]}
     return replace(
-        made, timing=replace(made.timing, **timing), display=replace(made.display, **style)
+        made,
+        timing=replace(made.timing, **timing),
+        display=replace(made.display, **style),
+        provenance=of_a_file(options["people"], dict(made.provenance)),
     )
 
 

@@ -14,10 +14,11 @@ from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.layout import DEFAULT_DURATION_S
 from eigenwalker.population.population import Population, check_population
+from eigenwalker.stimulus.call_text import call_text, with_call
 from eigenwalker.stimulus.dot_size import usual_dot_px, with_dots
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.schema import Display, Style, Timing, View
-from eigenwalker.stimulus.starting_phase import beginning_at
+from eigenwalker.stimulus.start_phase import beginning_at
 from eigenwalker.stimulus.stimulus import Stimulus
 
 FILLED_SHARE = 0.84
@@ -96,11 +97,13 @@ def make_stimulus(
     >>> shown.play([0.25]).positions[0, 0].round(6).tolist()
     [0.0, 0.0, 10.0]
     """
+    given = dict(locals())
     kinds, expected = (Walker, xr.DataArray, Figure), "walkers, trajectories or figures"
     check_kind(figures, (*kinds, Iterable), expected)
     several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else list(figures)
     for item in several:
         check_kind(item, kinds, expected)
+    given["figures"] = several[0] if len(several) == 1 else several
     whole = [_beginning(item, phase_deg) for item in several]
     if not whole:
         raise ValueError("There is no figure to show; give one or more.")
@@ -127,7 +130,10 @@ def make_stimulus(
         display=with_dots(
             replace(display, dot_px=usual_dot_px(display)), px=dot_px, deg=dot_deg, mm=dot_mm
         ),
-        provenance={**(provenance or {}), "program": program},
+        provenance=with_call(
+            {**(provenance or {}), "program": program},
+            call_text(make_stimulus, given),
+        ),
     )
     return _fitted(bare, eye_distance_mm)
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_numbers
 from eigenwalker.io.errors import UnreadableFile
+from eigenwalker.stimulus.call_text import call_text, value_text, with_call
 from eigenwalker.stimulus.dot_size import DOT_DEG, degrees_in_px, usual_dot_px, with_dots
 from eigenwalker.stimulus.figure import Figure
 from eigenwalker.stimulus.moving_dots import MovingDots
@@ -120,7 +121,9 @@ class Stimulus:
             self.figures, self.scene, self.view, self.display, self.timing.duration_s
         )
         step = resolve_transform(name, parameters, situation)
-        return replace(self, transforms=(*self.transforms, step))
+        words = [repr(name), *(f"{key}={value_text(given)}" for key, given in parameters.items())]
+        provenance = with_call(self.provenance, f"then({', '.join(words)})")
+        return replace(self, transforms=(*self.transforms, step), provenance=provenance)
 
     def sized(
         self,
@@ -152,13 +155,15 @@ class Stimulus:
         -------
         Stimulus
         """
+        call = call_text(Stimulus.sized, locals())
         low, high = self.extent(0)
         screen = replace(self.display, viewing_distance_mm=viewing_distance_mm, px_per_cm=px_per_cm)
         height_px = degrees_in_px(screen, height_deg, "height_deg")
         display = replace(screen, px_per_mm=float(height_px / (high[1] - low[1])))
         if dot_deg is None and dot_px is None and display.dot_px == usual_dot_px(display):
             dot_deg = DOT_DEG
-        return replace(self, display=with_dots(display, px=dot_px, deg=dot_deg))
+        display = with_dots(display, px=dot_px, deg=dot_deg)
+        return replace(self, display=display, provenance=with_call(self.provenance, call))
 
     def whole_strides(self, n_strides: int | None = None) -> Stimulus:
         """Return the stimulus with a duration of whole strides of its first figure, so it loops.

@@ -19,7 +19,7 @@ from eigenwalker.stimulus.figure import Figure, WalkerPart
 from eigenwalker.stimulus.moving_dots import MovingDots
 from eigenwalker.stimulus.player import play
 from eigenwalker.stimulus.schema import TRANSFORMS, Display, View
-from eigenwalker.stimulus.starting_phase import beginning_at, leg_phase
+from eigenwalker.stimulus.start_phase import beginning_at, leg_phase
 
 ARM_SWING = tuple(f"{side}_{joint}" for side in ("left", "right") for joint in ("elbow", "wrist"))
 MASK_BOX, SCRAMBLE_BOX = (0.75, 1.15), (0.4, 1.0)

@@ -15,6 +15,7 @@ from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.stimulus.html_page import stand_alone_page
 from eigenwalker.stimulus.rig_choices import RigChoices
 from eigenwalker.stimulus.stimulus import Stimulus
+from eigenwalker.stimulus.targets import check_target
 
 if TYPE_CHECKING:
     from eigenwalker.stimulus.animation import Animation
@@ -58,7 +59,8 @@ def write_stimulus(
     Raises
     ------
     ValueError
-        If the suffix is not known, or cannot hold this stimulus.
+        If the suffix is not known, or cannot hold this stimulus. What tables and skeletons leave
+        out is warned of; ``docs/stimuli.md`` has a table of it.
     FileNotFoundError
         If the folder does not exist.
 
@@ -78,6 +80,7 @@ def write_stimulus(
     """
     path = Path(path)
     suffix = check_suffix(path)
+    check_target(stimulus, path)
     if not suffix:
         _write_frames(stimulus, path, progress)
         return path
