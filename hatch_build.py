@@ -21,7 +21,13 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 ROOT = Path(__file__).parent
 FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "eigenwalker" / "stimulus" / "built"
-BUILT = [PAGE / name for name in ("player.html", "interactive.html", "mannequin.js", "widget.js")]
+BUILT = [
+    PAGE / name
+    for name in (
+        *("player.html", "interactive.html", "mannequin.js", "widget.js", "plugin-walker.js"),
+        *("jspsych.js", "jspsych.css", "licences.txt"),
+    )
+]
 DATASETS = ROOT / "src" / "eigenwalker" / "datasets"
 SIMULATORS = ("numpy", "scipy", "pandas", "xarray", "joblib", "lazy_loader", "threadpoolctl")
 """Libraries that the simulation of people runs on."""
@@ -71,7 +77,8 @@ def _simulate() -> None:
 
 
 def _sources() -> Iterator[Path]:
-    yield from (path for path in (FRONTEND / "src").rglob("*") if path.is_file())
+    for folder in (FRONTEND / "src", FRONTEND / "plugin-walker" / "src"):
+        yield from (path for path in folder.rglob("*") if path.is_file())
     yield from (FRONTEND / "package-lock.json", FRONTEND / "vite.config.ts", *SHARED)
 
 

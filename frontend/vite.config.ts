@@ -1,5 +1,6 @@
 /** What the Python package carries: pages that are one file each, and modules loaded on demand. */
 
+import { readFileSync } from "node:fs";
 import { dirname } from "node:path";
 import { fileURLToPath } from "node:url";
 import { type BuildEnvironmentOptions, defineConfig, type Plugin } from "vite";
@@ -48,6 +49,34 @@ const MODULES: Record<string, string> = {
   widget: "src/widget/widget.ts",
 };
 
+const PLUGIN = "plugin-walker";
+
+/** Puts jsPsych beside the plugin: its script, its style without fonts, and the licences of all. */
+function withJsPsych(): Plugin {
+  const read = (path: string): string => readFileSync(inFolder(`node_modules/${path}`), "utf8");
+  return {
+    name: "with-jspsych",
+    generateBundle() {
+      const { version } = JSON.parse(read("jspsych/package.json")) as { version: string };
+      const about = `/*! jsPsych ${version}, MIT licence: see licences.txt */\n`;
+      const emit = (fileName: string, source: string): unknown => this.emitFile({ type: "asset", fileName, source });
+      emit("jspsych.js", about + read("jspsych/dist/index.browser.min.js").replace(/\/\/# sourceMappingURL=.*\s*$/, ""));
+      emit("jspsych.css", about + read("jspsych/css/jspsych.css").replace(/@font-face\s*{[^}]*}/g, ""));
+      const seedrandom = read("seedrandom/README.md");
+      const licences = {
+        "plugin-walker": readFileSync(inFolder("plugin-walker/LICENSE"), "utf8"),
+        jsPsych: readFileSync(inFolder("jspsych-licence.txt"), "utf8"),
+        "auto-bind": read("auto-bind/license"),
+        "random-words": read("random-words/LICENSE"),
+        seedrandom: seedrandom.slice(seedrandom.indexOf("LICENSE (MIT)")),
+        "three.js, in mannequin.js": read("three/LICENSE"),
+      };
+      const texts = Object.entries(licences).map(([name, text]) => `${name}\n\n${text.trim()}\n`);
+      emit("licences.txt", `jspsych.js and jspsych.css are jsPsych ${version} with what it includes.\n\n${texts.join("\n\n")}`);
+    },
+  };
+}
+
 const shared: BuildEnvironmentOptions = {
   outDir: inFolder("../src/eigenwalker/stimulus/built"),
   emptyOutDir: false,
@@ -64,6 +93,17 @@ export default defineConfig(({ mode }) => {
       build: { ...shared, rolldownOptions: { input: inFolder(page) } },
       plugins: [insidePage()],
     };
+  }
+  if (mode === PLUGIN) {
+    const lib = {
+      entry: inFolder(`${PLUGIN}/src/index.ts`),
+      name: "jsPsychWalker",
+      formats: ["iife" as const],
+      fileName: () => `${PLUGIN}.js`,
+    };
+    const output = { minify: true, globals: { jspsych: "jsPsychModule" }, paths: (name: string) => (name === "jspsych" ? name : "./mannequin.js") };
+    const external = ["jspsych", /mannequin\/mannequin$/];
+    return { publicDir: false, build: { ...shared, lib, rolldownOptions: { external, output } }, plugins: [withJsPsych()] };
   }
   const entry = MODULES[mode];
   if (entry === undefined) throw new Error(`There is nothing called ${mode} to build.`);

@@ -156,7 +156,8 @@ def test_synthesize_is_stimulus_by_another_name(run, run_command):
     made, other = (Stimulus.load(f"{command}.json") for command in said)
     typed = [each.provenance.pop("command") for each in (made, other)]
     assert typed[0].replace("stimulus", "synthesize") == typed[1]
-    assert replace(made, provenance=other.provenance).to_json() == other.to_json()
+    texts = [replace(each, provenance={}).to_json() for each in (made, other)]
+    assert texts[0] == texts[1]
     assert made.timing.duration_s == pytest.approx(2 / made.figures[0].motion.frequency_hz)
 
 

@@ -2,7 +2,7 @@
 
 import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
 import { everyFrame, frameTiming, RefreshClock } from "../../src/canvas/frameClock";
-import type { MannequinPainter } from "../../src/canvas/mannequinLoader";
+import { mannequinInPage, type MannequinPainter } from "../../src/canvas/mannequinLoader";
 import { painterOn, type Painter } from "../../src/canvas/painter";
 import { readStimulus } from "../../src/core/readStimulus";
 import { make } from "../../src/page/elements";
@@ -215,8 +215,12 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
   }
 }
 
-/** The mannequin painter: a separate file beside this one, fetched for the first mannequin. */
+/**
+ * The mannequin painter, from the page if that holds it, as one opened from the disk must; or from the file
+ * beside this one, fetched for the first mannequin.
+ */
 async function mannequinPainter(): Promise<MannequinPainter> {
+  if (document.querySelector("script#mannequin")) return mannequinInPage();
   return (await import("../../src/mannequin/mannequin")).mannequinPainter();
 }
 
@@ -240,7 +244,7 @@ function build(
 
 export default WalkerPlugin;
 
-export interface Answer {
+interface Answer {
   readonly response: string | number;
   readonly by: "key" | "button";
   readonly device: string;
@@ -260,7 +264,7 @@ function timeOf(event: Event): number {
 const deviceOf = (event: MouseEvent): string => ("pointerType" in event && String(event.pointerType)) || "keyboard";
 
 /** Report each answer until the returned function is called. */
-export function listen(
+function listen(
   jsPsych: JsPsych,
   keys: Keys,
   buttons: readonly HTMLButtonElement[],

@@ -22,6 +22,7 @@ COMMANDS = {
     "classify": ("classify_command", "Tell a trait from gait, and say how surely."),
     "stimulus": ("stimulus_command", "Make a walker, and write it as a stimulus, a film, a rig."),
     "synthesize": ("stimulus_command", "The same as stimulus; a film, if no file is named."),
+    "plugin": ("plugin_command", "Write a page for jsPsych that shows stimuli and asks."),
     "compare": ("compare_command", "Say how different walks look."),
     "data": ("data_commands", "List and fetch captures that others published."),
     "cite": ("cite_command", "Print what to cite: the program, its papers, a data set."),
