@@ -24,8 +24,8 @@ PAGE = ROOT / "src" / "eigenwalker" / "stimulus" / "built"
 BUILT = [
     PAGE / name
     for name in (
-        *("player.html", "interactive.html", "mannequin.js", "widget.js", "plugin-walker.js"),
-        *("jspsych.js", "jspsych.css", "licences.txt"),
+        *("player.html", "interactive.html", "experiment.html", "mannequin.js", "widget.js"),
+        *("plugin-walker.js", "jspsych.js", "jspsych.css", "licences.txt"),
     )
 ]
 DATASETS = ROOT / "src" / "eigenwalker" / "datasets"

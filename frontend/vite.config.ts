@@ -39,10 +39,15 @@ function insidePage(): Plugin {
   };
 }
 
+/** What a page loads from its server, for the first mannequin. */
+const mannequin = /mannequin\/mannequin$/;
+const MANNEQUIN = (name: string): string => (mannequin.test(name) ? "/modules/mannequin.js" : name);
+
 /** What `vite build --mode NAME` makes: a page, or a module of its own. */
 const PAGES: Record<string, string> = {
   player: "src/player/player.html",
   interactive: "src/explorer/interactive.html",
+  experiment: "src/experiment/experiment.html",
 };
 const MODULES: Record<string, string> = {
   mannequin: "src/mannequin/mannequin.ts",
@@ -90,7 +95,7 @@ export default defineConfig(({ mode }) => {
     return {
       root: inFolder(dirname(page)),
       base: "./",
-      build: { ...shared, rolldownOptions: { input: inFolder(page) } },
+      build: { ...shared, rolldownOptions: { input: inFolder(page), external: mannequin, output: { paths: MANNEQUIN } } },
       plugins: [insidePage()],
     };
   }

@@ -45,7 +45,11 @@ def test_the_browser_agrees_with_python_and_passes_its_own_tests():
 
 @pytest.mark.usefixtures("installed")
 @pytest.mark.parametrize(
-    "name", ["player.html", "interactive.html", "mannequin.js", "widget.js", "plugin-walker.js"]
+    "name",
+    [
+        *("player.html", "interactive.html", "experiment.html"),
+        *("mannequin.js", "widget.js", "plugin-walker.js"),
+    ],
 )
 def test_the_pages_of_the_package_are_built_from_these_sources(tmp_path: Path, name: str):
     mode = name.partition(".")[0]

@@ -3,6 +3,7 @@ from . import (
     core as core,
     datasets as datasets,
     decomposition as decomposition,
+    experiment as experiment,
     explorer as explorer,
     gait as gait,
     io as io,

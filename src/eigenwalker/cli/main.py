@@ -24,6 +24,7 @@ COMMANDS = {
     "synthesize": ("stimulus_command", "The same as stimulus; a film, if no file is named."),
     "plugin": ("plugin_command", "Write a page for jsPsych that shows stimuli and asks."),
     "compare": ("compare_command", "Say how different walks look."),
+    "experiment": ("experiment_commands", "Run an experiment in the browser, and export answers."),
     "data": ("data_commands", "List and fetch captures that others published."),
     "cite": ("cite_command", "Print what to cite: the program, its papers, a data set."),
 }

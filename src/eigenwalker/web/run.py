@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import errno
 import socket
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Awaitable, Callable, Collection, Coroutine
 from types import FrameType
 from typing import Any, TypeVar
 
@@ -31,11 +31,21 @@ MAX_CONCURRENT = 50
 """Requests; more are answered with 503."""
 
 
-def new_app(lifespan: Any, *, host: str) -> FastAPI:
-    """Return an application without routes, which refuses in sentences (``detail``)."""
+def new_app(
+    lifespan: Any,
+    *,
+    host: str,
+    public_url: str = "",
+    pages: Collection[str] = (),
+) -> FastAPI:
+    """Return an application without routes, which refuses in sentences (``detail``).
+
+    `public_url` is where a proxy gives it to others; `pages` begin the paths of pages that links
+    elsewhere may open.
+    """
     app = FastAPI(lifespan=lifespan, docs_url=None, redoc_url=None, openapi_url=None)
     app.add_middleware(GZipMiddleware, minimum_size=2000)
-    app.add_middleware(HostCheck, host=host)
+    app.add_middleware(HostCheck, host=host, public_url=public_url, pages=pages)
     for error, status, sentence in (
         (Exception, 500, "This went wrong here; the terminal says how."),
         (404, 404, "There is nothing of that name here."),
@@ -121,6 +131,7 @@ def run(
     *,
     when_ready: Callable[[], None],
     on_exit: Callable[[], None],
+    max_concurrent: int = MAX_CONCURRENT,
 ) -> None:
     """Serve until interrupted; `on_exit` is called as soon as that happens."""
     config = uvicorn.Config(
@@ -128,7 +139,7 @@ def run(
         log_level="warning",
         server_header=False,
         timeout_graceful_shutdown=1,
-        limit_concurrency=MAX_CONCURRENT,
+        limit_concurrency=max_concurrent,
         ws="none",
     )
     when_ready()

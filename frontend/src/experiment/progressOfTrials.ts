@@ -1,0 +1,56 @@
+/** Which trials are done, from all that was reported: by this machine and by others. */
+
+import type { Block, Reported, SessionContent, Trial } from "./session";
+
+export interface TrialState {
+  /** Times that the trial was begun. */
+  attempts: number;
+  done: boolean;
+}
+
+export class TrialProgress {
+  private readonly states = new Map<number, TrialState>();
+  private nTimeouts = 0;
+
+  constructor(
+    private readonly session: Pick<SessionContent, "trials" | "blocks">,
+    reported: readonly Reported[],
+  ) {
+    for (const item of reported) this.note(item);
+  }
+
+  state(trial: number): TrialState {
+    const state = this.states.get(trial) ?? { attempts: 0, done: false };
+    this.states.set(trial, state);
+    return state;
+  }
+
+  note({ kind, trial, attempt, outcome }: Reported): void {
+    if (trial === null || (kind !== "begun" && kind !== "answer")) return;
+    const state = this.state(trial);
+    state.attempts = Math.max(state.attempts, attempt ?? 0);
+    if (kind === "answer" && outcome === "timeout" && !state.done) this.nTimeouts += 1;
+    if (kind === "answer" && (outcome === "answered" || outcome === "timeout")) state.done = true;
+  }
+
+  block(trial: Trial): Block {
+    return this.session.blocks[trial.block - 1]!;
+  }
+
+  /** The first trial that is not done; spare ones count as far as they replace others. */
+  next(): Trial | null {
+    return this.todo()[0] ?? null;
+  }
+
+  /** Trials that are not done. */
+  todo(): readonly Trial[] {
+    const { trials } = this.session;
+    const spare = trials.filter((trial) => trial.spare).slice(0, this.nTimeouts);
+    const shown = new Set(spare);
+    return trials.filter((trial) => (!trial.spare || shown.has(trial)) && !this.state(trial.trial).done);
+  }
+
+  get anyBegun(): boolean {
+    return [...this.states.values()].some((state) => state.attempts > 0);
+  }
+}

@@ -1,0 +1,70 @@
+/** A session as the server gives it. */
+
+export type StimulusFile = unknown;
+export type Texts = Readonly<Record<string, string>>;
+
+export interface Trial {
+  readonly trial: number;
+  readonly block: number;
+  readonly task: "choice" | "rating" | "similar_pair";
+  readonly stimuli: readonly string[];
+  readonly walkers: readonly number[];
+  readonly practice: boolean;
+  readonly spare?: boolean;
+}
+
+export interface Block {
+  readonly task: Trial["task"];
+  readonly break_after: boolean;
+  readonly choices?: readonly string[];
+  readonly steps?: number;
+  readonly scale?: string | null;
+  readonly repeats?: number;
+  readonly limit_s?: number;
+  readonly pause_after?: number;
+}
+
+export interface State {
+  readonly name: "new" | "under_way" | "finished" | "not_due" | "closed";
+  readonly session: number;
+  readonly due_utc?: string;
+}
+
+export interface Welcome {
+  readonly name: string;
+  readonly state: State;
+  readonly languages: Readonly<Record<string, Texts>>;
+  readonly consent: Readonly<Record<string, string>>;
+  readonly test: boolean;
+  readonly personal: boolean;
+  readonly phones: boolean;
+  readonly site_parameters: readonly string[];
+}
+
+/** What is known of an item that was reported before. */
+export interface Reported {
+  readonly kind: string;
+  readonly trial: number | null;
+  readonly attempt: number | null;
+  readonly outcome: string | null;
+}
+
+export interface SessionContent {
+  readonly session: number;
+  /** Shows in a file of answers whose they are. */
+  readonly proof: string;
+  readonly number: number;
+  readonly language: string;
+  readonly trials: readonly Trial[];
+  readonly blocks: readonly Block[];
+  readonly group: { readonly name: string; readonly scale: string | null };
+  readonly picture: { readonly duration_s: number };
+  readonly pace: { readonly blank_s: number; readonly count_remaining: boolean; readonly refresh_after_min: number };
+  readonly screen: {
+    readonly measure: boolean;
+    readonly full_screen: boolean;
+    readonly viewing_distance_mm: number;
+    readonly px_per_cm: number;
+  };
+  readonly answered: readonly (Reported & { readonly answer: string; readonly at: string })[];
+}

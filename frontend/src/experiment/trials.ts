@@ -1,0 +1,179 @@
+/** The trials of a session on the screen: shown, answered, kept, one after the other. */
+
+import { initJsPsych, type JsPsych } from "jspsych";
+
+import WalkerPlugin from "../../plugin-walker/src/index";
+import type { MannequinPainter } from "../canvas/mannequinLoader";
+import { make } from "../page/elements";
+import { itemOf, type Content, type Item } from "./answers";
+import type { Pages } from "./pages";
+import PairPlugin from "./pairPlugin";
+import type { TrialProgress } from "./progressOfTrials";
+import type { Block, SessionContent, StimulusFile, Trial } from "./session";
+import StepPlugin from "./stepPlugin";
+
+type TrialDescription = Extract<Parameters<JsPsych["run"]>[0], readonly unknown[]>[number];
+
+export interface TrialsOptions {
+  readonly session: SessionContent;
+  readonly stimuli: Readonly<Record<string, StimulusFile>>;
+  readonly progress: TrialProgress;
+  readonly pages: Pages;
+  /** Factor of the size in the stimulus files. */
+  readonly scale: number;
+  /** Keeps an item; the promise is kept when it is safe. */
+  readonly keep: (item: Item) => Promise<void>;
+  /** Whether the observer asked to stop. */
+  readonly stopped: () => boolean;
+}
+
+/** What plugins report, as far as this page reads it. */
+interface Shown {
+  readonly response: string | number | readonly [number, number] | null;
+  readonly response_by: string | null;
+  readonly rt: number | null;
+}
+
+/** Show all trials that are to be done; the promise is kept when there are none, or at a stop. */
+export async function runTrials(options: TrialsOptions): Promise<void> {
+  const { pages, progress } = options;
+  const jsPsych = initJsPsych({ display_element: pages.showTrials(), override_safe_mode: true });
+  const mannequin = await mannequinFor(options);
+  let unanswered = 0;
+  for (let trial = progress.next(); trial && !options.stopped(); ) {
+    pages.showTrials();
+    await jsPsych.run([blank(options), oneTrial(trial, options, mannequin)]);
+    if (options.stopped()) return;
+    const block = progress.block(trial);
+    unanswered = progress.state(trial.trial).done && !lastTimedOut(jsPsych) ? 0 : unanswered + 1;
+    if (unanswered > 0 && unanswered >= (block.pause_after ?? (block.repeats ?? 0) + 1)) {
+      unanswered = 0;
+      await options.keep(itemOf("event", { event: "pause" }, trial.trial));
+      await pages.ask([pages.title(), pages.paragraphs("pause")], [["continue", "continue"]]);
+    }
+    const next = progress.next();
+    if (next && next.block !== trial.block && block.break_after) {
+      await pages.ask([pages.title(), pages.paragraphs("break")], [["continue", "continue"]]);
+    }
+    trial = next;
+  }
+}
+
+const lastTimedOut = (jsPsych: JsPsych): boolean =>
+  (jsPsych.data.getLastTrialData().values()[0] as Shown | undefined)?.response === null;
+
+/** Black, or the number of trials that remain. */
+function blank({ session, progress, pages }: TrialsOptions): TrialDescription {
+  const count = progress.todo().length;
+  return {
+    type: StepPlugin,
+    step: async (display: HTMLElement) => {
+      const text = session.pace.count_remaining ? [make("p", { class: "remaining" }, pages.text("remaining", { count }))] : [];
+      display.replaceChildren(...text);
+      await new Promise((resolve) => setTimeout(resolve, 1000 * session.pace.blank_s));
+      display.replaceChildren();
+    },
+  };
+}
+
+function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPainter | null): TrialDescription {
+  const { progress, keep } = options;
+  const block = progress.block(trial);
+  const attempt = progress.state(trial.trial).attempts + 1;
+  let watched: Watch;
+  return {
+    ...shown(trial, block, options, mannequin),
+    on_start: () => {
+      const item = itemOf("begun", {}, trial.trial, attempt);
+      progress.note({ kind: "begun", trial: trial.trial, attempt, outcome: null });
+      void keep(item);
+      watched = watch();
+    },
+    // jsPsych waits for this before the next trial begins
+    on_finish: async (data: Shown & Content) => {
+      const outcome = data.response !== null ? "answered" : block.task === "similar_pair" ? "timeout" : "none";
+      const n_frames = (data["frame_times"] as readonly number[] | undefined)?.length ?? 0;
+      const content = { ...picked(data), n_frames, ...watched.end(), response: meaning(data, block, options.pages), outcome, scale: options.scale };
+      await keep(itemOf("answer", content, trial.trial, attempt));
+      progress.note({ kind: "answer", trial: trial.trial, attempt, outcome });
+    },
+  };
+}
+
+/** Plugin and parameters of a trial. */
+function shown(
+  trial: Trial,
+  block: Block,
+  { session, stimuli, pages, scale }: TrialsOptions,
+  mannequin: MannequinPainter | null,
+): TrialDescription {
+  const files = trial.stimuli.map((name) => stimuli[name]);
+  const fileS = (files[0] as { timing: { duration_s: number } }).timing.duration_s;
+  const durationMs = 1000 * Math.max(session.picture.duration_s, fileS);
+  if (block.task === "similar_pair") {
+    const labels = [1, 2, 3, 4].map((number) => pages.text("figure", { number }));
+    return { type: PairPlugin, stimuli: files, labels, trial_duration: 1000 * block.limit_s!, mannequin, scale };
+  }
+  const single = { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale };
+  if (block.task === "choice") {
+    return {
+      ...single,
+      choices: block.choices!.map((name) => pages.text(`key_${name}`).toLowerCase()),
+      buttons: block.choices!.map((name) => pages.text(`button_${name}`)),
+    };
+  }
+  const scaleName = block.scale ?? session.group.scale ?? "";
+  const steps = Array.from({ length: block.steps! }, (_, i) => String(i + 1));
+  const buttons = steps.map((step, i) =>
+    i === 0 ? pages.text(`${scaleName}_first`) : i === steps.length - 1 ? pages.text(`${scaleName}_last`) : step,
+  );
+  return { ...single, choices: steps, buttons, css_classes: ["above"] };
+}
+
+/** What the observer chose, in the words of the design: a class, a step from 1, two places. */
+function meaning({ response, response_by }: Shown, block: Block, pages: Pages): unknown {
+  if (response === null || block.task === "similar_pair") return response;
+  const byKey = response_by === "key";
+  if (block.task === "rating") return byKey ? Number(response) : Number(response) + 1;
+  const names = block.choices!;
+  return byKey ? names.find((name) => pages.text(`key_${name}`).toLowerCase() === response) : names[Number(response)];
+}
+
+/** The data of the plugin, without what jsPsych adds. */
+function picked(data: Content): Content {
+  const added = ["trial_type", "trial_index", "plugin_version", "time_elapsed", "response", "stimulus"];
+  return Object.fromEntries(Object.entries(data).filter(([name]) => !added.includes(name)));
+}
+
+interface Watch {
+  readonly end: () => Content;
+}
+
+/** Notes what happens around a trial: hidden page, lost focus, another window size. */
+function watch(): Watch {
+  const started = new Date().toISOString();
+  const seen = { hidden: document.hidden, blurred: !document.hasFocus(), resized: false, full_screen: !!document.fullscreenElement };
+  const onHidden = (): void => void (seen.hidden ||= document.hidden);
+  const onBlur = (): void => void (seen.blurred = true);
+  const onResize = (): void => void (seen.resized = true);
+  document.addEventListener("visibilitychange", onHidden);
+  window.addEventListener("blur", onBlur);
+  window.addEventListener("resize", onResize);
+  return {
+    end: () => {
+      document.removeEventListener("visibilitychange", onHidden);
+      window.removeEventListener("blur", onBlur);
+      window.removeEventListener("resize", onResize);
+      return { ...seen, started_utc: started, pixel_ratio: window.devicePixelRatio };
+    },
+  };
+}
+
+/** The painter of mannequins, loaded before the first trial; the build leaves its module to the server. */
+async function mannequinFor({ stimuli }: TrialsOptions): Promise<MannequinPainter | null> {
+  const needed = Object.values(stimuli).some(
+    (each) => (each as { display?: { style?: string } }).display?.style === "mannequin",
+  );
+  if (!needed) return null;
+  return (await import("../mannequin/mannequin")).mannequinPainter();
+}

@@ -1,0 +1,93 @@
+"""The columns of the export: what each means, in which unit, with which values, from where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the table of trials."""
+
+    name: str
+    meaning: str
+    unit: str = ""
+    values: str = ""
+    source: str = "design"
+
+
+COLUMNS = (
+    Column("observer", "number of the observer", values="integer from 1", source="server"),
+    Column("session", "session of this observer", values="integer from 1", source="server"),
+    Column("group", "group of the observer", values="names of groups in the design"),
+    Column("block", "block of trials", values="integer from 1"),
+    Column("trial", "trial of the session, in the order drawn", values="integer from 1"),
+    Column(
+        "attempt",
+        "which showing of this trial, by the time it began",
+        values="integer from 1",
+        source="computed at export",
+    ),
+    Column("stimulus", "names of stimulus files, separated by blanks", values="materials/"),
+    Column("view_deg", "azimuth of the view, 0 is the front, sign as shown", "degree", "number"),
+    Column("information", "what the walker keeps of its own", values="full, structure, dynamics"),
+    Column("condition", "name of the condition, that of the information where there are none"),
+    Column("level", "number by which the conditions differ", "as in the design", "number; empty"),
+    Column("walker", "name of the walker, where one is shown", values="names of the population"),
+    Column(
+        "response",
+        "the answer: a class, a step of the scale from 1, or two places from 0",
+        values="text; empty without an answer",
+        source="page",
+    ),
+    Column("response_by", "by what it was given", values="key, button; empty", source="page"),
+    Column(
+        "rt_ms",
+        "time from the first frame to the answer",
+        "millisecond",
+        "number; empty without an answer",
+        "page",
+    ),
+    Column(
+        "outcome",
+        "what became of the showing",
+        values="answered, none (no answer), timeout, interrupted",
+        source="page; interrupted: computed at export",
+    ),
+    Column("repeated", "whether it was shown before without an answer", values="0, 1"),
+    Column("interrupted", "whether the showing was broken off", values="0, 1"),
+    Column("practice", "whether the block is practice", values="0, 1"),
+    Column("test", "whether the answers are a test (preview)", values="0, 1", source="server"),
+    Column("simulated", "whether a simulated observer answered", values="0, 1", source="server"),
+    Column(
+        "session_outcome",
+        "how the session ended",
+        values="finished, stopped (answers kept), left",
+        source="server",
+    ),
+    Column(
+        "flag",
+        "what may have disturbed the showing, separated by blanks",
+        values="hidden, unfocused, resized, dropped_frames, none",
+        source="page; rules in the design",
+    ),
+    Column(
+        "first_frame_ms",
+        "time from the beginning of the trial to the first frame",
+        "millisecond",
+        "number; empty where unknown",
+        "page",
+    ),
+    Column("frames_dropped", "frames of the screen without a new picture", "", "integer", "page"),
+    Column("frame_interval_ms", "median time from frame to frame", "millisecond", "number", "page"),
+    Column("started_utc", "when the showing began", "", "ISO 8601, UTC", "page, its clock"),
+    Column("answer", "name of the answer, as in the table of frames", "", "text", "page"),
+)
+RATING = (
+    Column("rating", "the step of the scale, from 1 at its first end", "", "integer", "page"),
+)
+PAIRS = (
+    *(Column(name, "walker in that place: above a, b; below c, d", "", "names") for name in "abcd"),
+    Column("chosen_1", "one walker of the chosen pair", "", "names; empty", "page"),
+    Column("chosen_2", "the other walker of the chosen pair", "", "names; empty", "page"),
+)

@@ -1,0 +1,226 @@
+"""What a design may say: groups, sessions, blocks of trials, how they are shown and answered."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+FORMAT = "eigenwalker experiment"
+VERSION = 1
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
+Degrees = Annotated[float, Field(ge=-360, le=360)]
+Seconds = Annotated[float, Field(gt=0, le=600)]
+Information = Literal["full", "structure", "dynamics"]
+
+
+class Part(BaseModel):
+    """A part of a design, which refuses words that it does not know."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Walkers(Part):
+    """Which walkers of the population are shown."""
+
+    number: Annotated[int | None, Field(ge=2, le=1000)] = None
+    """Drawn by the seed where the population has more; left out, all."""
+
+
+class Picture(Part):
+    """How walkers are shown."""
+
+    style: Literal["dots", "sticks", "mannequin"] = "dots"
+    duration_s: Seconds = 7.0
+    height_deg: Annotated[float, Field(ge=0.1, le=60)] = 5.0
+    view_deg: Degrees = 0.0
+    """Used where neither the group nor the session has a view."""
+    both_signs: bool = False
+    """Whether half of the trials show the view from the other side, as -30 for 30 degrees."""
+    size_px: Annotated[int, Field(ge=64, le=2048)] = 512
+
+
+class Condition(Part):
+    """A version of each walker: what it keeps of its own, moved along a trait, transformed."""
+
+    name: Name
+    information: Information = "full"
+    trait: Annotated[str, Field(max_length=100)] | None = None
+    """A trait of two classes, such as sex, along which walkers are moved."""
+    alpha: Annotated[float, Field(ge=-20, le=20)] = 0.0
+    """Standard deviations that each walker is moved toward the extreme of its own class."""
+    transforms: Annotated[list[dict[str, Any]], Field(max_length=20)] = []
+    """As in stimulus files: name and parameters; parameters may be left out."""
+    duration_s: Seconds | None = None
+    """Left out, that of the picture."""
+    style: Literal["dots", "sticks", "mannequin"] | None = None
+    level: float | None = None
+    """The number by which the conditions differ, for the data."""
+
+
+class Group(Part):
+    """Observers who are shown or asked the same; each observer is in one group."""
+
+    name: Name
+    observers: Annotated[int, Field(ge=1, le=100_000)]
+    view_deg: Degrees | None = None
+    scale: Name | None = None
+    """The rating scale of this group, whose ends the texts name."""
+
+
+class Sessions(Part):
+    """Sessions of one observer, one for each view; their order is counterbalanced."""
+
+    views_deg: Annotated[list[Degrees], Field(max_length=12)] = []
+    least_hours: Annotated[float, Field(ge=0, le=10_000)] = 0.0
+    most_hours: Annotated[float, Field(gt=0, le=10_000)] = 720.0
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Sessions:
+        if self.least_hours >= self.most_hours:
+            raise ValueError("least_hours must be below most_hours")
+        return self
+
+
+class Block(Part):
+    """Trials in one random order."""
+
+    break_after: bool = True
+    practice: bool = False
+
+
+class Choice(Block):
+    """Each walker is put into one of two classes, by a key or a button."""
+
+    task: Literal["choice"]
+    choices: Annotated[list[Name], Field(min_length=2, max_length=2)]
+    information: Annotated[list[Information], Field(min_length=1)] = ["full"]
+    conditions: Annotated[list[Name], Field(max_length=50)] = []
+    """Names of conditions; they replace the information."""
+    instances: Annotated[int, Field(ge=1, le=20)] = 1
+    repeats: Annotated[int, Field(ge=0, le=20)] = 3
+    """How often a stimulus without an answer is shown again before the session pauses."""
+
+
+class Rating(Block):
+    """Each walker is rated on a scale with labelled ends."""
+
+    task: Literal["rating"]
+    steps: Annotated[int, Field(ge=2, le=11)] = 6
+    scale: Name | None = None
+    """Left out, that of the group."""
+    information: Annotated[list[Information], Field(min_length=1)] = ["full"]
+    conditions: Annotated[list[Name], Field(max_length=50)] = []
+    instances: Annotated[int, Field(ge=1, le=20)] = 1
+    repeats: Annotated[int, Field(ge=0, le=20)] = 3
+
+
+class SimilarPair(Block):
+    """Of four walkers in a square the most similar pair is chosen."""
+
+    task: Literal["similar_pair"]
+    trials: Annotated[int, Field(ge=1, le=2000)] = 63
+    limit_s: Seconds = 10.0
+    spare_trials: Annotated[int, Field(ge=0, le=500)] = 20
+    """Drawn beforehand, to replace trials without an answer."""
+    pause_after: Annotated[int, Field(ge=1, le=20)] = 3
+    """Trials without an answer, one after the other, after which the session pauses."""
+
+
+AnyBlock = Annotated[Choice | Rating | SimilarPair, Field(discriminator="task")]
+
+
+class Pace(Part):
+    """What is between trials, and how long observers may stay away."""
+
+    blank_s: Annotated[float, Field(ge=0, le=60)] = 3.0
+    count_remaining: bool = False
+    """Whether the number of trials that remain is shown between trials."""
+    refresh_after_min: Annotated[float, Field(gt=0, le=10_000)] = 30.0
+    """Pause after which instructions are shown again."""
+    hold_place_min: Annotated[float, Field(gt=0, le=100_000)] = 120.0
+    """Time after which one who left gives the place in the group to the next observer."""
+
+
+class Screen(Part):
+    """What the observer's screen must be, and which trials are flagged."""
+
+    measure: bool = True
+    """Whether the size of a pixel is measured by a bank card, and the distance is asked for."""
+    full_screen: bool = True
+    phones: bool = True
+    viewing_distance_mm: Annotated[float, Field(ge=100, le=10_000)] = 570.0
+    px_per_cm: Annotated[float, Field(ge=5, le=500)] = 38.0
+    """Assumed where the size of a pixel was not measured."""
+    flag_dropped_share: Annotated[float, Field(gt=0, le=1)] = 0.05
+    """Share of dropped frames above which a trial is flagged."""
+
+
+class Recruiting(Part):
+    """How observers come, and where they go afterwards."""
+
+    parameters: Annotated[list[Name], Field(max_length=10)] = []
+    """Parameters of links whose value identifies a person at a recruiting site."""
+    keep_raw: bool = False
+    completion_code: Annotated[str, Field(max_length=100)] = ""
+    return_url: Annotated[str, Field(max_length=500, pattern=r"^(https://.*)?$")] = ""
+
+
+class Design(Part):
+    """An experiment, as the file ``design.toml`` describes it."""
+
+    format: Literal["eigenwalker experiment"]
+    version: Annotated[int, Field(ge=VERSION, le=VERSION)]
+    name: Name
+    seed: Annotated[int, Field(ge=0, lt=2**32)]
+    languages: Annotated[list[Annotated[str, Field(pattern="^[a-z]{2,3}$")]], Field(min_length=1)]
+    walkers: Walkers = Walkers()
+    picture: Picture = Picture()
+    conditions: Annotated[list[Condition], Field(max_length=50)] = []
+    groups: Annotated[list[Group], Field(min_length=1, max_length=50)]
+    sessions: Sessions = Sessions()
+    blocks: Annotated[list[AnyBlock], Field(min_length=1, max_length=50)]
+    pace: Pace = Pace()
+    screen: Screen = Screen()
+    recruiting: Recruiting = Recruiting()
+
+    @property
+    def n_sessions(self) -> int:
+        """Sessions of one observer."""
+        return max(len(self.sessions.views_deg), 1)
+
+    def group(self, name: str) -> Group:
+        """Return the group of that name."""
+        return next(group for group in self.groups if group.name == name)
+
+    def view_deg(self, group: Group, session_view: float | None) -> float:
+        """Return the view of a session: its own, that of the group, or that of the picture."""
+        views = (session_view, group.view_deg, self.picture.view_deg)
+        return next(view for view in views if view is not None)
+
+    @property
+    def views_deg(self) -> list[float]:
+        """All views that any observer is shown, with both signs where the design has them."""
+        sessions = self.sessions.views_deg or [None]
+        views = {self.view_deg(group, each) for group in self.groups for each in sessions}
+        signs = (1, -1) if self.picture.both_signs else (1,)
+        return sorted({sign * view + 0.0 for view in views for sign in signs})
+
+    def shown_in(self, block: AnyBlock) -> list[Condition]:
+        """Return the conditions of a block: those it names, or one for each information."""
+        if isinstance(block, SimilarPair):
+            return [Condition(name="full")]
+        if block.conditions:
+            return [self.condition(name) for name in block.conditions]
+        return [Condition(name=each, information=each) for each in block.information]
+
+    def condition(self, name: str) -> Condition:
+        """Return the condition of that name."""
+        return next(each for each in self.conditions if each.name == name)
+
+    @property
+    def shown(self) -> list[Condition]:
+        """All conditions that any block shows, in the order of the blocks."""
+        every = [each for block in self.blocks for each in self.shown_in(block)]
+        return list({each.name: each for each in every}.values())

@@ -1,0 +1,116 @@
+"""One row for each time a trial was shown, from what pages reported."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from eigenwalker.experiment.design import Design
+
+Row = dict[str, Any]
+
+
+def session_rows(
+    session: Mapping[str, Any],
+    answers: Sequence[Row],
+    design: Design,
+    names: Sequence[str],
+) -> Iterator[Row]:
+    """Yield the rows of a session, trial by trial, in the order in which they were begun."""
+    shared = {
+        "observer": session["observer"],
+        "session": session["number"],
+        "group": session["group"],
+        "test": int(session["observer_kind"] == "test"),
+        "simulated": int(session["observer_kind"] == "simulated"),
+        "session_outcome": session["outcome"] or "left",
+    }
+    trials = {trial["trial"]: trial for trial in json.loads(session["trials"])}
+    for number, shown in sorted(_showings(answers).items()):
+        trial = trials[number]
+        unanswered = 0
+        for number_shown, (begun, answer) in enumerate(shown, 1):
+            row = _row(trial, begun, answer, design, names)
+            yield {**shared, **row, "attempt": number_shown, "repeated": int(unanswered > 0)}
+            unanswered += row["outcome"] == "none"
+
+
+def _showings(answers: Sequence[Row]) -> dict[int, list[tuple[Row | None, Row | None]]]:
+    """Return for each trial its showings: what was reported at the beginning and at the end.
+
+    Two machines may have shown a trial under one number of attempt; both are kept.
+    """
+    found: dict[int, dict[tuple[int, int], list[Row | None]]] = {}
+    for kind, place in (("begun", 0), ("answer", 1)):
+        seen: dict[tuple[int, int], int] = {}
+        for item in answers:
+            if item["kind"] != kind or item["trial"] is None:
+                continue
+            key = (item["trial"], item["attempt"] or 1)
+            seen[key] = seen.get(key, 0) + 1
+            slots = found.setdefault(item["trial"], {})
+            slots.setdefault((key[1], seen[key]), [None, None])[place] = item
+    return {
+        trial: sorted(((pair[0], pair[1]) for pair in slots.values()), key=_started)
+        for trial, slots in found.items()
+    }
+
+
+def _started(pair: tuple[Row | None, Row | None]) -> tuple[int, str, str]:
+    """Order by the page's own count; its clock, which may be set back, only between machines."""
+    item = pair[0] or pair[1] or {}
+    return item["attempt"] or 1, item["content"].get("time_utc", ""), item["answer"]
+
+
+def _row(
+    trial: Row, begun: Row | None, answer: Row | None, design: Design, names: Sequence[str]
+) -> Row:
+    content = answer["content"] if answer else {}
+    interrupted = answer is None
+    started = content.get("started_utc") or (begun or {"content": {}})["content"].get("time_utc")
+    response = content.get("response")
+    row = {
+        "block": trial["block"],
+        "trial": trial["trial"],
+        "stimulus": " ".join(trial["stimuli"]),
+        "view_deg": trial["view_deg"],
+        "information": trial["information"],
+        "condition": trial["condition"],
+        "level": trial.get("level"),
+        "walker": names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None,
+        "response": " ".join(map(str, response)) if isinstance(response, list) else response,
+        "response_by": content.get("response_by"),
+        "rt_ms": content.get("rt"),
+        "outcome": "interrupted" if interrupted else content.get("outcome"),
+        "interrupted": int(interrupted),
+        "practice": int(trial["practice"]),
+        "flag": None if interrupted else _flags(content, design),
+        "first_frame_ms": content.get("first_frame"),
+        "frames_dropped": content.get("frames_dropped"),
+        "frame_interval_ms": content.get("frame_interval"),
+        "started_utc": started,
+        "answer": answer["answer"] if answer else None,
+    }
+    if trial["task"] == "rating":
+        row["rating"] = response
+    elif trial["task"] == "similar_pair":
+        shown = [names[walker] for walker in trial["walkers"]]
+        row |= dict(zip("abcd", shown, strict=True))
+        chosen = [shown[place] for place in _places(response)]
+        row |= dict(zip(("chosen_1", "chosen_2"), chosen, strict=False))
+    return row
+
+
+def _places(response: Any) -> list[int]:
+    two = isinstance(response, list) and len(response) == 2
+    return response if two and all(place in (0, 1, 2, 3) for place in response) else []
+
+
+def _flags(content: Row, design: Design) -> str:
+    names = {"hidden": "hidden", "blurred": "unfocused", "resized": "resized"}
+    flags = [flag for name, flag in names.items() if content.get(name)]
+    dropped, shown = content.get("frames_dropped") or 0, content.get("n_frames") or 0
+    if shown and dropped / (shown + dropped) > design.screen.flag_dropped_share:
+        flags.append("dropped_frames")
+    return " ".join(flags) or "none"

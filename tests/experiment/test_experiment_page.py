@@ -1,0 +1,193 @@
+"""The page of observers in a real browser: nothing that it took is lost, whatever ends."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from eigenwalker.experiment.export import export_experiment
+from eigenwalker.experiment.status import experiment_status
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page
+
+AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+
+
+class Server:
+    """``experiment run`` in a process of its own, which may be killed and started again."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.port = folder, 0
+        self.start()
+
+    def start(self) -> None:
+        command = [sys.executable, "-m", "eigenwalker", "experiment", "run", str(self.folder)]
+        self.process = subprocess.Popen(
+            [*command, "--port", str(self.port)], stdout=subprocess.PIPE, text=True
+        )
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().split()[1].rstrip("/")
+        self.port = int(self.address.rpartition(":")[2])
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+    def link(self, run_command: Callable, *options: str) -> str:
+        """Invite while it runs, and return the link."""
+        links = self.folder / "one.csv"
+        links.unlink(missing_ok=True)
+        code, _, problems = run_command(
+            *("experiment", "invite", self.folder, "-o", links, *options),
+            *("--base-url", self.address),
+        )
+        assert code == 0, problems
+        return links.read_text(encoding="utf-8").split()[-1].partition(",")[2]
+
+
+@pytest.fixture
+def server(small: Callable[..., Path]) -> Iterator[Server]:
+    started = Server(small(blank_s="0.05", instances="1", measure="false", full_screen="false"))
+    yield started
+    started.kill()
+
+
+@contextmanager
+def visit(browser: Browser, link: str, **options: object) -> Iterator[tuple[BrowserContext, Page]]:
+    context = browser.new_context(viewport={"width": 900, "height": 700}, **options)
+    page = context.new_page()
+    page.set_default_timeout(10_000)
+    page.goto(link)
+    yield context, page
+    context.close()
+
+
+def press(page: Page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=False).click()
+
+
+def answer(page: Page, key: str = "f") -> None:
+    page.locator("#trials button:enabled").first.wait_for()
+    page.evaluate("document.querySelector('#trials canvas').id = 'answered'")
+    page.keyboard.press(key)
+    page.locator("#answered").wait_for(state="detached")
+
+
+def rows(folder: Path, output: Path) -> list[dict[str, str]]:
+    export_experiment(folder, output)
+    with next(output.glob("data/*.csv")).open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_an_observer_goes_on_after_the_server_and_the_page_ended(
+    browser: Browser, server: Server, run_command: Callable, tmp_path: Path
+) -> None:
+    link = server.link(run_command)
+    with visit(browser, link) as (_, page):
+        press(page, "I have read this")
+        assert page.url == f"{server.address}/"
+        press(page, "Begin")
+        answer(page)
+        answer(page, "m")
+        server.kill()
+        answer(page)
+        page.locator("#trials button:enabled").first.wait_for()
+        server.start()
+        page.reload()
+        press(page, "Continue")
+        answer(page, "m")
+        press(page, "Continue")  # the break between blocks
+        for _ in range(7):
+            answer(page)
+        page.locator("#trials button:enabled").first.wait_for()
+        press(page, "Man (M)")
+        page.get_by_text("every answer has arrived").wait_for()
+        left = page.evaluate("indexedDB.databases()")
+    assert left == []
+    found = rows(server.folder, tmp_path / "data")
+    answered = [row for row in found if row["outcome"] == "answered"]
+    assert [row["trial"] for row in answered] == [str(n) for n in range(1, 13)]
+    assert [row["response"] for row in answered[:3]] == ["female", "male", "female"]
+    assert answered[-1]["response_by"] == "button"
+    interrupted = [(row["trial"], row["attempt"]) for row in found if row["interrupted"] == "1"]
+    assert interrupted == [("4", "1")]
+    assert all(float(row["rt_ms"]) > 0 for row in answered)
+
+
+def test_an_observer_who_stops_may_have_all_deleted(
+    browser: Browser, server: Server, run_command: Callable
+) -> None:
+    with visit(browser, server.link(run_command, "--open")) as (context, page):
+        press(page, "I have read this")
+        press(page, "Begin")
+        answer(page)
+        second = context.new_page()
+        second.goto(server.link(run_command))
+        second.get_by_role("button", name="I have read this").wait_for()  # another link
+        second.close()
+        page.get_by_role("button", name="Stop", exact=True).click()
+        press(page, "delete")
+        page.get_by_text("Everything you gave was deleted").wait_for()
+        assert page.evaluate("indexedDB.databases()") == []
+    assert experiment_status(server.folder)["answers"] == 0
+    assert experiment_status(server.folder)["withdrawn"] == 1
+
+
+def test_of_two_tabs_one_works_and_the_other_says_so(
+    browser: Browser, server: Server, run_command: Callable
+) -> None:
+    link = server.link(run_command)
+    with visit(browser, link) as (context, page):
+        press(page, "I have read this")
+        second = context.new_page()
+        second.goto(link)
+        second.get_by_text("open in another tab").wait_for()
+        page.close()
+        second.reload()
+        second.get_by_text("Welcome back").wait_for()
+
+
+def test_without_storage_each_answer_is_sent_before_the_next_trial(
+    browser: Browser, server: Server, run_command: Callable, tmp_path: Path
+) -> None:
+    context = browser.new_context()
+    context.add_init_script("Object.defineProperty(window, 'indexedDB', { value: undefined })")
+    page = context.new_page()
+    page.goto(server.link(run_command))
+    press(page, "I have read this")
+    press(page, "Continue")
+    press(page, "Begin")
+    answer(page)
+    page.locator("#trials canvas").wait_for()
+    found = rows(server.folder, tmp_path / "data")
+    assert [row["outcome"] for row in found][:1] == ["answered"]
+    context.close()
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (320, 640)])
+def test_the_pages_are_accessible(
+    browser: Browser, server: Server, run_command: Callable, size: tuple[int, int]
+) -> None:
+    with visit(browser, server.link(run_command), bypass_csp=True) as (_, page):
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        for name in ("I have read this", "Begin"):
+            page.get_by_role("button", name=name).wait_for()
+            page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
+            found = page.evaluate("axe.run().then(({ violations }) => violations.map((v) => v.id))")
+            assert found == []
+            assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+            page.keyboard.press("Tab")
+            page.get_by_role("button", name=name).focus()
+            page.keyboard.press("Enter")
+        page.locator("#trials button:enabled").first.wait_for()
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
