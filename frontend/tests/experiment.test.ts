@@ -8,6 +8,7 @@ import { Outbox } from "../src/experiment/outbox";
 import { TrialProgress } from "../src/experiment/progressOfTrials";
 import { Sender } from "../src/experiment/sender";
 import type { Block, Reported, Trial } from "../src/experiment/session";
+import { nextLevel } from "../src/experiment/staircase";
 
 const trial = (number: number, spare = false): Trial => ({
   trial: number,
@@ -94,4 +95,11 @@ it("keeps an answer until that very answer is confirmed", async () => {
   await sender.drain();
   const left = await outbox.items(1);
   expect(left.map(({ item, refused }) => [item.answer, refused])).toEqual([[first.answer, "other content"]]);
+});
+
+it("takes the level of a staircase that Python takes", () => {
+  const rule = { start: 1, nLevels: 5, down: 2 };
+  expect(nextLevel([true, true, true, false], rule)).toBe(1);
+  expect(nextLevel(Array<boolean>(40).fill(true), rule)).toBe(4);
+  expect(nextLevel([false, false, false], rule)).toBe(0);
 });

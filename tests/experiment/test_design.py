@@ -98,13 +98,13 @@ def test_squares_have_four_different_walkers_in_places_by_chance() -> None:
     walkers = shown_walkers(made, 40)
     assert len(set(walkers)) == 21
     places: Counter[tuple[int, int]] = Counter()
-    for place in range(20):
+    for place in range(8):
         trials = session_trials(made, walkers, group="all", place=place)
         assert sum(not trial["spare"] for trial in trials) == 63
         assert all(len(set(trial["walkers"])) == 4 for trial in trials)
         places.update((w, i) for trial in trials for i, w in enumerate(trial["walkers"]))
     assert len(places) == 21 * 4
-    assert max(places.values()) < 2 * min(places.values())
+    assert max(places.values()) < 3 * min(places.values())
 
 
 def test_an_order_depends_on_seed_group_place_and_session_alone() -> None:

@@ -10,6 +10,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from eigenwalker.experiment import store
@@ -20,6 +21,7 @@ from eigenwalker.experiment.export import export_experiment
 from eigenwalker.experiment.link_keys import hash_of, new_key
 from eigenwalker.experiment.rescue import checksum
 from eigenwalker.experiment.service import Closed, Gone, NotAllowed, Service
+from eigenwalker.experiment.staircase import next_level
 from eigenwalker.experiment.status import experiment_status
 
 
@@ -269,3 +271,25 @@ def test_backups_are_whole_and_forget_who_withdraws(service: Service, tmp_path: 
     files = [file for file in service.folder.rglob("*") if file.is_file()]
     assert not [file for file in files if b"needle-1" in file.read_bytes()]
     assert b"needle-0" in path.read_bytes()
+
+
+def test_each_level_of_a_staircase_follows_from_the_answers(
+    small: Callable[..., Path], tmp_path: Path
+) -> None:
+    folder = small("detection")
+    with AnswerWriter(folder / ANSWERS) as writer:
+        service = Service(folder, writer)
+        service.simulate(3, seed=2)
+        rows = exported(service, tmp_path / "data")
+    levels = [5, 10, 20, 40, 80]
+    for observer in {row["observer"] for row in rows}:
+        right: list[bool] = []
+        for row in rows:
+            if row["observer"] != observer or row["outcome"] != "answered":
+                continue
+            place = next_level(right, start=0, n_levels=5, down=2)
+            assert float(row["level"]) == levels[place]
+            assert f"_{levels[place]}_" in row["stimulus"]
+            right.append(row["response"] == row["condition"])
+        assert len(right) == 60
+        assert 0.5 < np.mean(right) < 0.95

@@ -110,7 +110,8 @@ def test_groups_stay_balanced_when_many_arrive_at_once_and_some_leave(tmp_path: 
     limits = {"a": 20, "b": 20, "c": 20}
 
     def arrive(db: sqlite3.Connection) -> tuple[str, int] | None:
-        observer = store.observers(db)[session(db) - 1]["observer"]
+        session(db)
+        observer = store.observers(db)[-1]["observer"]
         return store.put_into_group(db, observer, limits, 60)
 
     with AnswerWriter(tmp_path / "answers.sqlite") as writer:

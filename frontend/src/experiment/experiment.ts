@@ -137,6 +137,7 @@ class Visit {
     const kept = (await this.outbox.items(this.session.session)).map(({ item }) => ({
       ...item,
       outcome: (item.content["outcome"] as string | undefined) ?? null,
+      response: item.content["response"],
     }));
     this.sender.hurry();
     const stimuli = await this.load();

@@ -1,6 +1,7 @@
 /** Which trials are done, from all that was reported: by this machine and by others. */
 
 import type { Block, Reported, SessionContent, Trial } from "./session";
+import { nextLevel } from "./staircase";
 
 export interface TrialState {
   /** Times that the trial was begun. */
@@ -10,6 +11,7 @@ export interface TrialState {
 
 export class TrialProgress {
   private readonly states = new Map<number, TrialState>();
+  private readonly responses = new Map<number, unknown>();
   private nTimeouts = 0;
 
   constructor(
@@ -25,16 +27,26 @@ export class TrialProgress {
     return state;
   }
 
-  note({ kind, trial, attempt, outcome }: Reported): void {
+  note({ kind, trial, attempt, outcome, response }: Reported): void {
     if (trial === null || (kind !== "begun" && kind !== "answer")) return;
     const state = this.state(trial);
     state.attempts = Math.max(state.attempts, attempt ?? 0);
     if (kind === "answer" && outcome === "timeout" && !state.done) this.nTimeouts += 1;
+    if (kind === "answer" && outcome === "answered" && !state.done) this.responses.set(trial, response);
     if (kind === "answer" && (outcome === "answered" || outcome === "timeout")) state.done = true;
   }
 
   block(trial: Trial): Block {
     return this.session.blocks[trial.block - 1]!;
+  }
+
+  /** The place of the level of a trial of a staircase: from the answers to the trials before it. */
+  level(trial: Trial): number {
+    const { start = 0, down = 1 } = this.block(trial);
+    const before = this.session.trials.filter((each) => each.block === trial.block && each.trial < trial.trial);
+    const answered = before.filter((each) => this.responses.has(each.trial));
+    const correct = answered.map((each) => this.responses.get(each.trial) === each.correct);
+    return nextLevel(correct, { start, down, nLevels: trial.levels!.length });
   }
 
   /** The first trial that is not done; spare ones count as far as they replace others. */

@@ -6,11 +6,14 @@ export type Texts = Readonly<Record<string, string>>;
 export interface Trial {
   readonly trial: number;
   readonly block: number;
-  readonly task: "choice" | "rating" | "similar_pair";
+  readonly task: "choice" | "rating" | "similar_pair" | "detection";
   readonly stimuli: readonly string[];
   readonly walkers: readonly number[];
   readonly practice: boolean;
   readonly spare?: boolean;
+  /** Of a staircase: the numbers of the levels, one a stimulus, and the right answer. */
+  readonly levels?: readonly number[];
+  readonly correct?: string;
 }
 
 export interface Block {
@@ -22,6 +25,8 @@ export interface Block {
   readonly repeats?: number;
   readonly limit_s?: number;
   readonly pause_after?: number;
+  readonly start?: number;
+  readonly down?: number;
 }
 
 export interface State {
@@ -47,6 +52,7 @@ export interface Reported {
   readonly trial: number | null;
   readonly attempt: number | null;
   readonly outcome: string | null;
+  readonly response?: unknown;
 }
 
 export interface SessionContent {

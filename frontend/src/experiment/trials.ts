@@ -80,9 +80,11 @@ function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPain
   const { progress, keep } = options;
   const block = progress.block(trial);
   const attempt = progress.state(trial.trial).attempts + 1;
+  const place = trial.levels ? progress.level(trial) : null;
+  const level = place === null ? {} : { level: trial.levels![place], stimulus: trial.stimuli[place] };
   let watched: Watch;
   return {
-    ...shown(trial, block, options, mannequin),
+    ...shown(place === null ? trial : { ...trial, stimuli: [trial.stimuli[place]!] }, block, options, mannequin),
     on_start: () => {
       const item = itemOf("begun", {}, trial.trial, attempt);
       progress.note({ kind: "begun", trial: trial.trial, attempt, outcome: null });
@@ -93,9 +95,10 @@ function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPain
     on_finish: async (data: Shown & Content) => {
       const outcome = data.response !== null ? "answered" : block.task === "similar_pair" ? "timeout" : "none";
       const n_frames = (data["frame_times"] as readonly number[] | undefined)?.length ?? 0;
-      const content = { ...picked(data), n_frames, ...watched.end(), response: meaning(data, block, options.pages), outcome, scale: options.scale };
+      const response = meaning(data, block, options.pages);
+      const content = { ...picked(data), n_frames, ...watched.end(), ...level, response, outcome, scale: options.scale };
       await keep(itemOf("answer", content, trial.trial, attempt));
-      progress.note({ kind: "answer", trial: trial.trial, attempt, outcome });
+      progress.note({ kind: "answer", trial: trial.trial, attempt, outcome, response });
     },
   };
 }
@@ -115,7 +118,7 @@ function shown(
     return { type: PairPlugin, stimuli: files, labels, trial_duration: 1000 * block.limit_s!, mannequin, scale };
   }
   const single = { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale };
-  if (block.task === "choice") {
+  if (block.task === "choice" || block.task === "detection") {
     return {
       ...single,
       choices: block.choices!.map((name) => pages.text(`key_${name}`).toLowerCase()),

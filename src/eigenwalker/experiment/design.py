@@ -128,7 +128,31 @@ class SimilarPair(Block):
     """Trials without an answer, one after the other, after which the session pauses."""
 
 
-AnyBlock = Annotated[Choice | Rating | SimilarPair, Field(discriminator="task")]
+class Detection(Block):
+    """A walker is told from its own scrambled dots, among more and more dots, by a staircase."""
+
+    task: Literal["detection"]
+    choices: Annotated[list[Name], Field(min_length=2, max_length=2)] = ["present", "absent"]
+    mask_dots: Annotated[
+        list[Annotated[int, Field(ge=1, le=1000)]], Field(min_length=2, max_length=20)
+    ] = [5, 10, 20, 40, 80]
+    """Dots of the mask at each level, from the easiest."""
+    trials: Annotated[int, Field(ge=2, le=2000)] = 60
+    start: Annotated[int, Field(ge=0, le=19)] = 0
+    """Place of the first level, from 0."""
+    down: Annotated[int, Field(ge=1, le=5)] = 2
+    """Right answers in a row after which it becomes harder."""
+    repeats: Annotated[int, Field(ge=0, le=20)] = 3
+
+    def condition(self, dots: int, present: bool, seed: int) -> Condition:
+        """Return a walker in a mask, or its scrambled dots in the same."""
+        scramble = [] if present else [{"name": "scramble", "seed": seed}]
+        mask = {"name": "mask", "kind": "scrambled", "number": dots, "seed": seed + 1}
+        name = f"{self.choices[0] if present else self.choices[1]}_{dots}"
+        return Condition(name=name, transforms=[*scramble, mask], level=dots)
+
+
+AnyBlock = Annotated[Choice | Rating | SimilarPair | Detection, Field(discriminator="task")]
 
 
 class Pace(Part):
@@ -211,6 +235,9 @@ class Design(Part):
         """Return the conditions of a block: those it names, or one for each information."""
         if isinstance(block, SimilarPair):
             return [Condition(name="full")]
+        if isinstance(block, Detection):
+            places = [(dots, present) for present in (True, False) for dots in block.mask_dots]
+            return [block.condition(*place, self.seed % 2**31) for place in places]
         if block.conditions:
             return [self.condition(name) for name in block.conditions]
         return [Condition(name=each, information=each) for each in block.information]

@@ -12,7 +12,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from eigenwalker.experiment.design import AnyBlock, Design, Rating
+from eigenwalker.experiment.design import AnyBlock, Design, Detection, Rating
 
 MAX_BYTES = 1_000_000
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([A-Za-z0-9_.\s-]+?)\s*\]\]?\s*(#.*)?$")
@@ -204,6 +204,10 @@ def _conflicts(design: Design) -> list[tuple[tuple[str | int, ...], str]]:
             if name not in known:
                 problem = f"there is no condition {name!r}; known are {', '.join(known) or 'none'}"
                 wrong.append((("blocks", number, "conditions"), problem))
+    for number, block in enumerate(design.blocks):
+        if isinstance(block, Detection) and block.start >= len(block.mask_dots):
+            problem = f"start is {block.start}, but levels go from 0 to {len(block.mask_dots) - 1}"
+            wrong.append((("blocks", number, "start"), problem))
     views = design.sessions.views_deg
     if len(set(views)) < len(views):
         wrong.append((("sessions", "views_deg"), "a view is there twice; name each once"))

@@ -29,9 +29,14 @@ if TYPE_CHECKING:
 DESIGN, TEXTS, STIMULI, PEOPLE = "design.toml", "texts", "stimuli", "walkers.json"
 ANSWERS, VERSIONS, BACKUPS = "answers.sqlite", "versions", "backups"
 _NUMBER = re.compile(r"(?m)^(# )?number = \d+")
-DESIGNS = ("troje2002", "wdp2002", "prazak2010")
+DESIGNS = ("troje2002", "wdp2002", "prazak2010", "detection")
 """Ready to run, beside `MANIPULATIONS` and `CARICATURE`."""
-TEXTS_OF = {"choice": "troje2002", "rating": "wdp2002", "similar_pair": "prazak2010"}
+TEXTS_OF = {
+    "choice": "troje2002",
+    "rating": "wdp2002",
+    "similar_pair": "prazak2010",
+    "detection": "detection",
+}
 """The texts that a design of one's own begins with, by the task of its first block."""
 
 

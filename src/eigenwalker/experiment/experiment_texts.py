@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from eigenwalker.experiment.design import Choice, Design, Rating, SimilarPair
+from eigenwalker.experiment.design import Choice, Design, Detection, Rating, SimilarPair
 
 PAGES = ("consent", "instructions", "break", "pause", "welcome_back", "debriefing", "warning")
 """Texts that are pages: paragraphs, lists, emphasis. All others are plain."""
@@ -77,7 +77,7 @@ def missing_texts(design: Design, texts: Texts) -> list[str]:
     common = sections_of(_TEXTS.joinpath("common.en.md").read_text(encoding="utf-8"))
     needed = ["title", "consent", "instructions", "debriefing", *common]
     for block in design.blocks:
-        if isinstance(block, Choice):
+        if isinstance(block, Choice | Detection):
             needed += [f"{part}_{name}" for name in block.choices for part in ("key", "button")]
         elif isinstance(block, Rating):
             scales = {block.scale or group.scale for group in design.groups}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eigenwalker.experiment.design import Design, SimilarPair
+from eigenwalker.experiment.design import Design, Detection, SimilarPair
 from eigenwalker.stimulus.random_streams import permutation, uniforms
 
 PURPOSE = 1001
@@ -81,6 +81,8 @@ def session_trials(
     for block_number, block in enumerate(design.blocks, 1):
         if isinstance(block, SimilarPair):
             drawn = _squares(design, block, walkers, view, streams)
+        elif isinstance(block, Detection):
+            drawn = _masked(design, block, walkers, view, streams)
         else:
             drawn = _single_walkers(design, block, walkers, view, streams)
         shared = {"block": block_number, "task": block.task, "practice": block.practice}
@@ -132,6 +134,32 @@ def _signs(
     half = [1, -1] * ((len(walkers) + 1) // 2)
     start = _shuffled(design, streams, half[: len(walkers)])
     return [sign * (-1) ** instance for instance in range(instances) for sign in start]
+
+
+def _masked(
+    design: Design, block: Detection, walkers: Sequence[int], view: float, streams: count[int]
+) -> list[Trial]:
+    """Half of the trials with a walker; the answers decide which of a trial's levels is shown."""
+    shown: list[int] = []
+    while len(shown) < block.trials:
+        shown += _shuffled(design, streams, walkers)
+    half = [True, False] * ((block.trials + 1) // 2)
+    present = _shuffled(design, streams, half[: block.trials])
+    trials: list[Trial] = []
+    for walker, is_there in zip(shown, present, strict=False):
+        seen = [block.condition(dots, is_there, 0).name for dots in block.mask_dots]
+        trials.append(
+            {
+                "stimuli": [stimulus_name(walker, name, view) for name in seen],
+                "walkers": [walker],
+                "levels": block.mask_dots,
+                "correct": block.choices[0] if is_there else block.choices[1],
+                "information": "full",
+                "condition": "present" if is_there else "absent",
+                "view_deg": view,
+            }
+        )
+    return trials
 
 
 def _squares(

@@ -377,7 +377,8 @@ class Service:
             "screen": design.screen.model_dump(mode="json"),
             "answered": [
                 {name: each[name] for name in ("answer", "kind", "trial", "attempt")}
-                | {"outcome": each["content"].get("outcome"), "at": each["received_utc"]}
+                | {name: each["content"].get(name) for name in ("outcome", "response")}
+                | {"at": each["received_utc"]}
                 for each in answers
             ],
         }

@@ -73,11 +73,11 @@ def _row(
     row = {
         "block": trial["block"],
         "trial": trial["trial"],
-        "stimulus": " ".join(trial["stimuli"]),
+        "stimulus": content.get("stimulus") or " ".join(trial["stimuli"]),
         "view_deg": trial["view_deg"],
         "information": trial["information"],
         "condition": trial["condition"],
-        "level": trial.get("level"),
+        "level": content.get("level", trial.get("level")),
         "walker": names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None,
         "response": " ".join(map(str, response)) if isinstance(response, list) else response,
         "response_by": content.get("response_by"),

@@ -6,7 +6,7 @@ import csv
 import math
 import sqlite3
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from eigenwalker.experiment import store
-from eigenwalker.experiment.design import Choice, Design, Rating, SimilarPair
+from eigenwalker.experiment.design import Choice, Design, Detection, Rating, SimilarPair
 from eigenwalker.experiment.experiment_folder import Material
 from eigenwalker.experiment.order import Trial
 from eigenwalker.experiment.service import Service
+from eigenwalker.experiment.staircase import next_level
 
 TRUTH = "simulated_truth.csv"
 
@@ -160,6 +161,9 @@ class _Answering:
     truth: Truth
     rng: np.random.Generator
 
+    _right: list[bool] = field(default_factory=list)
+    """Of the detections so far."""
+
     def items(self, trials: Sequence[Trial]) -> list[dict[str, Any]]:
         """Return what a page would report, with trials that are missed and shown again."""
         items: list[dict[str, Any]] = []
@@ -181,6 +185,12 @@ class _Answering:
         self, trial: Trial, showing: int, response: Any, outcome: str
     ) -> list[dict[str, Any]]:
         content = {"response": response, "outcome": outcome}
+        block = self.design.blocks[trial["block"] - 1]
+        if isinstance(block, Detection):
+            level = self._level(block)
+            content |= {"level": trial["levels"][level], "stimulus": trial["stimuli"][level]}
+            if outcome == "answered":
+                self._right.append(response == trial["correct"])
         if response is not None:
             rt = float(np.exp(self.rng.normal(7.2, 0.35)))
             content |= {"response_by": "key", "rt": round(rt, 3)}
@@ -204,6 +214,8 @@ class _Answering:
         lapses = self.rng.random() < self.model.lapse
         if isinstance(block, SimilarPair):
             return self._pair(trial, lapses)
+        if isinstance(block, Detection):
+            return self._detection(block, trial, lapses)
         walker = trial["walkers"][0]
         if isinstance(block, Choice):
             signal = self.directions["/".join(block.choices)][walker]
@@ -221,6 +233,18 @@ class _Answering:
         if lapses:
             step = self.rng.uniform(0.5, block.steps + 0.5)
         return int(np.clip(round(step), 1, block.steps))
+
+    def _level(self, block: Detection) -> int:
+        n_levels = len(block.mask_dots)
+        return next_level(self._right, start=block.start, n_levels=n_levels, down=block.down)
+
+    def _detection(self, block: Detection, trial: Trial, lapses: bool) -> str:
+        """Ten dots in the mask leave the sensitivity as it is; it falls with their root."""
+        dots = trial["levels"][self._level(block)]
+        there = 0.5 if trial["correct"] == block.choices[0] else -0.5
+        seen = there * 2 * self.model.sensitivity * math.sqrt(10 / dots)
+        seen = self.rng.normal() if lapses else seen + self.rng.normal() + self.truth.bias
+        return block.choices[0] if seen > 0 else block.choices[1]
 
     def _moved(self, trial: Trial) -> float:
         """How far the condition moves a walker toward the extreme of its class."""
