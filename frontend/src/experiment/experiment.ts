@@ -18,6 +18,7 @@ const LINK = "eigenwalker-link";
 const pages = new Pages({
   unknown_link: "This link is not known. Please ask the experimenter for a new one.",
   no_server: "The experiment cannot be reached right now. The page tries again by itself.",
+  stopped_deleted: "Everything you gave was deleted.",
   other_tab: "The experiment is open in another tab of this browser. Please go on there, or close it and reload this page.",
 });
 
@@ -123,6 +124,8 @@ async function mayBegin({ state, phones }: Welcome): Promise<boolean> {
 class Visit {
   private readonly sender: Sender;
   private stopped = false;
+  /** Whether the lab was told that this page can store nothing. */
+  private marked = false;
 
   constructor(
     private readonly outbox: Outbox,
@@ -179,7 +182,12 @@ class Visit {
   private async keep(item: Item): Promise<void> {
     await this.outbox.put(item, this.key, this.session.session);
     this.sender.hurry();
-    if (!this.outbox.durable) await this.sender.drain();
+    if (this.outbox.durable) return;
+    if (!this.marked) {
+      this.marked = true;
+      await this.outbox.put(itemOf("event", { event: "not stored" }), this.key, this.session.session);
+    }
+    await this.sender.drain();
   }
 
   private async load(): Promise<Awaited<ReturnType<typeof server.stimuli>>> {
@@ -291,7 +299,6 @@ const screenFacts = (durable: boolean): Record<string, unknown> => ({
 });
 
 main().catch((error: unknown) => {
-  const unknown = error instanceof Refusal && error.status === 403;
-  const gone = error instanceof Refusal && error.status === 410;
-  pages.show(make("p", { role: "alert" }, unknown ? pages.text("unknown_link") : gone ? pages.text("stopped_deleted") : messageOf(error)));
+  const name = error instanceof Refusal ? ({ 403: "unknown_link", 410: "stopped_deleted" }[error.status] ?? error.detail) : "";
+  pages.show(make("p", { role: "alert" }, name in pages.texts ? pages.text(name) : messageOf(error)));
 });

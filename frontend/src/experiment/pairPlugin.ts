@@ -2,7 +2,7 @@
 
 import { ParameterType, type JsPsych, type TrialType } from "jspsych";
 
-import { everyFrame, frameTiming } from "../canvas/frameClock";
+import { everyFrame } from "../canvas/frameClock";
 import type { MannequinPainter } from "../canvas/mannequinLoader";
 import { painterOn } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
@@ -30,12 +30,23 @@ export interface PairData {
   readonly response: readonly [number, number] | null;
   readonly response_by: "key" | "button" | null;
   readonly rt: number | null;
+  /** On the clock of `performance.now()`. */
+  readonly first_frame: number | null;
   readonly frame_times: readonly number[];
   readonly frame_interval: number | null;
   readonly frames_dropped: number;
 }
 
 const rounded = (milliseconds: number): number => Math.round(milliseconds * 1000) / 1000;
+
+/** The median interval of frames, and how many frames of the screen had no new picture. */
+function intervalsOf(times: readonly number[]): Pick<PairData, "frame_interval" | "frames_dropped"> {
+  const intervals = times.slice(1).map((time, i) => time - times[i]!);
+  const median = intervals.toSorted((a, b) => a - b)[Math.floor(intervals.length / 2)];
+  if (!median) return { frame_interval: null, frames_dropped: 0 };
+  const dropped = intervals.reduce((sum, each) => sum + Math.max(Math.round(each / median) - 1, 0), 0);
+  return { frame_interval: rounded(median), frames_dropped: dropped };
+}
 
 class PairPlugin {
   static readonly info = info;
@@ -59,14 +70,13 @@ class PairPlugin {
       stop();
       document.removeEventListener("keydown", onKey);
       display.replaceChildren();
-      const timing = frameTiming(times);
       this.jsPsych.finishTrial({
         response: timeMs === null ? null : [Math.min(...chosen), Math.max(...chosen)],
         response_by: by,
         rt: timeMs === null ? null : rounded(timeMs - firstMs),
         frame_times: times.map(rounded),
-        frame_interval: timing.interval === null ? null : rounded(timing.interval),
-        frames_dropped: timing.dropped,
+        first_frame: Number.isNaN(firstMs) ? null : rounded(firstMs),
+        ...intervalsOf(times),
       } satisfies PairData);
     };
     const choose = (place: number, by: "key" | "button", timeMs: number): void => {

@@ -155,6 +155,7 @@ interface Watch {
 /** Notes what happens around a trial: hidden page, lost focus, another window size. */
 function watch(): Watch {
   const started = new Date().toISOString();
+  const startedMs = performance.now();
   const seen = { hidden: document.hidden, blurred: !document.hasFocus(), resized: false, full_screen: !!document.fullscreenElement };
   const onHidden = (): void => void (seen.hidden ||= document.hidden);
   const onBlur = (): void => void (seen.blurred = true);
@@ -167,7 +168,7 @@ function watch(): Watch {
       document.removeEventListener("visibilitychange", onHidden);
       window.removeEventListener("blur", onBlur);
       window.removeEventListener("resize", onResize);
-      return { ...seen, started_utc: started, pixel_ratio: window.devicePixelRatio };
+      return { ...seen, started_utc: started, started_ms: startedMs, pixel_ratio: window.devicePixelRatio };
     },
   };
 }

@@ -203,7 +203,7 @@ class Service:
             raise ValueError(f"There are no texts in {language!r}.")
         if not same(material.texts(language).consent_hash, consent):
             raise ValueError("The consent is to another text; load the page again.")
-        who = next(each for each in store.observers(db) if each["observer"] == observer)
+        who = store.find_observer(db, observer)
         group, place = who["group"], who["place"]
         if group is None or not begun:
             limits = {each.name: each.observers for each in design.groups}
@@ -359,11 +359,7 @@ class Service:
         """Return what a page needs to run a session, or to go on with it."""
         design = self.version_material(row["version"]).design
         answers = self.writer.do(lambda db: store.answers_of(db, row["session"]))
-        group = self.writer.do(
-            lambda db: next(
-                each["group"] for each in store.observers(db) if each["observer"] == row["observer"]
-            )
-        )
+        group = self.writer.do(lambda db: store.find_observer(db, row["observer"])["group"])
         return {
             "session": row["session"],
             "proof": proof,

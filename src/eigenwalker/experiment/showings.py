@@ -86,7 +86,7 @@ def _row(
         "interrupted": int(interrupted),
         "practice": int(trial["practice"]),
         "flag": None if interrupted else _flags(content, design),
-        "first_frame_ms": content.get("first_frame"),
+        "first_frame_ms": _since_start(content),
         "frames_dropped": content.get("frames_dropped"),
         "frame_interval_ms": content.get("frame_interval"),
         "started_utc": started,
@@ -100,6 +100,13 @@ def _row(
         chosen = [shown[place] for place in _places(response)]
         row |= dict(zip(("chosen_1", "chosen_2"), chosen, strict=False))
     return row
+
+
+def _since_start(content: Row) -> float | None:
+    """Return the milliseconds from the beginning of a trial to its first frame."""
+    first, start = content.get("first_frame"), content.get("started_ms")
+    known = isinstance(first, int | float) and isinstance(start, int | float)
+    return round(first - start, 3) if known else None
 
 
 def _places(response: Any) -> list[int]:

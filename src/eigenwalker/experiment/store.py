@@ -40,7 +40,12 @@ def connect(path: Path) -> sqlite3.Connection:
         _check(path)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=10)
     connection.row_factory = sqlite3.Row
-    for pragma in ("secure_delete = ON", "synchronous = FULL", "foreign_keys = ON"):
+    for pragma in (
+        "secure_delete = ON",
+        "synchronous = FULL",
+        "fullfsync = ON",
+        "foreign_keys = ON",
+    ):
         connection.execute(f"PRAGMA {pragma}")
     mode = connection.execute("PRAGMA journal_mode = WAL").fetchone()[0]
     if mode != "wal":
@@ -169,6 +174,11 @@ def add_observer(
     """Add an observer, who is in no group yet, and return the number."""
     sql = "INSERT INTO observer (kind, site_hash) VALUES (?, ?) RETURNING observer"
     return connection.execute(sql, (kind, site_hash)).fetchone()[0]
+
+
+def find_observer(connection: sqlite3.Connection, observer: int) -> Row:
+    """Return an observer by the number."""
+    return rows(connection, "SELECT * FROM observer WHERE observer = ?", observer)[0]
 
 
 def find_link(connection: sqlite3.Connection, hash: str) -> Row | None:
