@@ -6,8 +6,9 @@ import csv
 import json
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from eigenwalker.experiment.experiment_folder import ANSWERS, VERSIONS, Material
 from eigenwalker.experiment.showings import session_rows
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
+FROM_PAGES = ("response", "response_by", "outcome", "started_utc", "answer", "level", "stimulus")
+"""Columns whose text comes from pages; none may be run as a formula by a spreadsheet."""
 BATCH = 20_000
 """Rows that are written to Parquet at once."""
 
@@ -79,9 +82,12 @@ def _write_table(path: Path, rows: Iterator[dict[str, Any]], names: list[str]) -
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
+        empty, in_order = dict.fromkeys(names), itemgetter(*names)
         for row in rows:
-            values = [row.get(name) for name in names]
-            writer.writerow([_no_formula(value) for value in values])
+            for name in FROM_PAGES:
+                row[name] = _no_formula(row[name])
+            values = in_order({**empty, **row})
+            writer.writerow(values)
             parquet.add(values)
     parquet.close()
     return [str(path), *([str(parquet.path)] if parquet.available else [])]
@@ -102,7 +108,7 @@ class _ParquetTable:
 
     def __init__(self, path: Path, names: list[str]) -> None:
         self.path, self._names = path, names
-        self._rows: list[list[Any]] = []
+        self._rows: list[Sequence[Any]] = []
         self._writer: Any = None
         try:
             import pyarrow as pa
@@ -119,7 +125,7 @@ class _ParquetTable:
         self._schema = pa.schema([(name, kinds.get(name, pa.string())) for name in names])
         self._writer = pyarrow.parquet.ParquetWriter(path, self._schema)
 
-    def add(self, values: list[Any]) -> None:
+    def add(self, values: Sequence[Any]) -> None:
         if not self.available:
             return
         self._rows.append(values)

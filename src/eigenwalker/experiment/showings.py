@@ -32,7 +32,9 @@ def session_rows(
         unanswered = 0
         for number_shown, (begun, answer) in enumerate(shown, 1):
             row = _row(trial, begun, answer, design, names)
-            yield {**shared, **row, "attempt": number_shown, "repeated": int(unanswered > 0)}
+            row |= shared
+            row["attempt"], row["repeated"] = number_shown, int(unanswered > 0)
+            yield row
             unanswered += row["outcome"] == "none"
 
 

@@ -40,12 +40,8 @@ def connect(path: Path) -> sqlite3.Connection:
         _check(path)
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=10)
     connection.row_factory = sqlite3.Row
-    for pragma in (
-        "secure_delete = ON",
-        "synchronous = FULL",
-        "fullfsync = ON",
-        "foreign_keys = ON",
-    ):
+    pragmas = ("secure_delete = ON", "synchronous = FULL", "fullfsync = ON", "foreign_keys = ON")
+    for pragma in pragmas:
         connection.execute(f"PRAGMA {pragma}")
     mode = connection.execute("PRAGMA journal_mode = WAL").fetchone()[0]
     if mode != "wal":
