@@ -8,6 +8,7 @@ import re
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import closing
+from itertools import islice
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -165,10 +166,15 @@ def _write_frames(database: Any, folder: Path, name: str) -> str:
     path = folder / f"study-{name}_frames.parquet"
     schema = pa.schema([("answer", pa.string()), ("frame_times_ms", pa.list_(pa.float64()))])
     with pq.ParquetWriter(path, schema) as writer:
-        for row in store.frame_times(database):
-            table = pa.table([[row["answer"]], [row["frame_times"]]], schema=schema)
-            writer.write_table(table)
+        for rows in _batches(store.frame_times(database), 2000):
+            columns = [[row[name] for row in rows] for name in ("answer", "frame_times")]
+            writer.write_table(pa.table(columns, schema=schema))
     return str(path)
+
+
+def _batches(rows: Iterator[dict[str, Any]], size: int) -> Iterator[list[dict[str, Any]]]:
+    while batch := list(islice(rows, size)):
+        yield batch
 
 
 def _write_description(
