@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,13 +17,19 @@ from eigenwalker.analysis import (
     permutation_test,
     regress,
 )
+from eigenwalker.datasets import load_population
 from eigenwalker.population import Population
 from eigenwalker.simulation import simulate_population
 
 
-def planted(part: str, shift: float, seed: int = 0) -> Population:
+@cache
+def people_alike() -> Population:
+    return simulate_population(12, 12, seed=0, sex_effect=0)
+
+
+def planted(part: str, shift: float) -> Population:
     """Walkers alike but for noise, men shifted in one part of the features."""
-    people = simulate_population(12, 12, seed=seed, sex_effect=0)
+    people = people_alike()
     columns = people.layout.columns(part)
     X = people.X.copy()
     men = (people.traits["sex"] == "male").to_numpy()
@@ -76,7 +83,7 @@ def test_the_table_says_what_the_curves_say() -> None:
 
 
 def test_a_trait_that_is_a_number_is_regressed() -> None:
-    people = simulate_population(20, 20, seed=2)
+    people = load_population()
     table = regress(people, "height", inputs=(INPUTS[0], INPUTS[-1])).table().set_index("input")
     assert table["correlation"]["everything, with size"] > 0.8
     assert table["correlation"]["frequency alone"] < 0.8

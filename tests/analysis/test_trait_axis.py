@@ -7,13 +7,13 @@ import pytest
 
 from eigenwalker.analysis import trait_axis
 from eigenwalker.analysis.plausibility import LIMBS, plausibility
+from eigenwalker.datasets import load_population
 from eigenwalker.population import Population
-from eigenwalker.simulation import simulate_population
 
 
 @pytest.fixture(scope="module")
 def people() -> Population:
-    return simulate_population(15, 15, seed=5)
+    return load_population()
 
 
 @pytest.mark.parametrize("kind", ["discriminant", "mean_difference"])

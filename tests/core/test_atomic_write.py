@@ -17,7 +17,8 @@ from pathlib import Path
 import eigenwalker as ew
 from eigenwalker.datasets import load_population
 people = load_population()
-shown = ew.make_stimulus(people.walker(people.average), duration_s=1, style="sticks")
+small = {"duration_s": 0.2, "size_px": (96, 96)}
+shown = ew.make_stimulus(people.walker(people.average), style="sticks", **small)
 outputs = {
     **{each: lambda path: ew.write_stimulus(shown, path) for each in (
         "a.json", "a.mp4", "a.webm", "a.gif", "a.png", "a.svg", "a.csv", "a.npz", "a.mat", "a.py",

@@ -220,10 +220,7 @@ def _misfits(step: Transform, dots: Sequence[str], n_segments: int) -> list[str]
             if unknown := [name for name in step.markers if name not in dots]:
                 return [f"there are no dots {unknown[:5]}; there are {dots[:40]}"]
         case Conflict() | Ellipses():
-            sides = [
-                f"{side}_{joint}" for side in ("left", "right") for joint in ("shoulder", "hip")
-            ]
-            if lacking := [name for name in sides if name not in dots]:
+            if lacking := [name for name in SHOULDERS_AND_HIPS if name not in dots]:
                 return [f"the figure lacks {lacking}"]
         case Morph() if set(step.walker.markers) != set(dots):
             return ["the other walker has other dots than the figure"]
