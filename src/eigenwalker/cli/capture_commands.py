@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from eigenwalker.cli.option_names import in_options
-from eigenwalker.cli.options import Partial, Rate, Subject, Unit, option
+from eigenwalker.cli.options import MappingFile, Partial, Rate, Subject, Unit, option
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
@@ -23,6 +23,11 @@ def info(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    mapping: MappingFile = None,
+    write_mapping: Annotated[
+        Path | None,
+        option("Begin a mapping of the markers of FILE, to be put right by hand (.toml)."),
+    ] = None,
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.study.inspect import file_facts, inspect_file
@@ -34,6 +39,10 @@ def info(
         "partial": partial,
         "subject": subject,
     }
+    if write_mapping is not None:
+        _write_mapping(file, write_mapping, reading)
+        return
+    reading["mapping"] = mapping
     if as_json:
         facts = inspect_file(file, **reading)
         if isinstance(problems := facts.get("problems"), list):
@@ -57,6 +66,7 @@ def convert(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    mapping: MappingFile = None,
 ) -> None:
     """Write a capture in another format."""
     from eigenwalker.io.read import read_mocap
@@ -66,8 +76,25 @@ def convert(
     reading: dict[str, Any] = {"partial": partial, "subject": subject}
     walk = read_mocap(capture, unit=unit, rate_hz=rate, **reading)
     if joints or output.suffix.lower() == ".bvh":
-        walk = virtual_markers(walk, joints="full")
+        walk = virtual_markers(walk, joints="full", mapping=mapping)
+    elif mapping is not None:
+        raise ValueError("--mapping has no effect on markers: add --joints, or write .bvh.")
     print(f"Written: {write_mocap(walk, output)}")
+
+
+def _write_mapping(capture: Path, output: Path, reading: dict[str, Any]) -> None:
+    from eigenwalker.core.atomic_write import atomic_write
+    from eigenwalker.io.read import read_mocap
+    from eigenwalker.markers.mapping import mapping_to_begin_with
+
+    if output.suffix.lower() != ".toml":
+        raise ValueError(f"--write-mapping {output}: a mapping is a .toml file.")
+    if output.exists():
+        raise ValueError(f"{output} is there already; name another file, or remove it first.")
+    markers = [str(name) for name in read_mocap(capture, **reading).marker.values]
+    with atomic_write(output) as unfinished:
+        unfinished.write_text(mapping_to_begin_with(markers, capture.name), encoding="utf-8")
+    print(f"Mapping to be put right: {output}; then give it as --mapping {output}.")
 
 
 def _in_options(value: str | list[str]) -> str | list[str]:

@@ -14,6 +14,7 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    MappingFile,
     Person,
     Rate,
     ReportFolder,
@@ -75,6 +76,7 @@ def compare(
     with_flagged: WithFlagged = False,
     unit: Unit = None,
     rate: Rate = None,
+    mapping: MappingFile = None,
 ) -> None:
     """Say how different walks look: two of them, all pairs of many, or those nearest to one.
 
@@ -84,7 +86,12 @@ def compare(
     """
     given = {"--nearest": nearest, "--answers": answers, "-o": output, "--clusters": clusters}
     given |= {"--trait": trait, "--trait-from-name": trait_from_name, "--unit": unit}
-    given |= {"--person": person, "--with-flagged": with_flagged or None, "--rate": rate}
+    given |= {
+        "--mapping": mapping,
+        "--person": person,
+        "--with-flagged": with_flagged or None,
+        "--rate": rate,
+    }
     options = {name for name, value in given.items() if value is not None}
     _check_options(first, second, options)
     _check_output(output)
@@ -94,6 +101,7 @@ def compare(
 
     chosen = load_metric(metric)
     reading = {"mannequin": not own_bodies, "default_unit": unit, "default_rate_hz": rate}
+    reading["mapping"] = mapping
     if second is not None:
         _compare_two(first, second, output, chosen, reading)
         return

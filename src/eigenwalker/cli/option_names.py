@@ -16,6 +16,7 @@ ARGUMENTS = {
     "form": "--form {value}",
     "kind": "--kind {value}",
     "low_pass_hz": "--low-pass {value}",
+    "mapping": "--mapping names.toml",
     "n_clusters": "--clusters {value}",
     "n_components": "--components {value}",
     "n_harmonics": "--harmonics {value}",

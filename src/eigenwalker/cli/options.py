@@ -45,6 +45,10 @@ Partial = Annotated[
     str, option("'keep' takes the whole frames of files that are cut short, and flags them.")
 ]
 Subject = Annotated[str | None, option("One person of files that hold several.")]
+MappingFile = Annotated[
+    Path | None,
+    option("Markers with names of your own (TOML; 'info FILE --write-mapping' begins one)."),
+]
 PopulationFile = Annotated[Path, option("Population file to write (.nc).", "-o", "--output")]
 Person = Annotated[
     str | None,
@@ -105,17 +109,21 @@ def trait_axes(
     return [(trait_axis(population, trait, **axis_options), each) for trait, each in steps]
 
 
-def start_vector(population: Population, start: str) -> np.ndarray:
+def start_vector(population: Population, start: str, mapping: Path | None = None) -> np.ndarray:
     """Return the features of the walker that ``--from`` names."""
     if start == "average":
         return population.average
     if start.isdecimal() and int(start) < len(population):
         return population.X[int(start)]
-    return population.vector(start_capture(population, start).walker)
+    return population.vector(start_capture(population, start, mapping).walker)
 
 
 def start_capture(
-    population: Population, start: str, joints: Literal["walker", "full"] = "walker"
+    population: Population,
+    start: str,
+    mapping: Path | None = None,
+    *,
+    joints: Literal["walker", "full"] = "walker",
 ) -> CaptureResult:
     """Return what the capture that ``--from`` names gave, decomposed as the population is."""
     if start.isdecimal() or not Path(start).exists():
@@ -129,7 +137,11 @@ def start_capture(
     first = population.walkers[0]
     try:
         result = process_capture(
-            start, form=first.form, n_harmonics=len(first.harmonics) // 2, joints=joints
+            start,
+            form=first.form,
+            n_harmonics=len(first.harmonics) // 2,
+            joints=joints,
+            mapping=mapping,
         )
     except ValueError as error:
         literal = start.replace("{", "{{").replace("}", "}}")

@@ -13,6 +13,7 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    MappingFile,
     Partial,
     Person,
     PopulationFile,
@@ -51,6 +52,7 @@ def fit(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    mapping: MappingFile = None,
     person: Person = None,
     table: Annotated[
         Path | None, option("CSV to write all into that is known of each capture.")
@@ -91,6 +93,7 @@ def fit(
             rate_hz=rate,
             partial=partial,  # pyright: ignore[reportArgumentType] - checked when a file is read
             subject=subject,
+            mapping=mapping,
             person=person,
             low_pass_hz=low_pass,
             n_jobs=jobs,

@@ -9,6 +9,7 @@ import typer
 
 from eigenwalker.cli.classify_command import model_names
 from eigenwalker.cli.options import (
+    MappingFile,
     OpenPage,
     People,
     WithFlagged,
@@ -28,6 +29,7 @@ def serve(
     ] = "127.0.0.1",
     open_page: OpenPage = True,
     with_flagged: WithFlagged = False,
+    mapping: MappingFile = None,
 ) -> None:
     """Serve the interactive page, which then reads your captures and makes films.
 
@@ -45,7 +47,12 @@ def serve(
     try:
         with listening_socket(host, port) as bound:
             address = address_of(bound, host)
-            app = make_app(load_people(people, with_flagged), host=host, **model_names(people))
+            app = make_app(
+                load_people(people, with_flagged),
+                host=host,
+                mapping=mapping,
+                **model_names(people),
+            )
             if host not in LOOPBACK:
                 warning = "Everyone who can reach this machine can use it; there is no password."
                 print(warning, file=sys.stderr)

@@ -21,6 +21,7 @@ import typer
 
 from eigenwalker.cli.options import (
     Elevation,
+    MappingFile,
     StartFrom,
     TraitSteps,
     View,
@@ -147,6 +148,7 @@ def stimulus(
     rig_unit: Annotated[str | None, option("cm (.bvh) or m (.glb), if left out.")] = None,
     up: Annotated[str, option("Axis that points up in .bvh: y or z.")] = "y",
     with_flagged: WithFlagged = False,
+    mapping: MappingFile = None,
     *,
     context: typer.Context,
 ) -> None:
@@ -280,10 +282,10 @@ def _walker(population: Population, options: dict[str, Any]) -> Walker | Figure:
     if options["as_rig"] and name != "average" and not name.isdecimal():
         if options["information"]:
             raise ValueError("--information is for stimuli; a rig keeps the bones of its capture.")
-        own = start_capture(population, name, joints="full")
+        own = start_capture(population, name, options["mapping"], joints="full")
         start = population.vector(own.walker)
     else:
-        start = start_vector(population, name)
+        start = start_vector(population, name, options["mapping"])
     vector = _moved(population, start, options["trait"], options)
     if own is not None:
         return _own_figure(population, own, start, vector)

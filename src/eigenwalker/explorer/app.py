@@ -17,6 +17,7 @@ from eigenwalker.explorer import tasks
 from eigenwalker.explorer.interactive_page import interactive_page
 from eigenwalker.explorer.model import page_model
 from eigenwalker.io.sandbox import Job
+from eigenwalker.markers.mapping import as_mapping
 from eigenwalker.population.population import Population
 from eigenwalker.web.run import new_app, while_connected
 from eigenwalker.web.task_runner import Refused, TaskRunner
@@ -51,6 +52,7 @@ def make_app(
     host: str = "127.0.0.1",
     title: str = "",
     source: str = "",
+    mapping: Any = None,
 ) -> FastAPI:
     """Return the application that serves the interactive page of a population.
 
@@ -60,6 +62,9 @@ def make_app(
     ``POST /api/population``  the model of a population's file, or of many captures
     ``POST /api/film``        a film of a stimulus, or the movement of its first walker
     ========================= ===================================================================
+
+    `mapping` is for captures with marker names of their own, as `virtual_markers` takes it; one
+    that is sent beside a capture (TOML) is used instead.
 
     Files that are sent are read by child processes, a few at a time, within limits of time and
     memory, and removed afterwards. What cannot be used is refused with a sentence (``detail``).
@@ -76,6 +81,7 @@ def make_app(
 
     app = new_app(lifespan, host=host)
     app.state.task_runner = runner
+    app.state.mapping = as_mapping(mapping).as_dict()
 
     @app.api_route("/", methods=["GET", "HEAD"])
     def show_page() -> HTMLResponse:
@@ -102,6 +108,7 @@ async def read_capture(
         raise Refused("That population is no longer here; load it again.")
     with runner.workdir() as workdir:
         settings = {"population": str(people), "unit": unit, "rate_hz": rate}
+        settings["mapping"] = request.app.state.mapping
         settings["files"] = await _receive(request, workdir, name, files)
         return await _run(request, tasks.capture, workdir, settings)
 
@@ -116,7 +123,7 @@ async def read_population(
     """Return the model of a population's file, or of captures that are made into a population."""
     runner = _runner(request)
     with runner.workdir() as workdir:
-        settings = {"unit": unit, "rate_hz": rate}
+        settings = {"unit": unit, "rate_hz": rate, "mapping": request.app.state.mapping}
         settings["files"] = await _receive(request, workdir, name, files)
         task = tasks.study if files else tasks.population
         answer = await _run(request, task, workdir, settings)

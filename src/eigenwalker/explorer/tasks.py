@@ -72,6 +72,7 @@ def capture(folder: Path, settings: Answer) -> Answer:
         n_harmonics=max(len(first.harmonics) // 2, 1),
         unit=settings["unit"],
         rate_hz=settings["rate_hz"],
+        mapping=_mapping(files_of(folder), settings),
     )
     vector = people.vector(result.walker)
     made = people.walker(vector)
@@ -108,6 +109,7 @@ def study(folder: Path, settings: Answer) -> Answer:
         traits=_traits_table(captures),
         unit=settings["unit"],
         rate_hz=settings["rate_hz"],
+        mapping=_mapping(captures, settings),
         n_jobs=1,
     )
     not_used = fitted.files[fitted.files["status"] != "used"]
@@ -133,10 +135,21 @@ def _title(files: list[str]) -> str:
     return f"{'Captures' if rest == 0 else 'Capture'} {' and '.join(first)}"
 
 
+def _mapping(captures: Path, settings: Answer) -> Any:
+    """Return the mapping that came beside captures, else the one that was given to the server."""
+    from eigenwalker.markers.mapping import is_mapping
+
+    sent = [path for path in sorted(captures.glob("**/*.toml")) if is_mapping(path)]
+    if len(sent) > 1:
+        raise ValueError(f"{len(sent)} mappings of markers came; one is enough.")
+    return sent[0] if sent else settings.get("mapping")
+
+
 def _traits_table(captures: Path) -> Path | None:
     from eigenwalker.io.read import is_capture
 
-    tables = [path for path in sorted(captures.glob("*.csv")) if not is_capture(path)]
+    sheets = [*captures.glob("*.csv"), *captures.glob("*.xlsx")]
+    tables = [path for path in sorted(sheets) if not is_capture(path)]
     if len(tables) > 1:
         raise ValueError(f"{len(tables)} tables of traits came; one is enough.")
     return tables[0] if tables else None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Literal, NamedTuple
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -13,6 +14,7 @@ from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.markers.joint_centres import HIP_REGRESSIONS
 from eigenwalker.markers.label_repair import Rebuilt, Repair, records_in, repair_labels
+from eigenwalker.markers.mapping import MarkerMapping, as_mapping, targets
 from eigenwalker.markers.marker_sets import (
     MEASURED,
     SIDES,
@@ -51,7 +53,7 @@ def virtual_markers(
     trajectories: xr.DataArray,
     *,
     joints: Literal["walker", "full"] = "walker",
-    mapping: Mapping[str, str | Sequence[str]] | None = None,
+    mapping: MarkerMapping | Mapping[str, Any] | str | Path | None = None,
     marker_set: str | None = None,
     hip_regression: str = "davis",
     widths_mm: Mapping[str, float] | None = None,
@@ -69,9 +71,12 @@ def virtual_markers(
         Millimetres, z up, as `read_mocap` gives them. Heading and place do not matter.
     joints : {"walker", "full"}
         Whether to keep feet, hands, clavicles and the top of the head too, where they are known.
-    mapping : mapping of str to str or sequence of str, optional
+    mapping : mapping of str to str or sequence of str, or path of a TOML file, optional
         For a set of your own: for each joint the marker that is it, or the markers whose midpoint
-        it is. Joints left out are taken from the known sets.
+        it is. Joints left out are taken from the known sets. With ``{"joints": ..., "skin": ...}``,
+        or a file that has these tables, landmarks on the skin may be named too, from which the
+        centres of joints are computed (``eigenwalker info FILE --write-mapping`` begins such a
+        file).
     marker_set : str, optional
         Name of the set; the first that gives all joints if left out.
     hip_regression : {"davis", "harrington", "bell"}
@@ -129,9 +134,12 @@ def virtual_markers(
         raise ValueError(
             f"hip_regression={hip_regression!r} is not known; give one of {list(HIP_REGRESSIONS)}."
         )
-    own = _mapped_joints(walk, mapping or {})
+    mapped = as_mapping(mapping)
+    own, own_skin = _mapped_points(walk, mapped)
+    on_skin = targets()["skin"]
+    own_skin |= {name: own[name] for name in own if name not in on_skin} if own_skin else {}
     measures = Measures(hip_regression, _lengths(walk, widths_mm or {}))
-    best = _best_set(_points_seen(walk), own, measures, marker_set)
+    best = _best_set(_points_seen(walk), own, own_skin, measures, marker_set)
     order = [*JOINTS.markers]
     if joints == "full":
         order += [extra for extra in best.joints if extra not in order]
@@ -171,24 +179,23 @@ def _points_seen(walk: xr.DataArray) -> Points:
     return points
 
 
-def _mapped_joints(walk: xr.DataArray, mapping: Mapping[str, str | Sequence[str]]) -> Points:
-    """Return the joints that the user's mapping gives."""
-    present = set(walk.marker.values.tolist())
-    markers_of = {
-        joint: [names] if isinstance(names, str) else list(names)
-        for joint, names in mapping.items()
-    }
-    absent = sorted({name for names in markers_of.values() for name in names} - present)
-    empty = [joint for joint, names in markers_of.items() if not names]
-    if absent or empty:
-        raise ValueError(
-            f"The mapping names the markers {absent}, which the capture lacks"
-            + (f", and none for {empty}" if empty else "")
-            + f"; it has {_shortened(sorted(present))}."
-        )
-    return {
-        joint: walk.sel(marker=names).values.mean(axis=1) for joint, names in markers_of.items()
-    }
+def _mapped_points(walk: xr.DataArray, mapping: MarkerMapping) -> tuple[Points, Points]:
+    """Return the joints, and the landmarks on the skin, that the user's mapping gives."""
+    present = {str(name) for name in walk.marker.values}
+    for target, markers in (*mapping.joints.items(), *mapping.skin.items()):
+        if absent := [marker for marker in markers if marker not in present]:
+            raise ValueError(
+                f"The mapping names the markers {absent} for {target}{mapping.where(target)}, "
+                f"which the capture lacks; it has {_shortened(sorted(present))}."
+            )
+    joints, skin = (
+        {
+            name: walk.sel(marker=list(markers)).values.mean(axis=1)
+            for name, markers in table.items()
+        }
+        for table in (mapping.joints, mapping.skin)
+    )
+    return joints, skin
 
 
 def _lengths(walk: xr.DataArray, widths_mm: Mapping[str, float]) -> dict[str, float]:
@@ -208,7 +215,9 @@ def _lengths(walk: xr.DataArray, widths_mm: Mapping[str, float]) -> dict[str, fl
     return lengths
 
 
-def _best_set(points: Points, own: Points, measures: Measures, marker_set: str | None) -> _Joints:
+def _best_set(
+    points: Points, own: Points, own_skin: Points, measures: Measures, marker_set: str | None
+) -> _Joints:
     """Return the joints by the first set that gives all of them."""
     if set(JOINTS.markers) <= set(own):
         return _Joints(own, set(), "own mapping")
@@ -221,11 +230,11 @@ def _best_set(points: Points, own: Points, measures: Measures, marker_set: str |
     names = marker_names(tuple(points))
     missing: dict[str, list[str]] = {}
     for known in sets:
-        result = _joints_of(points, names, known, measures)
+        result = _joints_of(points, names, known, own_skin, measures)
         joints = result.joints | own
         missing[known.name] = [joint for joint in JOINTS.markers if joint not in joints]
         if not missing[known.name]:
-            name = f"{known.name}, with own mapping" if own else known.name
+            name = f"{known.name}, with own mapping" if own or own_skin else known.name
             return result._replace(
                 joints=joints,
                 approximate=result.approximate - set(own),
@@ -238,7 +247,8 @@ def _best_set(points: Points, own: Points, measures: Measures, marker_set: str |
         f"No known marker set gives the joints {missing[nearest]} (the nearest is {nearest!r}). "
         "Name the markers they are: virtual_markers(..., mapping="
         f"{{{missing[nearest][0]!r}: ['marker', 'marker'], ...}}), one marker, or several whose "
-        f"midpoint is the joint. The capture has {_shortened(list(points))}."
+        "midpoint is the joint; eigenwalker info FILE --write-mapping names.toml begins a file of "
+        f"them. The capture has {_shortened(list(points))}."
     )
 
 
@@ -249,7 +259,9 @@ def _runner_up(used: MarkerSet, names: MarkerNames) -> str:
     return f"{nearest.name}, {nearest.share_found(names):.0%}"
 
 
-def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: Measures) -> _Joints:
+def _joints_of(
+    points: Points, names: MarkerNames, known: MarkerSet, own_skin: Points, measures: Measures
+) -> _Joints:
     """Return the joints by one marker set: those captured as such, others from the skin."""
     direct: Points = {}
     stand_ins: set[str] = set()
@@ -267,11 +279,11 @@ def _joints_of(points: Points, names: MarkerNames, known: MarkerSet, measures: M
         for landmark, entry in known.landmarks.items()
         if (hit := names.find(entry))
     }
-    if not hits:
+    if not (hits or own_skin):
         return _Joints(direct, stand_ins, known.name, markers=frozenset(used))
     skin = {name: midpoint([points[marker] for marker in hits[name]]) for name in hits}
     used |= {marker for markers in hits.values() for marker in markers}
-    joints, approximate, mirrored = joints_from_skin(skin | direct, measures)
+    joints, approximate, mirrored = joints_from_skin(skin | direct | own_skin, measures)
     return _Joints(
         joints | direct,
         (approximate - set(direct)) | stand_ins,

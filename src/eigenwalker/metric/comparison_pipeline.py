@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from scipy.spatial.transform import Rotation
@@ -56,10 +58,10 @@ def prepare_walk(capture: Clip, *, mannequin: bool = True) -> xr.DataArray:
     return retarget(walk) if mannequin else walk
 
 
-def full_joints(capture: Clip) -> xr.DataArray:
+def full_joints(capture: Clip, mapping: Any = None) -> xr.DataArray:
     """Return the joints of a capture with feet, hands and captured rotations."""
     capture = as_trajectories(capture)
-    joints = with_rotations(virtual_markers(capture, joints="full"), capture)
+    joints = with_rotations(virtual_markers(capture, joints="full", mapping=mapping), capture)
     longest = MAX_GAP_S * sampling_rate(joints) if len(joints) > 1 else 0
     gaps = [gap for gap in find_gaps(joints.values) if gap.stop - gap.start > longest]
     hidden = sorted({str(joints.marker.values[gap.marker]) for gap in gaps} - {*JOINTS.markers})

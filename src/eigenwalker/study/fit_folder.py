@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.io.read import companion_files
+from eigenwalker.markers.mapping import as_mapping
 from eigenwalker.population.persons import name_persons
 from eigenwalker.population.population import FLAG, Population, flags_of, join_flags
 from eigenwalker.study.capture_table import FILE, capture_table, captures_in
@@ -81,6 +82,7 @@ def fit_folder(
     rate_hz: float | None = None,
     partial: Literal["refuse", "keep"] = "refuse",
     subject: str | None = None,
+    mapping: Any = None,
     person: str | None = None,
     low_pass_hz: float | None = None,
     n_jobs: int = -1,
@@ -114,6 +116,8 @@ def fit_folder(
     person : str, optional
         The trait that says who walked, or "none"; else one such as
         ``person``, ``Subject`` or a repeating ``ID`` is taken.
+    mapping : optional
+        Markers with names of your own, as `virtual_markers` takes it; the same for all captures.
     low_pass_hz : float, optional
         Cut-off of a low-pass filter, for noisy captures.
     n_jobs : int
@@ -165,6 +169,7 @@ def fit_folder(
         "rate_hz": rate_hz,
         "partial": partial,
         "subject": subject,
+        "mapping": as_mapping(mapping).as_dict(),
         "low_pass_hz": low_pass_hz,
     }
     earlier = None

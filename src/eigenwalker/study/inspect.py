@@ -40,6 +40,7 @@ def inspect_file(
     rate_hz: float | None = None,
     partial: Literal["refuse", "keep"] = "refuse",
     subject: str | None = None,
+    mapping: Any = None,
 ) -> dict[str, Fact]:
     """Return what is in a capture or a population file, and what is wrong with it.
 
@@ -55,6 +56,8 @@ def inspect_file(
         "keep" takes the whole frames of a capture that is cut short.
     subject : str, optional
         One person of a capture that holds several.
+    mapping : optional
+        Markers with names of your own, as `virtual_markers` takes it.
 
     Returns
     -------
@@ -82,7 +85,8 @@ def inspect_file(
     >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
     ('C3D', 'use', 10, [])
     """
-    facts = file_facts(Path(path), unit=unit, rate_hz=rate_hz, partial=partial, subject=subject)
+    reading: dict[str, Any] = {"unit": unit, "rate_hz": rate_hz, "partial": partial}
+    facts = file_facts(Path(path), **reading, subject=subject, mapping=mapping)
     return {name: plain_fact(value) for name, value in facts.items()}
 
 
@@ -123,14 +127,14 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
     return f"{name}: {shown}{', ...' if len(counts) > 8 else ''}"
 
 
-def _of_capture(path: Path, **reading: Any) -> dict[str, object]:
+def _of_capture(path: Path, *, mapping: Any = None, **reading: Any) -> dict[str, object]:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         capture = read_mocap(path, **reading)
     problems = [str(warning.message) for warning in caught]
     facts = _as_read(capture)
     try:
-        result = process_capture(capture)
+        result = process_capture(capture, mapping=mapping)
         joints, quality = result.walk, result.quality
     except NoWalkError as error:
         joints, quality = error.joints, error.quality
@@ -157,6 +161,7 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
     """Return what is known of a capture with any markers."""
     missing = np.isnan(capture.values).any(axis=2)
     rate_hz = sampling_rate(capture) if len(capture) > 1 else None
+    codes = capture.attrs.get("missing_codes", ())
     return {
         "format": capture.attrs["format"],
         "unit": capture.attrs.get("unit"),
@@ -165,7 +170,7 @@ def _as_read(capture: xr.DataArray) -> dict[str, object]:
         "duration_s": len(capture) / rate_hz if rate_hz else None,
         "n_frames": len(capture),
         "missing_samples": float(missing.mean()),
-        "missing_codes": list(capture.attrs.get("missing_codes", ())),
+        **({"missing_codes": list(codes)} if codes else {}),
         "missing_markers": capture.marker.values[missing.all(axis=0)].tolist(),
         "markers": capture.marker.values.tolist(),
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -22,6 +22,7 @@ from eigenwalker.gait.heading import known_speed
 from eigenwalker.gait.in_place import in_place
 from eigenwalker.io.read import read_mocap
 from eigenwalker.markers.label_repair import Repair
+from eigenwalker.markers.mapping import MarkerMapping
 from eigenwalker.markers.virtual_markers import virtual_markers
 from eigenwalker.quality.assessment import CaptureRecord, judge, names_in
 from eigenwalker.quality.quality import Quality
@@ -85,6 +86,7 @@ def process_capture(
     low_pass_hz: float | None = None,
     speed_mm_s: float | None = None,
     heading_deg: float | None = None,
+    mapping: MarkerMapping | Mapping[str, Any] | str | Path | None = None,
     **reading: Any,
 ) -> CaptureResult:
     """Return the walk in place, the walker and the quality of a capture.
@@ -107,6 +109,8 @@ def process_capture(
     low_pass_hz, speed_mm_s, heading_deg : float, optional
         Cut-off of a low-pass filter, and speed and direction of a walk on a treadmill, as
         `in_place` takes them. Left out, they are those of a walk that is in place already.
+    mapping : optional
+        Markers with names of your own, as `virtual_markers` takes it.
     **reading
         As `read_mocap` takes them, such as ``unit`` and ``rate_hz``.
 
@@ -153,10 +157,10 @@ def process_capture(
     if joints == "full":
         from eigenwalker.metric.comparison_pipeline import full_joints
 
-        points = full_joints(capture)
+        points = full_joints(capture, mapping)
         main = points.sel(marker=list(JOINTS.markers))
     else:
-        points = main = virtual_markers(capture)
+        points = main = virtual_markers(capture, mapping=mapping)
     main_walk = None
     try:
         walk = in_place(

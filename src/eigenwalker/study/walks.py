@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -80,6 +80,7 @@ def walk_of_capture(
     mannequin: bool = True,
     default_unit: str | None = None,
     default_rate_hz: float | None = None,
+    mapping: Any = None,
 ) -> CaptureWalk:
     """Return the steady strides of a capture, to be compared with other walks.
 
@@ -91,6 +92,8 @@ def walk_of_capture(
         Whether to show the walk on the neutral mannequin (`retarget`).
     default_unit, default_rate_hz : optional
         Unit of length and frames a second, for files that name none.
+    mapping : optional
+        Markers with names of your own, as `virtual_markers` takes it.
 
     Returns
     -------
@@ -101,7 +104,11 @@ def walk_of_capture(
     process_capture : The same with the walker and the quality.
     """
     result = process_capture(
-        path, joints="full", default_unit=default_unit, default_rate_hz=default_rate_hz
+        path,
+        joints="full",
+        default_unit=default_unit,
+        default_rate_hz=default_rate_hz,
+        mapping=mapping,
     )
     flag, walk, warnings = flag_of(result.quality), result.walk, None
     if mannequin:
@@ -119,6 +126,7 @@ def walks_of_folder(
     mannequin: bool = True,
     default_unit: str | None = None,
     default_rate_hz: float | None = None,
+    mapping: Any = None,
     progress: Progress | None = None,
 ) -> Walks:
     """Return the captures of a folder and its subfolders as comparable walks, named by file.
@@ -138,6 +146,8 @@ def walks_of_folder(
         Whether to show the walks on the neutral mannequin (`retarget`).
     default_unit, default_rate_hz : optional
         Unit of length and frames a second, for files that name none.
+    mapping : optional
+        Markers with names of your own, as `virtual_markers` takes it.
     progress : callable, optional
         Called with the number of captures that are done, and of all.
 
@@ -180,6 +190,7 @@ def walks_of_folder(
                 mannequin=mannequin,
                 default_unit=default_unit,
                 default_rate_hz=default_rate_hz,
+                mapping=mapping,
             )
         except (ValueError, OSError) as error:
             walks.refused[name] = str(error)
