@@ -16,7 +16,7 @@ import pytest
 from eigenwalker.experiment import store
 from eigenwalker.experiment.answer_writer import AnswerWriter
 from eigenwalker.experiment.backup import back_up
-from eigenwalker.experiment.experiment_folder import ANSWERS, DESIGN
+from eigenwalker.experiment.experiment_folder import ANSWERS, DESIGN, Material
 from eigenwalker.experiment.export import export_experiment
 from eigenwalker.experiment.link_keys import hash_of, new_key
 from eigenwalker.experiment.rescue import checksum
@@ -43,7 +43,10 @@ def item(trial: int = 1, name: str | None = None, **content: Any) -> dict[str, A
 
 def exported(service: Service, folder: Path) -> list[dict[str, str]]:
     export_experiment(service.folder, folder)
-    with next(folder.glob("data/*.csv")).open(encoding="utf-8") as file:
+    tables = folder.glob("data/*_data.csv")
+    with next(path for path in tables if "questions" not in path.name).open(
+        encoding="utf-8"
+    ) as file:
         return list(csv.DictReader(file))
 
 
@@ -293,3 +296,28 @@ def test_each_level_of_a_staircase_follows_from_the_answers(
             right.append(row["response"] == row["condition"])
         assert len(right) == 60
         assert 0.5 < np.mean(right) < 0.95
+
+
+def test_answers_to_questions_are_a_table_of_their_own(
+    small: Callable[..., Path], tmp_path: Path
+) -> None:
+    folder = small()
+    with (folder / DESIGN).open("a", encoding="utf-8") as file:
+        file.write('[[questions]]\nname = "hand"\nkind = "choice"\noptions = ["left", "right"]\n')
+    faults = Material(folder).faults()
+    assert [fault.split("# ")[1].split("'")[0] for fault in faults] == [
+        "question_hand",
+        "option_left",
+        "option_right",
+    ]
+    with AnswerWriter(folder / ANSWERS) as writer:
+        service = Service(folder, writer)
+        [key] = service.invite(1)
+        session = begin(service, key)
+        assert session["questions"][0]["name"] == "hand"
+        content = {"when": "before", "answers": {"hand": "left"}}
+        asked = {**item(content=content), "kind": "questions", "trial": None, "content": content}
+        service.answers(key, session["session"], [asked])
+        exported(service, tmp_path / "data")
+    table = tmp_path / "data" / "data" / "study-troje2002_questions_data.csv"
+    assert table.read_text(encoding="utf-8").splitlines()[1:] == ["1,1,hand,left"]

@@ -6,6 +6,7 @@ import { Outbox } from "./outbox";
 import { Pages } from "./pages";
 import { TrialProgress } from "./progressOfTrials";
 import { assumedOf, measureScreen, scaleOf, type ScreenSize } from "./screenSize";
+import { askQuestions } from "./questions";
 import { Sender } from "./sender";
 import * as server from "./server";
 import { Refusal, type Site } from "./server";
@@ -141,15 +142,18 @@ class Visit {
       ...item,
       outcome: (item.content["outcome"] as string | undefined) ?? null,
       response: item.content["response"],
+      when: item.content["when"],
     }));
     this.sender.hurry();
     const stimuli = await this.load();
-    const progress = new TrialProgress(this.session, [...this.session.answered, ...kept]);
+    const reported = [...this.session.answered, ...kept];
+    const progress = new TrialProgress(this.session, reported);
     this.offerStop();
     const { screen: wanted } = this.session;
     const size = wanted.measure ? await this.measured() : assumedOf(wanted);
     await this.keep(itemOf("screen", { ...screenFacts(this.outbox.durable), ...size }));
     if (!this.outbox.durable) await pages.ask([pages.title(), pages.paragraph("not_stored")], [["go", "continue"]]);
+    await this.ask("before", reported);
     if (!again || !progress.anyBegun || this.awayMinutes() > this.session.pace.refresh_after_min) {
       const limit = this.session.blocks[0]?.limit_s ?? 0;
       await pages.ask([pages.title(), pages.paragraphs("instructions", { limit })], [["begin", "begin"]]);
@@ -165,6 +169,7 @@ class Visit {
       stopped: () => this.stopped,
     });
     if (document.fullscreenElement) await document.exitFullscreen().catch(() => undefined);
+    if (!this.stopped) await this.ask("after", reported);
     if (!this.stopped) await this.finish("finished");
   }
 
@@ -176,6 +181,14 @@ class Visit {
     const size = await measureScreen(pages, this.session.screen);
     await this.outbox.setKey(name, JSON.stringify(size));
     return size;
+  }
+
+  /** Ask the questions before or after the trials, once a session. */
+  private async ask(when: "before" | "after", reported: readonly { kind: string; when?: unknown }[]): Promise<void> {
+    const questions = this.session.questions.filter((each) => each.when === when);
+    const known = reported.some((item) => item.kind === "questions" && item.when === when);
+    if (questions.length === 0 || known) return;
+    await this.keep(itemOf("questions", { when, answers: await askQuestions(pages, questions) }));
   }
 
   /** Keep an item: on disk here, or else at the server, before the promise is kept. */

@@ -29,6 +29,13 @@ export interface Block {
   readonly down?: number;
 }
 
+export interface Question {
+  readonly name: string;
+  readonly kind: "text" | "number" | "choice";
+  readonly options: readonly string[];
+  readonly when: "before" | "after";
+}
+
 export interface State {
   readonly name: "new" | "under_way" | "finished" | "not_due" | "closed";
   readonly session: number;
@@ -53,6 +60,7 @@ export interface Reported {
   readonly attempt: number | null;
   readonly outcome: string | null;
   readonly response?: unknown;
+  readonly when?: unknown;
 }
 
 export interface SessionContent {
@@ -64,6 +72,7 @@ export interface SessionContent {
   readonly trials: readonly Trial[];
   readonly blocks: readonly Block[];
   readonly group: { readonly name: string; readonly scale: string | null };
+  readonly questions: readonly Question[];
   readonly picture: { readonly duration_s: number };
   readonly pace: { readonly blank_s: number; readonly count_remaining: boolean; readonly refresh_after_min: number };
   readonly screen: {

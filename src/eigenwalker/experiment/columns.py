@@ -83,6 +83,12 @@ COLUMNS = (
     Column("started_utc", "when the showing began", "", "ISO 8601, UTC", "page, its clock"),
     Column("answer", "name of the answer, as in the table of frames", "", "text", "page"),
 )
+QUESTIONS = (
+    Column("observer", "number of the observer", "", "integer from 1", "server"),
+    Column("session", "session of this observer", "", "integer from 1", "server"),
+    Column("question", "name of the question", "", "names of questions in the design"),
+    Column("question_answer", "what the observer answered", "", "text", "page"),
+)
 RATING = (
     Column("rating", "the step of the scale, from 1 at its first end", "", "integer", "page"),
 )

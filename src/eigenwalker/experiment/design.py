@@ -155,6 +155,22 @@ class Detection(Block):
 AnyBlock = Annotated[Choice | Rating | SimilarPair | Detection, Field(discriminator="task")]
 
 
+class Question(Part):
+    """A question before or after the trials; the texts have its words."""
+
+    name: Name
+    kind: Literal["text", "number", "choice"] = "text"
+    options: Annotated[list[Name], Field(max_length=30)] = []
+    """Of a choice."""
+    when: Literal["before", "after"] = "before"
+
+    @model_validator(mode="after")
+    def _has_options(self) -> Question:
+        if (self.kind == "choice") != (len(self.options) > 1):
+            raise ValueError("a choice, and nothing else, has two or more options")
+        return self
+
+
 class Pace(Part):
     """What is between trials, and how long observers may stay away."""
 
@@ -205,6 +221,7 @@ class Design(Part):
     groups: Annotated[list[Group], Field(min_length=1, max_length=50)]
     sessions: Sessions = Sessions()
     blocks: Annotated[list[AnyBlock], Field(min_length=1, max_length=50)]
+    questions: Annotated[list[Question], Field(max_length=50)] = []
     pace: Pace = Pace()
     screen: Screen = Screen()
     recruiting: Recruiting = Recruiting()

@@ -84,6 +84,9 @@ def missing_texts(design: Design, texts: Texts) -> list[str]:
             needed += [f"{scale}_{end}" for scale in sorted(map(str, scales)) for end in _ENDS]
         elif isinstance(block, SimilarPair):
             needed += ["figure", "pair_chosen"]
+    for question in design.questions:
+        needed.append(f"question_{question.name}")
+        needed += [f"option_{option}" for option in question.options]
     return [name for name in dict.fromkeys(needed) if not texts.sections.get(name)]
 
 

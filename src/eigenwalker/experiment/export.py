@@ -6,6 +6,7 @@ import csv
 import json
 import re
 import shutil
+import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from itertools import islice
@@ -15,7 +16,7 @@ from typing import Any
 
 from eigenwalker._version import __version__
 from eigenwalker.experiment import store
-from eigenwalker.experiment.columns import COLUMNS, PAIRS, RATING, Column
+from eigenwalker.experiment.columns import COLUMNS, PAIRS, QUESTIONS, RATING, Column
 from eigenwalker.experiment.design import Design, Rating, SimilarPair
 from eigenwalker.experiment.experiment_folder import ANSWERS, VERSIONS, Material
 from eigenwalker.experiment.showings import session_rows
@@ -47,6 +48,9 @@ def export_experiment(folder: Path, output: Path, *, frames: bool = False) -> li
         table = output / "data" / f"study-{name}_data.csv"
         table.parent.mkdir(parents=True, exist_ok=True)
         written = _write_table(table, _all_rows(database, materials), [c.name for c in columns])
+        if any(design.questions for design in designs):
+            written.append(_write_questions(database, table.parent, name))
+            columns = tuple({c.name: c for c in (*columns, *QUESTIONS)}.values())
         counts = store.counts(database)
         if frames:
             written.append(_write_frames(database, output / "data", name))
@@ -152,6 +156,21 @@ class _ParquetTable:
         if self.available:
             self._flush()
             self._writer.close()
+
+
+def _write_questions(database: sqlite3.Connection, folder: Path, name: str) -> str:
+    """Write the answers to questions, one a row; of a question asked again, all of them."""
+    path = folder / f"study-{name}_questions_data.csv"
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([column.name for column in QUESTIONS])
+        for session in list(store.sessions(database)):
+            for item in store.answers_of(database, session["session"]):
+                given = item["content"].get("answers") if item["kind"] == "questions" else None
+                for question, text in (given if isinstance(given, dict) else {}).items():
+                    row = [session["observer"], session["number"], question, text]
+                    writer.writerow([_no_formula(value) for value in row])
+    return str(path)
 
 
 def _write_frames(database: Any, folder: Path, name: str) -> str:

@@ -369,11 +369,12 @@ class Service:
             "group": design.group(group).model_dump(mode="json"),
             "blocks": [block.model_dump(mode="json") for block in design.blocks],
             "picture": design.picture.model_dump(mode="json"),
+            "questions": [each.model_dump(mode="json") for each in design.questions],
             "pace": design.pace.model_dump(mode="json"),
             "screen": design.screen.model_dump(mode="json"),
             "answered": [
                 {name: each[name] for name in ("answer", "kind", "trial", "attempt")}
-                | {name: each["content"].get(name) for name in ("outcome", "response")}
+                | {name: each["content"].get(name) for name in ("outcome", "response", "when")}
                 | {"at": each["received_utc"]}
                 for each in answers
             ],
