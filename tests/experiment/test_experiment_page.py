@@ -49,7 +49,6 @@ class Server:
         links.unlink(missing_ok=True)
         code, _, problems = run_command(
             *("experiment", "invite", self.folder, "-o", links, *options),
-            *("--base-url", self.address),
         )
         assert code == 0, problems
         return links.read_text(encoding="utf-8").split()[-1].partition(",")[2]

@@ -25,7 +25,7 @@ experiment = typer.Typer(
     help="Experiments in the browser: designs, links for observers, their answers.",
 )
 Folder = Annotated[Path, typer.Argument(help="Folder of the experiment.")]
-LINKS = "links.csv"
+LINKS, PORT = "links.csv", 8640
 MAX_CONCURRENT = 4000
 """Requests: all observers of a large class at once."""
 
@@ -68,8 +68,9 @@ def invite(
     folder: Folder,
     number: Annotated[int, typer.Option(help="How many personal links.", min=1, max=10_000)] = 1,
     base_url: Annotated[
-        str, option("Address that links begin with; left out, that of 'run' on this machine.")
-    ] = "http://127.0.0.1:8640",
+        str | None,
+        option("Address that links begin with; left out, that of 'run', on this machine."),
+    ] = None,
     shared: Annotated[
         bool, option("One open link for all, in place of personal links.", "--open")
     ] = False,
@@ -79,7 +80,10 @@ def invite(
 ) -> None:
     """Write links for observers into a file, once; only their hashes are kept."""
     _refuse_faults(folder)
+    from eigenwalker.experiment.writer_lock import link_address
+
     path = output or folder / LINKS
+    base = base_url or link_address(folder) or f"http://127.0.0.1:{PORT}"
     kind = "open" if shared else "personal"
     keys = _do(folder, "invite", number=1 if shared else number, kind=kind)
     is_new = not path.exists()
@@ -87,7 +91,7 @@ def invite(
         if is_new:
             path.chmod(0o600)
             file.write("kind,link\n")
-        file.writelines(f"{kind},{base_url.rstrip('/')}/s/{key}\n" for key in keys)
+        file.writelines(f"{kind},{base.rstrip('/')}/s/{key}\n" for key in keys)
     print(f"{len(keys)} {kind} {'link' if len(keys) == 1 else 'links'}: {path}")
 
 
@@ -97,7 +101,7 @@ def run(
     host: Annotated[
         str, option("Where to listen; anything but this machine lets others in.")
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port.", min=0, max=65535)] = 8640,
+    port: Annotated[int, typer.Option(help="Port.", min=0, max=65535)] = PORT,
     public_url: Annotated[
         str, option("Address behind a proxy with HTTPS: https://lab.example")
     ] = "",
@@ -186,7 +190,7 @@ def _serve(
     page = built("experiment.html")
     with _writing(folder) as service, listening_socket(host, port) as bound:
         address = address_of(bound, host)
-        with reachable(folder, address) as command_key:
+        with reachable(folder, address, public_url) as command_key:
             app = observer_app(
                 service, page, host=host, public_url=public_url, command_key=command_key
             )

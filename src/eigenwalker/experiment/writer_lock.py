@@ -33,13 +33,18 @@ def only_writer(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def reachable(folder: Path, address: str) -> Iterator[str]:
-    """Write where this server is, for other commands; yields the key that they show."""
+def reachable(folder: Path, address: str, links: str = "") -> Iterator[str]:
+    """Write where this server is, for other commands; yields the key that they show.
+
+    `links` is the address that links to observers begin with, where it is another.
+    """
     key = secrets.token_urlsafe(16)
     path = folder / SERVER
     unfinished = path.with_suffix(".part")
     unfinished.touch(mode=0o600)
-    unfinished.write_text(json.dumps({"address": address, "key": key}), encoding="utf-8")
+    unfinished.write_text(
+        json.dumps({"address": address, "links": links or address, "key": key}), encoding="utf-8"
+    )
     unfinished.replace(path)
     try:
         yield key
@@ -52,6 +57,15 @@ def running_server(folder: Path) -> tuple[str, str] | None:
     try:
         there = json.loads((folder / SERVER).read_text(encoding="utf-8"))
         return str(there["address"]), str(there["key"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def link_address(folder: Path) -> str | None:
+    """Return what links begin with while a server has the folder."""
+    try:
+        there = json.loads((folder / SERVER).read_text(encoding="utf-8"))
+        return str(there["links"]).rstrip("/")
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
