@@ -85,7 +85,7 @@ class AnswerWriter:
                     except Exception as error:
                         done.append((future, None, error))
             self.trouble = ""
-        except sqlite3.Error as error:
+        except Exception as error:  # whatever it is, the thread lives on and nothing is confirmed
             self.trouble = str(error)
             refusal = OSError(errno.ENOSPC, NO_ROOM.format(error))
             done = [(future, None, refusal) for _, future in works]
