@@ -193,6 +193,7 @@ class Visit {
 
   /** Keep an item: on disk here, or else at the server, before the promise is kept. */
   private async keep(item: Item): Promise<void> {
+    if (this.stopped) return; // the trial that was on the screen then
     await this.outbox.put(item, this.key, this.session.session);
     this.sender.hurry();
     if (this.outbox.durable) return;
