@@ -39,9 +39,8 @@ function insidePage(): Plugin {
   };
 }
 
-/** What a page loads from its server, for the first mannequin. */
-const mannequin = /mannequin\/mannequin$/;
-const MANNEQUIN = (name: string): string => (mannequin.test(name) ? "/modules/mannequin.js" : name);
+/** In no page: those that show mannequins hold it as text, built by itself. */
+const MANNEQUIN = /mannequin\/mannequin$/;
 
 /** What `vite build --mode NAME` makes: a page, or a module of its own. */
 const PAGES: Record<string, string> = {
@@ -95,7 +94,7 @@ export default defineConfig(({ mode }) => {
     return {
       root: inFolder(dirname(page)),
       base: "./",
-      build: { ...shared, rolldownOptions: { input: inFolder(page), external: mannequin, output: { paths: MANNEQUIN } } },
+      build: { ...shared, rolldownOptions: { input: inFolder(page), external: MANNEQUIN } },
       plugins: [insidePage()],
     };
   }

@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 
+DRAWN = """canvas => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((value, i) => i % 4 === 0 && value > 40).length;
+}"""
+"""How many pixels of a canvas are not dark."""
+
 
 class Server:
     """``experiment run`` in a process of its own, which may be killed and started again."""
@@ -190,3 +196,30 @@ def test_the_pages_are_accessible(
             page.keyboard.press("Enter")
         page.locator("#trials button:enabled").first.wait_for()
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
+def test_the_most_similar_pair_of_four_mannequins_is_chosen_by_touch_and_by_keys(
+    browser: Browser, small: Callable[..., Path], run_command: Callable, tmp_path: Path
+) -> None:
+    folder = small("prazak2010", blank_s="0.05", trials="2", measure="false", full_screen="false")
+    started = Server(folder)
+    try:
+        with visit(browser, started.link(run_command), has_touch=True) as (_, page):
+            press(page, "I have read this")
+            press(page, "Begin")
+            page.get_by_role("button", name="Figure 4").tap()
+            page.get_by_role("button", name="Figure 1").tap()
+            page.get_by_text("1 to go").wait_for()
+            page.locator("#trials canvas").first.wait_for()
+            drawn = page.locator("#trials canvas").first.evaluate(DRAWN)
+            page.keyboard.press("2")
+            page.keyboard.press("3")
+            page.get_by_text("every answer has arrived").wait_for()
+    finally:
+        started.kill()
+    assert drawn > 100
+    found = [row for row in rows(folder, tmp_path / "data") if row["outcome"] == "answered"]
+    assert [row["response_by"] for row in found] == ["button", "key"]
+    first, second = found
+    assert (first["chosen_1"], first["chosen_2"]) == (first["a"], first["d"])
+    assert (second["chosen_1"], second["chosen_2"]) == (second["b"], second["c"])

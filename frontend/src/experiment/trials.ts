@@ -3,7 +3,7 @@
 import { initJsPsych, type JsPsych } from "jspsych";
 
 import WalkerPlugin from "../../plugin-walker/src/index";
-import type { MannequinPainter } from "../canvas/mannequinLoader";
+import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
 import { make } from "../page/elements";
 import { itemOf, type Content, type Item } from "./answers";
 import type { Pages } from "./pages";
@@ -173,11 +173,11 @@ function watch(): Watch {
   };
 }
 
-/** The painter of mannequins, loaded before the first trial; the build leaves its module to the server. */
+/** The painter of mannequins, where any is shown. */
 async function mannequinFor({ stimuli }: TrialsOptions): Promise<MannequinPainter | null> {
   const needed = Object.values(stimuli).some(
     (each) => (each as { display?: { style?: string } }).display?.style === "mannequin",
   );
   if (!needed) return null;
-  return (await import("../mannequin/mannequin")).mannequinPainter();
+  return mannequinInPage();
 }

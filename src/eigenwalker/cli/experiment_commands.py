@@ -183,11 +183,12 @@ def _serve(
     folder: Path, host: str, port: int, public_url: str, *, preview: bool, backup: bool = False
 ) -> None:
     from eigenwalker.experiment.backup import hourly_backup
+    from eigenwalker.experiment.experiment_folder import Material
+    from eigenwalker.experiment.observer_page import observer_page
     from eigenwalker.experiment.writer_lock import reachable
-    from eigenwalker.stimulus.html_page import built
     from eigenwalker.web.run import address_of, listening_socket, run
 
-    page = built("experiment.html")
+    page = observer_page(Material(folder).design)
     with _writing(folder) as service, listening_socket(host, port) as bound:
         address = address_of(bound, host)
         with reachable(folder, address, public_url) as command_key:
@@ -218,7 +219,6 @@ def observer_app(
     """Return the application that serves an experiment to observers, and takes commands."""
     from eigenwalker.experiment.link_keys import same
     from eigenwalker.experiment.service import Closed, Gone, NotAllowed, received
-    from eigenwalker.stimulus.html_page import built
     from eigenwalker.web.session_routes import session_app
 
     def do_command(key: str, name: str, arguments: dict[str, Any]) -> Any:
@@ -229,7 +229,6 @@ def observer_app(
     return session_app(
         _Pages(service, received),
         page,
-        modules={"mannequin.js": built("mannequin.js")},
         host=host,
         public_url=public_url,
         refusals={Closed: 409, Gone: 410, NotAllowed: 403},

@@ -97,7 +97,6 @@ def session_app(
     host: str,
     public_url: str = "",
     refusals: Mapping[type[Exception], int],
-    modules: Mapping[str, str] | None = None,
     commands: Callable[[str, str, Any], Any] | None = None,
 ) -> FastAPI:
     """Return the application that serves an experiment.
@@ -135,12 +134,6 @@ def session_app(
     def show_lab_page(key: str) -> HTMLResponse:
         app.state.rate.count(key[:100])
         return HTMLResponse(sessions.lab_page(key[:100]))
-
-    @app.get("/modules/{name}")
-    def show_module(name: str) -> Response:
-        if name not in (modules or {}):
-            raise HTTPException(404)
-        return Response((modules or {})[name], media_type="text/javascript")
 
     @app.post("/api/welcome")
     def welcome(key: KeyOf, body: WelcomeBody) -> Any:
