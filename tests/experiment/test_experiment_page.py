@@ -201,7 +201,7 @@ def test_the_pages_are_accessible(
 def test_the_most_similar_pair_of_four_mannequins_is_chosen_by_touch_and_by_keys(
     browser: Browser, small: Callable[..., Path], run_command: Callable, tmp_path: Path
 ) -> None:
-    folder = small("prazak2010", blank_s="0.05", trials="2", measure="false", full_screen="false")
+    folder = small("prazak2010", blank_s="0.6", trials="2", measure="false", full_screen="false")
     started = Server(folder)
     try:
         with visit(browser, started.link(run_command), has_touch=True) as (_, page):
