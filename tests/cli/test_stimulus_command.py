@@ -191,6 +191,27 @@ def test_a_capture_in_another_style_keeps_its_bones(run, write_c3d, tmp_path):
     assert elbows[1] - elbows[0] > 10  # arms away from the body: the style is there
 
 
+def test_a_crowd_is_people_who_differ_and_come_again_with_the_seed(run):
+    crowd = ("--crowd", "4", "--skeleton", "unity", "--in-place", "--rate", "30")
+    for seed, output in (("1", "a.glb"), ("1", "b.glb"), ("2", "c.glb")):
+        code, said, complaint = run(*crowd, "--seed", seed, "-o", output)
+        assert code == 0, complaint
+        assert "4 people drawn from the population" in said
+    first, again, other = (Path(f"{name}.glb").read_bytes() for name in "abc")
+    assert first == again
+    assert first != other
+    size = int.from_bytes(first[12:16], "little")
+    content = json.loads(first[20 : 20 + size])
+    assert len(content["skins"]) == len(content["animations"]) == 4
+    assert run(*crowd, "--seed", "1", "-o", "people/")[0] == 0
+    heads = [
+        read_mocap(path, unit="cm").sel(marker="Head").values[:, 2].mean()
+        for path in sorted(Path("people").glob("*.bvh"))
+    ]
+    assert len(heads) == 4
+    assert np.diff(np.sort(heads)).min() > 1
+
+
 @pytest.mark.parametrize(("words", "complaint"), [
     (["--scramble", "sed=3"], "expected name=value"),
     (["--trait", "sex"], "does not say how far"),
@@ -201,6 +222,10 @@ def test_a_capture_in_another_style_keeps_its_bones(run, write_c3d, tmp_path):
     (["-o", "stim.avi"], "must end in one of"),
     (["--part", "structure"], "give --trait too"),
     (["--strides", "0"], "expected 1 or more"),
+    (["--crowd", "3", "-o", "crowd.bvh"], "a folder of .bvh files"),
+    (["--crowd", "0", "-o", "crowd.glb"], "1 to 1000 people"),
+    (["--skeleton", "biped", "-o", "a.bvh"], "choose from"),
+    (["--in-place", "-o", "a.json"], "holds no rig"),
     (["--strides", "1", "--duration", "2"], "in place of --duration"),
 ])  # fmt: skip
 def test_what_is_typed_wrong_is_said_in_a_sentence(run, words, complaint):

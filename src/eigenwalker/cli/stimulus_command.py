@@ -22,6 +22,7 @@ import typer
 from eigenwalker.cli.options import (
     Elevation,
     MappingFile,
+    Seed,
     StartFrom,
     TraitSteps,
     View,
@@ -147,6 +148,11 @@ def stimulus(
     ] = False,
     rig_unit: Annotated[str | None, option("cm (.bvh) or m (.glb), if left out.")] = None,
     up: Annotated[str, option("Axis that points up in .bvh: y or z.")] = "y",
+    crowd: Annotated[
+        int | None,
+        option("So many people, drawn from the population: a .glb, or a folder of .bvh."),
+    ] = None,
+    seed: Seed = 1,
     with_flagged: WithFlagged = False,
     mapping: MappingFile = None,
     *,
@@ -170,13 +176,20 @@ def stimulus(
         raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
     if not (trait or morph_to) and (kind, part, components) != ("discriminant", "all", 10):
         raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
+    if crowd is not None:
+        _check_crowd(options, output)
     if people is not None and people.suffix.lower() == ".json" and not looks_like_bml(people):
         made, population = _of_a_stimulus(options), None
     else:
         population = load_people(people, with_flagged)
+        if crowd is not None:
+            from eigenwalker.cli.crowd import write_crowd
+
+            write_crowd(population, output, options, rig)
+            return
         options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
         made = _of_a_population(population, options)
-    steps = list(_transforms(options, population))
+    steps = list(transforms_typed(options, population))
     for name, parameters in [step for step in steps if step[0] not in OF_THE_DISPLAY]:
         made = made.then(name, **parameters)
     made = _on_screen(made, options)
@@ -207,7 +220,8 @@ def _rig_choices(options: dict[str, Any], output: Path) -> RigChoices:
     names = {"skeleton": "skeleton", "rest_pose": "rest_pose", "in_place": "in_place",
              "rig_unit": "unit", "up": "up"}  # fmt: skip
     choices = RigChoices(**{field: options[name] for name, field in names.items()})
-    if choices != RigChoices() and output.suffix.lower() not in (".bvh", ".glb"):
+    suffixes = (".bvh", ".glb") if options["crowd"] is None else (".glb", "")
+    if choices != RigChoices() and output.suffix.lower() not in suffixes:
         typed = [f"--{name.replace('_', '-')}" for name in names]
         raise ValueError(f"{', '.join(typed)} are for .bvh and .glb; {output} holds no rig.")
     check_choice(choices.skeleton, ("plain", "mixamo", "unreal", "unity"), "--skeleton")
@@ -232,6 +246,23 @@ def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
     return replace(made, display=with_dots(made.display, **sizes))
 
 
+def _check_crowd(options: dict[str, Any], output: Path) -> None:
+    """Refuse options that make no crowd, before any work."""
+    number = options["crowd"]
+    if not 1 <= number <= MAX_PEOPLE:
+        raise ValueError(f"--crowd {number}: expected 1 to {MAX_PEOPLE} people.")
+    if output.suffix.lower() not in (".glb", ""):
+        raise ValueError(
+            f"--crowd writes one .glb, or a folder of .bvh files; {output} is neither."
+        )
+    for name in ("start_from", "information"):
+        if options[name] not in ("", "average"):
+            raise ValueError(f"--{name.removeprefix('start_')} is for one walker, not for --crowd.")
+
+
+MAX_PEOPLE = 1000
+
+
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
     """The stimulus before any transform."""
     from eigenwalker.cli.provenance import of_a_walker
@@ -251,6 +282,12 @@ def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulu
     )
 
 
+POPULATION_ONLY = (
+    *("trait", "start_from", "information", "morph_to", "size", "eye_distance", "crowd"),
+)
+"""Options that a stimulus file does not take."""
+
+
 def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     """The stimulus of a file with another duration, rate or style; its view stays."""
     from dataclasses import replace
@@ -258,7 +295,7 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     from eigenwalker.cli.provenance import of_a_file
     from eigenwalker.stimulus.stimulus import Stimulus
 
-    for name in ("trait", "start_from", "information", "morph_to", "size", "eye_distance"):
+    for name in POPULATION_ONLY:
         if options[name] and options[name] != "average":
             file, name = options["people"].name, name.removeprefix("start_").replace("_", "-")
             raise ValueError(f"--{name} is for populations; {file} is a stimulus.")
@@ -286,7 +323,7 @@ def _walker(population: Population, options: dict[str, Any]) -> Walker | Figure:
         start = population.vector(own.walker)
     else:
         start = start_vector(population, name, options["mapping"])
-    vector = _moved(population, start, options["trait"], options)
+    vector = moved_along_traits(population, start, options["trait"], options)
     if own is not None:
         return _own_figure(population, own, start, vector)
     if options["trait"]:
@@ -305,15 +342,15 @@ def _own_figure(
     from eigenwalker.core.skeleton import JOINTS
     from eigenwalker.decomposition.fourier import decompose_fourier
     from eigenwalker.io.writers.rig import EXTRAS
+    from eigenwalker.stimulus.captured_body import captured_body
     from eigenwalker.stimulus.figure import Figure
-    from eigenwalker.stimulus.own_body import own_body
 
     seen = ~np.isnan(own.walk.values).any(axis=(0, 2))
     names = [str(name) for name in own.walk.marker.values[seen]]
     names = [name for name in names if name in (*JOINTS.markers, *EXTRAS)]
     captured = own.walk.sel(marker=names)
     walker = decompose_fourier(captured, n_harmonics=N_OWN_HARMONICS)
-    walk = own_body(captured, walker, population.walker(start), population.walker(vector))
+    walk = captured_body(captured, walker, population.walker(start), population.walker(vector))
     print(f"The bones of the capture, {len(names)} points: {', '.join(names[15:]) or 'no feet'}.")
     return Figure(walk, repeat=True)
 
@@ -322,7 +359,7 @@ N_OWN_HARMONICS = 6
 """Of one's own capture: as much of its motion as repeats."""
 
 
-def _moved(
+def moved_along_traits(
     population: Population, vector: np.ndarray, traits: Texts, options: dict[str, Any]
 ) -> np.ndarray:
     """Return features moved along traits, and print how far that is."""
@@ -360,7 +397,7 @@ def _print_plausibility(population: Population, vector: np.ndarray) -> None:
     )
 
 
-def _transforms(
+def transforms_typed(
     options: dict[str, Any], population: Population | None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield name and parameters of the transforms, in the order of the module's first lines."""
@@ -370,7 +407,7 @@ def _transforms(
             continue
         if name == "morph_to":
             assert population is not None
-            vector = _moved(population, population.average, value, options)
+            vector = moved_along_traits(population, population.average, value, options)
             yield "morph", {"walker": population.walker(vector)}
         elif name in ("occlude", "show"):
             yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}

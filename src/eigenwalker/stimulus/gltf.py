@@ -21,8 +21,8 @@ from eigenwalker.io.writers.rig import Rig
 
 FLOAT, SHORT, VERTICES = 5126, 5123, 34962
 MAGIC, JSON_CHUNK, BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
-SPACING_M = 1.0
-"""From one figure to the next."""
+ASIDE_M, BEHIND_M = 1.0, 2.0
+"""From one figure of a crowd to the next, and from row to row."""
 THICK = 0.09
 """Half the thickness of a bone, as a share of its length."""
 
@@ -102,7 +102,8 @@ def write_glb(
         "animations": [],
     }
     for number, (name, rig) in enumerate(rigs.items()):
-        aside = np.array([number * SPACING_M, 0.0, 0.0])
+        row, column = divmod(number, int(np.ceil(np.sqrt(len(rigs)))))
+        aside = np.array([-column * ASIDE_M, 0.0, -row * BEHIND_M])
         _add_figure(content, buffer, name, _in_gltf(rig, unit), rate_hz, unit, aside)
     content |= {
         "buffers": [{"byteLength": len(buffer.data)}],

@@ -17,7 +17,7 @@ CARRIERS = {"heel": "ankle", "toe": "ankle", "hand": "wrist", "clavicle": "shoul
 """Joints whose bone points beyond the 15 joints turn with."""
 
 
-def own_body(walk: xr.DataArray, own: Walker, start: Walker, styled: Walker) -> xr.DataArray:
+def captured_body(walk: xr.DataArray, own: Walker, start: Walker, styled: Walker) -> xr.DataArray:
     """Return one stride (time, marker, axis) of a captured person in another style.
 
     `walk` and its walker `own` have all joints that were captured; `start` is the same person among
