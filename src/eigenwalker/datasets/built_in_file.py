@@ -24,8 +24,8 @@ _ONE_OF_EACH = ("p0", "p", "phases", "frequency_hz", "speed_mm_s", "time_origin_
 _FIT = [field.name for field in fields(CaptureFit)]
 
 
-def write_people(people: Population, path: Path, **said: Any) -> Path:
-    """Write simulated people, with what is `said` of them, as arrays that NumPy reads fast."""
+def write_people(people: Population, path: Path, **details: Any) -> Path:
+    """Write simulated people, with `details` of them, as arrays that NumPy reads fast."""
     first, correspondence = people.walkers[0], people.correspondence
     assert correspondence is not None
     arrays = {name: np.stack([getattr(w, name) for w in people.walkers]) for name in _ONE_OF_EACH}
@@ -40,7 +40,7 @@ def write_people(people: Population, path: Path, **said: Any) -> Path:
         "form": first.form,
         "traits": people.traits.drop(columns=FLAG).to_dict("list"),
         "flags": correspondence.flags,
-        "provenance": {**people.provenance, **said, "sha256": _hash_of(people)},
+        "provenance": {**people.provenance, **details, "sha256": _hash_of(people)},
     }
     arrays["about"] = np.array(json.dumps(about))
     with atomic_write(path) as unfinished, unfinished.open("wb") as file:

@@ -93,10 +93,10 @@ class _Seen:
 
     def without(self, markers: np.ndarray) -> _Seen:
         """Return the same without some markers."""
-        kept = np.delete(np.arange(len(self.names)), markers)
-        pairs = np.ix_(kept, kept)
+        others = np.delete(np.arange(len(self.names)), markers)
+        pairs = np.ix_(others, others)
         return _Seen(
-            [self.names[index] for index in kept],
+            [self.names[index] for index in others],
             *(getattr(self, name)[pairs] for name in list(self.__dataclass_fields__)[1:]),
         )
 
