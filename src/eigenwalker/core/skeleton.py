@@ -30,6 +30,10 @@ class Skeleton:
     ValueError
         If a name comes twice, or a segment, pair or group names no marker.
 
+    See Also
+    --------
+    JOINTS : That of walkers.
+
     Examples
     --------
     >>> leg = Skeleton(("hip", "knee", "ankle"), (("hip", "knee"), ("knee", "ankle")))

@@ -56,6 +56,10 @@ class CaptureFit:
     n_strides : float
         Number of strides in the capture.
 
+    See Also
+    --------
+    decompose_pca, decompose_fourier : make it.
+
     References
     ----------
     Troje (2002), figs. 2 and 3. Troje (2002), The little difference.

@@ -52,6 +52,10 @@ class Eigenpostures:
         Coefficient of determination of each sine.
     rate_hz : float
         Frames a second.
+
+    See Also
+    --------
+    eigenpostures_of : makes it.
     """
 
     mean: np.ndarray

@@ -14,7 +14,12 @@ from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 
 
 class NoStrideError(ValueError):
-    """Nothing in a clip repeats as strides do, or it is too short for one."""
+    """Nothing in a clip repeats as strides do, or it is too short for one.
+
+    See Also
+    --------
+    fundamental_frequency : raises it.
+    """
 
 
 BOUNDS_HZ = (0.3, 3.0)

@@ -29,6 +29,10 @@ class Repair(NamedTuple):
         Both belong to the stretch. Of a jump: the first and the last frame that begins elsewhere.
     partner : str
         The right marker of a swap, else empty.
+
+    See Also
+    --------
+    repair_labels : makes it.
     """
 
     marker: str

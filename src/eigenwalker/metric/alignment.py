@@ -23,6 +23,10 @@ class Alignment(NamedTuple):
         Radians, counter-clockwise seen from above.
     shifts : array of shape (step, 2) or (frame, other frame, 2)
         Translations along x and y in mm.
+
+    See Also
+    --------
+    Registration : holds it.
     """
 
     angles: np.ndarray

@@ -160,6 +160,10 @@ class Comparison:
         is unknown. The mannequin has no clavicles (`group_points`).
     missing_groups : tuple of str
         Groups with a weight in the metric and no points in the walks.
+
+    See Also
+    --------
+    compare_walks : makes it.
     """
 
     a: PreparedClip

@@ -94,6 +94,10 @@ class PreparedClip:
         One stride on the common clock (`common_clock`); None if the clip does not repeat.
     not_periodic_reason : str
         Why there is no stride; empty if there is one.
+
+    See Also
+    --------
+    prepare : makes it.
     """
 
     clip: xr.DataArray

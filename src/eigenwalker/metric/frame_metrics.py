@@ -50,6 +50,11 @@ class FrameMetric:
         Weight of each point, 0 or more; other points have none. Left out, all are equal. Weights
         are divided by their sum over the points that both clips have.
 
+    See Also
+    --------
+    GroupMetric : A weight for each joint group.
+    PUBLISHED : Metrics by name.
+
     References
     ----------
     Pražák et al. (2010), eqs. 1 to 3 and section 5.

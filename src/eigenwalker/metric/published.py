@@ -23,7 +23,12 @@ from eigenwalker.metric.joint_groups import GROUPS, By
 
 
 class PublishedFit(NamedTuple):
-    """A row of figure 5: difference from the observers, both constants, weights of `GROUPS`."""
+    """A row of figure 5: difference from the observers, both constants, weights of `GROUPS`.
+
+    See Also
+    --------
+    PUBLISHED : Metrics with such weights.
+    """
 
     difference: float
     constant: float

@@ -137,6 +137,10 @@ def figure_maps(pictures: Sequence[MapPicture], *, n_columns: int = 2) -> Figure
     -------
     Figure
 
+    See Also
+    --------
+    motion_maps : Makes what it shows.
+
     References
     ----------
     Pražák et al. (2010), fig. 1 and 6.
@@ -230,6 +234,10 @@ def figure_two_walks(
     Figure
         Seen from the side above, from the front below; the first walk blue, the second red, their
         left limbs paler.
+
+    See Also
+    --------
+    compare_walks : Compares what it shows.
     """
     first, second = (
         check_numbers(each, name, "time", "marker", "axis", missing=True)

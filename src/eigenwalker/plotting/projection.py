@@ -45,6 +45,10 @@ def project(
     ValueError
         If positions have other than three coordinates, or a point lies beside or behind the eye.
 
+    See Also
+    --------
+    observer_axes : The axes of the picture.
+
     References
     ----------
     Troje (2002), Methods, experiment: orthographic, at 0, 30 and 90 degrees.

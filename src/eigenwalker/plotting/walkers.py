@@ -110,6 +110,10 @@ def figure_joints(
     -------
     Figure
 
+    See Also
+    --------
+    figure_walkers : Several walkers side by side.
+
     References
     ----------
     Troje (2002), fig. 1.

@@ -41,7 +41,12 @@ posture has 0.01."""
 
 @dataclass(frozen=True, eq=False)
 class ReferenceWalker:
-    """What walkers are brought into correspondence with."""
+    """What walkers are brought into correspondence with.
+
+    See Also
+    --------
+    correspond : makes it.
+    """
 
     axes: np.ndarray
     average: np.ndarray

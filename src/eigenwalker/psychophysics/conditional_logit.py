@@ -44,6 +44,10 @@ class ChoiceFit:
         Of all choices, in nats; guessing has ``-n_trials * log(6)``.
     n_trials : float
         Trials that count.
+
+    See Also
+    --------
+    fit_choices : makes it.
     """
 
     weights: np.ndarray

@@ -50,6 +50,10 @@ class MetricFit:
     walkers of the pair; ``expected`` and ``expected_unseen`` are those of a fit to choices.
     ``compared`` has for each metric what `compare_metrics` gives, and after ``choices_`` what
     `compare_by_choices` does. ``n_unanswered`` trials had no answer.
+
+    See Also
+    --------
+    fit_to_answers : makes it.
     """
 
     name: str

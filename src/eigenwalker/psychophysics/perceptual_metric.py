@@ -136,7 +136,12 @@ def _counts(sample_weight: ArrayLike, X: np.ndarray) -> np.ndarray:
 
 
 class Weights(NamedTuple):
-    """Weights of the columns, of shape (group,) and per unit of X, and the constant."""
+    """Weights of the columns, of shape (group,) and per unit of X, and the constant.
+
+    See Also
+    --------
+    non_negative_fit : makes it.
+    """
 
     weights: np.ndarray
     constant: float

@@ -21,7 +21,12 @@ _MAX_ROUNDS = 50
 
 
 class Bootstrap(NamedTuple):
-    """Weights (sample, group) and constants (sample,), fitted to resampled observers."""
+    """Weights (sample, group) and constants (sample,), fitted to resampled observers.
+
+    See Also
+    --------
+    bootstrap_weights, bootstrap_choices : make it.
+    """
 
     weights: np.ndarray
     constants: np.ndarray
@@ -141,7 +146,12 @@ def _counts_of_pairs(
 
 
 class Reliability(NamedTuple):
-    """Correlations of halves of the observers, of all, and the ceiling that a fit can reach."""
+    """Correlations of halves of the observers, of all, and the ceiling that a fit can reach.
+
+    See Also
+    --------
+    split_half : makes it.
+    """
 
     halves: float
     whole: float

@@ -25,6 +25,10 @@ class ShapeFit(NamedTuple):
         As of `PerceptualMetric`; ``rss`` is their sum of squared errors.
     tried, tried_rss : array of shape (n_grid,)
         The parameters on the grid, and the sum of squared errors of each.
+
+    See Also
+    --------
+    search_shape : makes it.
     """
 
     parameter: float
@@ -110,6 +114,10 @@ class RandomStarts(NamedTuple):
     """The best weights that descent reached, of shape (group,), and their constant.
 
     ``rss``, of shape (start,), is the sum of squared errors that each start ended at.
+
+    See Also
+    --------
+    fit_from_random_starts : makes it.
     """
 
     weights: np.ndarray

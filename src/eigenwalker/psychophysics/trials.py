@@ -34,6 +34,10 @@ class PairCounts:
     observers : tuple of str
     chosen, shown : array of shape (observer, pair)
         Counts.
+
+    See Also
+    --------
+    count_pairs : makes it.
     """
 
     pairs: pd.MultiIndex

@@ -57,6 +57,11 @@ class Stimulus:
     ------
     ValueError
         If a part is wrong: a number out of range, an unknown transform, dots that are not there.
+
+    See Also
+    --------
+    make_stimulus : makes it.
+    write_stimulus : writes it.
     """
 
     figures: Sequence[Figure]

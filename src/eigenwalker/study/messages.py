@@ -289,6 +289,10 @@ def summarise(files: pd.DataFrame) -> pd.DataFrame:
         One row a measure, such as ``frequency_hz``; columns ``median``, ``least``, ``most``.
         Refused captures are left out.
 
+    See Also
+    --------
+    fit_folder : Makes what it sums up.
+
     Examples
     --------
     >>> files = pd.DataFrame({"rate_hz": [100, 100, 120], "status": "used"})

@@ -57,6 +57,10 @@ class CaptureResult:
         strides, of all markers), ``first_frame``, ``last_frame``.
     capture : DataArray of shape (time, marker, axis)
         As it was read.
+
+    See Also
+    --------
+    process_capture : makes it.
     """
 
     walk: xr.DataArray
@@ -69,7 +73,12 @@ class CaptureResult:
 
 
 class NoWalkError(ValueError):
-    """A capture gives no walker; ``joints`` and ``quality`` are what is known of it."""
+    """A capture gives no walker; ``joints`` and ``quality`` are what is known of it.
+
+    See Also
+    --------
+    process_capture : raises it.
+    """
 
     def __init__(self, message: str, joints: xr.DataArray, quality: Quality) -> None:
         super().__init__(message)

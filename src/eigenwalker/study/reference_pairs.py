@@ -31,6 +31,10 @@ class ReferenceComparison:
     ``by_metric`` are metrics; its columns are the ``distance`` of the two walks; ``by_joints``, the
     same by the 15 joints alone, and ``share_nearer``, the share of pairs of ``n_people`` simulated
     people that differ less: both NaN by angles, and for walks that do not differ.
+
+    See Also
+    --------
+    compare_with_references : makes it.
     """
 
     comparison: Comparison

@@ -35,6 +35,10 @@ class Walks:
     could not be used, ``flagged`` what is wrong with walks that are left out for it. ``vectors``
     are walkers of a population in its feature space, of shape (feature,) each; none of captures.
     ``persons`` are those whose walks they are, where that is known.
+
+    See Also
+    --------
+    walks_of_folder, walks_of_population : make it.
     """
 
     clips: dict[str, PreparedClip]
