@@ -163,7 +163,7 @@ def stimulus(
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
     options = dict(locals())
-    from eigenwalker.cli.provenance import walker_line
+    from eigenwalker.cli.stimulus_provenance import walker_line
     from eigenwalker.datasets.bml import looks_like_bml
     from eigenwalker.plotting.encoding import FORMATS
     from eigenwalker.stimulus.write_stimulus import check_suffix, write_stimulus
@@ -265,7 +265,7 @@ MAX_PEOPLE = 1000
 
 def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulus:
     """The stimulus before any transform."""
-    from eigenwalker.cli.provenance import of_a_walker
+    from eigenwalker.cli.stimulus_provenance import of_a_walker
     from eigenwalker.stimulus.make import make_stimulus
 
     size = options["size"]
@@ -292,7 +292,7 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     """The stimulus of a file with another duration, rate or style; its view stays."""
     from dataclasses import replace
 
-    from eigenwalker.cli.provenance import of_a_file
+    from eigenwalker.cli.stimulus_provenance import of_a_file
     from eigenwalker.stimulus.stimulus import Stimulus
 
     for name in POPULATION_ONLY:
