@@ -6,8 +6,12 @@ import { radians } from "../core/vector";
 
 /** Share of a cell that a walker fills. */
 const FILL = 0.84;
-/** Diameter of a dot relative to the cell, as in Python: it does not tell the size of the walker. */
-const DOT_SHARE = 0.02;
+/**
+ * Diameter of a dot at the scale at which a usual walker fills a cell: it does not go with the walkers
+ * that are shown, and so tells nothing about them.
+ */
+const DOT_MM = 36;
+const USUAL: Extent = { radius: 450, height: 1600 };
 const MIN_DOT_PX = 2;
 /** Least distance from the eye to the middle of the scene in perspective. */
 const MIN_EYE_MM = 3000;
@@ -82,8 +86,11 @@ export function sharedExtent(average: Walker, walkers: readonly Walker[]): Exten
 /** Arrange a number of walkers in rows and columns, as large as the picture allows times `zoom`. */
 export function arrange(count: number, extent: Extent, size: Size, elevationDeg: number, zoom = 1): Arrangement {
   const tilt = Math.abs(Math.sin(radians(elevationDeg)));
-  const across = (2 * extent.radius) / FILL;
-  const above = (extent.height * Math.cos(radians(elevationDeg)) + 2 * extent.radius * tilt) / FILL;
+  const needed = ({ radius, height }: Extent): { across: number; above: number } => ({
+    across: (2 * radius) / FILL,
+    above: (height * Math.cos(radians(elevationDeg)) + 2 * radius * tilt) / FILL,
+  });
+  const { across, above } = needed(extent);
   const scaleOf = (columns: number): number => {
     const rows = Math.ceil(count / columns);
     return Math.min(size.width_px / columns / across, size.height_px / rows / above);
@@ -106,7 +113,7 @@ export function arrange(count: number, extent: Extent, size: Size, elevationDeg:
   }));
   return {
     pxPerMm,
-    dotPx: Math.max(DOT_SHARE * Math.min(width, height), MIN_DOT_PX),
+    dotPx: Math.max(DOT_MM * Math.min(width / needed(USUAL).across, height / needed(USUAL).above), MIN_DOT_PX),
     middleMm: extent.height / 2,
     eyeMm: count === 1 ? MIN_EYE_MM : Math.max(MIN_EYE_MM, (1.5 * zoom * Math.max(size.width_px, size.height_px)) / pxPerMm),
     offsets,
