@@ -205,7 +205,7 @@ ROWS = (
         "dots",
         "blur",
         'make_stimulus(average, duration_s=1.21, rate_hz=25, size_px=(64, 64)).then("blur", '
-        "sd_mm=80)",
+        "sd_usual_mm=80)",
         "--duration 1.21 --size 64x64 --blur 80",
         "One blob that changes its shape; the sex is told at chance (Barclay, Cutting and "
         "Kozlowski, 1978). Small and one stride long, as blobs make large GIFs.",
