@@ -154,6 +154,8 @@ def test_a_changed_design_leaves_sessions_under_way_as_they_are(service: Service
     path.write_text(path.read_text("utf-8").replace("duration_s = 7.0", "duration_s = 6.0"))
     assert begin(service, one)["picture"]["duration_s"] == before["picture"]["duration_s"] == 7.0
     assert begin(service, other)["picture"]["duration_s"] == 6.0
+    path.write_text("this is no design", encoding="utf-8")
+    assert begin(service, one)["picture"]["duration_s"] == 7.0
 
 
 def test_who_withdraws_is_gone_by_the_code_of_the_last_page(service: Service) -> None:

@@ -63,7 +63,12 @@ class Service:
 
     def keep_version(self, *, freeze: bool = False) -> str:
         """Keep the folder's design, texts and stimuli as a version, and return its hash."""
-        state = self.material.state()
+        try:
+            state = self.material.state()
+        except (ValueError, OSError):  # it is being edited: new sessions get what was there
+            if freeze or not self._current[1]:
+                raise
+            return self._current[1]
         if not freeze and self._current[0] == state:
             return self._current[1]
         material = self.material
@@ -141,7 +146,7 @@ class Service:
         begun = [] if observer is None else self._sessions(observer)
         under_way = [each for each in begun if each["outcome"] is None]
         version = under_way[-1]["version"] if under_way else None
-        material = self.version_material(version) if version else self.material
+        material = self.version_material(version or self.keep_version())
         design = material.design
         texts = {name: material.texts(name) for name in design.languages}
         return {
@@ -172,6 +177,10 @@ class Service:
         link = self._link(key)
         if link["kind"] == "lab":
             raise NotAllowed
+        begun = self._sessions(link["observer"]) if link["observer"] else []
+        if begun and begun[-1]["outcome"] is None:
+            self.writer.do(lambda db: store.note_seen(db, begun[-1]["session"]))
+            return self._session_content(begun[-1], hash_of(key))
         version = self.keep_version()
         material = self.version_material(version)
 
