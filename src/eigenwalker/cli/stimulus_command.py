@@ -205,7 +205,7 @@ def stimulus(
     if path.suffix.lower() in (".bvh", ".glb"):
         from eigenwalker.stimulus.animation import animated
 
-        print(animated(made, choices=rig))
+        print(animated(made, choices=rig, closed=path.suffix.lower() == ".glb"))
     print(f"{'Film' if path.suffix.lower() in FORMATS else 'Stimulus'}: {path}")
 
 

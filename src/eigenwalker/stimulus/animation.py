@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -65,6 +66,7 @@ class Animation(NamedTuple):
         return f"{speed}Forward at {self.speed_mm_s:.0f} mm/s. {self.slide}"
 
 
+@lru_cache(maxsize=1)
 def animated(
     stimulus: Stimulus,
     *,
