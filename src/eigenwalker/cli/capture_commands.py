@@ -10,7 +10,16 @@ from typing import Annotated, Any
 import typer
 
 from eigenwalker.cli.option_names import in_options
-from eigenwalker.cli.options import MappingFile, Partial, Rate, Subject, Unit, option
+from eigenwalker.cli.options import (
+    MappingFile,
+    Partial,
+    Rate,
+    RestPose,
+    SkeletonNames,
+    Subject,
+    Unit,
+    option,
+)
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
@@ -67,6 +76,8 @@ def convert(
     partial: Partial = "refuse",
     subject: Subject = None,
     mapping: MappingFile = None,
+    skeleton: SkeletonNames = "plain",
+    rest_pose: RestPose = "t",
 ) -> None:
     """Write a capture in another format."""
     from eigenwalker.io.read import read_mocap
@@ -79,7 +90,8 @@ def convert(
         walk = virtual_markers(walk, joints="full", mapping=mapping)
     elif mapping is not None:
         raise ValueError("--mapping has no effect on markers: add --joints, or write .bvh.")
-    print(f"Written: {write_mocap(walk, output)}")
+    written = write_mocap(walk, output, skeleton=skeleton, rest_pose=rest_pose)
+    print(f"Written: {written}")
 
 
 def _write_mapping(capture: Path, output: Path, reading: dict[str, Any]) -> None:

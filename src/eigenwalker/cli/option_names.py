@@ -29,6 +29,8 @@ ARGUMENTS = {
     "part": "--part {value}",
     "rate_hz": "--rate {value}",
     "up": "--up {value}",
+    "skeleton": "--skeleton {value}",
+    "rest_pose": "--rest-pose {value}",
     "size_px": "--size {value}",
     "unit": "--unit {value}",
 }

@@ -64,6 +64,10 @@ TraitSteps = Annotated[
 StartFrom = Annotated[
     str, option("'average', the number of a walker, or a capture file.", "--from")
 ]
+SkeletonNames = Annotated[
+    str, option("Bones of .bvh and .glb: plain, mixamo, unreal or unity.", "--skeleton")
+]
+RestPose = Annotated[str, option("Its arms at rest: t or a.")]
 View = Annotated[float, option("Azimuth in degrees: 0 frontal, 90 profile.")]
 Elevation = Annotated[float, option("Degrees above the horizon.")]
 OpenPage = Annotated[bool, option("Open the page if there is a screen.", "--open/--no-open")]

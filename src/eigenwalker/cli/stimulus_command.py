@@ -22,7 +22,9 @@ import typer
 from eigenwalker.cli.options import (
     Elevation,
     MappingFile,
+    RestPose,
     Seed,
+    SkeletonNames,
     StartFrom,
     TraitSteps,
     View,
@@ -139,10 +141,8 @@ def stimulus(
     dot_mm: Annotated[float | None, option("Diameter of dots, mm of the screen.")] = None,
     distance: Annotated[float, option("From the eye to the screen, mm.")] = 570.0,
     px_per_cm: Annotated[float, option("Pixels a centimetre of the screen.")] = 38.0,
-    skeleton: Annotated[
-        str, option("Bones of .bvh and .glb: plain, mixamo, unreal or unity.")
-    ] = "plain",
-    rest_pose: Annotated[str, option("Its arms at rest: t or a.")] = "t",
+    skeleton: SkeletonNames = "plain",
+    rest_pose: RestPose = "t",
     in_place: Annotated[
         bool, option("The rig walks on the spot; else it travels.", "--in-place")
     ] = False,
