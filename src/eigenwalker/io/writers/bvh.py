@@ -32,7 +32,8 @@ def write_bvh(
 ) -> None:
     """Write trajectories as a BVH file, which names neither its unit nor its upward axis."""
     places = walk.values @ turn_upright(up).T * MILLIMETRES[unit]
-    rig = fit_rig(walk.copy(data=places), skeleton, rest_pose)
+    rigid = constant_bones(walk.copy(data=places).assign_attrs(units="mm"))
+    rig = fit_rig(rigid, skeleton, rest_pose)
     write_rig(rig, path, rate_hz=sampling_rate(walk), unit=unit, up=up)
 
 
