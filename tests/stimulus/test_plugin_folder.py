@@ -87,6 +87,8 @@ def test_the_command_takes_files_or_makes_an_example(walker, tmp_path, monkeypat
         "plugin", "tall <_script>.json", "three/tall <_script>.json", "-o", "f"
     )
     assert "Several stimuli are called" in complaint
+    assert "no such stimulus files: none.json" in run_command("plugin", "none.json", "-o", "f")[2]
+    assert "expected a folder" in run_command("plugin", "-o", "tall <_script>.json")[2]
 
 
 def test_the_page_is_answered_from_the_disk_and_saves_a_table(browser, walker, tmp_path):

@@ -29,6 +29,8 @@ def plugin(
     """
     from eigenwalker.stimulus.plugin_folder import PAGE, write_plugin
 
+    if output.exists() and not output.is_dir():
+        raise ValueError(f"-o {output}: expected a folder to write into; this is a file.")
     shown = _read(stimuli) if stimuli else _example()
     keep = write_plugin(shown, output, force=force)
     print(f"{len(shown)} stimuli: {', '.join(shown)}")
@@ -40,6 +42,8 @@ def plugin(
 def _read(paths: list[Path]) -> dict[str, Stimulus]:
     from eigenwalker.stimulus.stimulus import Stimulus
 
+    if missing := [str(path) for path in paths if not path.is_file()]:
+        raise ValueError(f"There are no such stimulus files: {', '.join(missing)}.")
     names = [path.stem for path in paths]
     if twice := sorted({name for name in names if names.count(name) > 1}):
         raise ValueError(
