@@ -98,9 +98,11 @@ function jitteringScreen(late: (frame: number) => boolean = () => false): void {
 
 it("shows as many whole frames as fit best, whatever the clock's jitter", async () => {
   jitteringScreen();
+  vi.resetModules(); // it has seen no other screen
+  const { default: type } = await import("../plugin-walker/src/index");
   const jsPsych = initJsPsych();
-  const trial = { type: WalkerPlugin, stimulus, choices: "NO_KEYS", trial_duration: 240 };
-  const shown = { 200: 12, 192: 12, 100: 6, 1: 1 };
+  const trial = { type, stimulus, choices: "NO_KEYS", trial_duration: 120 };
+  const shown = { 100: 6, 94: 6, 50: 3, 1: 1 };
   const durations = Object.keys(shown).map(Number);
   await jsPsych.run(Array.from({ length: 60 }, (_, i) => ({ ...trial, stimulus_duration: durations[i % 4] })));
   jsPsych.data.get().values().forEach((data: Record<string, any>, i: number) => {
