@@ -101,8 +101,6 @@ def _write_mapping(capture: Path, output: Path, reading: dict[str, Any]) -> None
 
     if output.suffix.lower() != ".toml":
         raise ValueError(f"--write-mapping {output}: a mapping is a .toml file.")
-    if output.exists():
-        raise ValueError(f"{output} is there already; name another file, or remove it first.")
     markers = [str(name) for name in read_mocap(capture, **reading).marker.values]
     with atomic_write(output) as unfinished:
         unfinished.write_text(mapping_to_begin_with(markers, capture.name), encoding="utf-8")

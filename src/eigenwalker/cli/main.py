@@ -116,7 +116,9 @@ def completed_commands() -> Any:
 
 
 def _command_object(name: str) -> Any:
-    return getattr(import_module(f"eigenwalker.cli.{COMMANDS[name][0]}"), name)
+    from eigenwalker.cli.outputs import guarded
+
+    return guarded(getattr(import_module(f"eigenwalker.cli.{COMMANDS[name][0]}"), name), name)
 
 
 def load_command(name: str) -> Any:

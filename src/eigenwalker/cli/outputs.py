@@ -1,0 +1,197 @@
+"""What commands write: never over an input, nor over a file that they did not make.
+
+A file is known as made by a command by its line in ``.eigenwalker`` in its folder: the command, and
+size and time of the file as the command left it. One that was changed since counts as somebody's.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from itertools import islice
+from pathlib import Path
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from eigenwalker.cli.options import option
+
+RECORD = ".eigenwalker"
+"""File in a folder that says which files of it were made by which command."""
+OUTPUTS = ("output", "table", "captures", "write_mapping")
+"""Parameters of commands that name what is written."""
+DEFAULTS = {"stimulus": "stim.json", "synthesize": "walker.mp4"}
+"""Outputs of commands that decide them by how they are called."""
+SAME = {"synthesize": "stimulus"}
+"""Commands that are another by a second name."""
+NOT_GUARDED = ("data", "plan", "run", "new")
+"""Commands whose folders grow by design, and are checked by themselves."""
+MAX_BYTES = 10_000_000
+MAX_NAMED = 3
+MAX_FILES = 100_000
+"""More in a folder are not looked at one by one."""
+
+_Made = dict[str, list[Any]]
+
+
+def guarded(command: Any, name: str) -> Any:
+    """Return a command that refuses outputs that are inputs or somebody's.
+
+    It gets the option ``--force``, which replaces them all the same. `command` is a function, or a
+    group of such.
+    """
+    if name in NOT_GUARDED:
+        return command
+    if isinstance(command, typer.Typer):
+        for each in command.registered_commands:
+            function = each.callback
+            if function is not None:
+                below = each.name or function.__name__.rstrip("_").replace("_", "-")
+                each.callback = guarded(function, below)
+        return command
+    parameters = inspect.signature(command).parameters
+    if not set(OUTPUTS) & set(parameters) or hasattr(command, "is_guarded"):
+        return command
+    has_force = "force" in parameters
+
+    @functools.wraps(command)
+    def checked(*args: Any, **values: Any) -> Any:
+        force = values["force"] if has_force else values.pop("force", False)
+        if name in DEFAULTS and values.get("output") is None:
+            values["output"] = Path(DEFAULTS[name])
+        outputs = [Path(values[each]) for each in OUTPUTS if values.get(each) is not None]
+        given = (value for key, value in values.items() if key not in OUTPUTS)
+        inputs = [path for value in given for path in _paths(value)]
+        made_by = SAME.get(name, name)
+        if len({os.path.realpath(output) for output in outputs}) < len(outputs):
+            raise ValueError(f"{outputs[0]} is named for two outputs; name one file for each.")
+        for output in outputs:
+            _check_name(output, name)
+            if not force:
+                _check_free(output, inputs, made_by)
+        before = {output: _state(output) for output in outputs}
+        try:
+            return command(*args, **values)
+        finally:
+            for output in outputs:
+                with suppress(OSError):  # a folder where nothing else can be written either
+                    _record(output, before[output], made_by)
+
+    hints = get_type_hints(command, include_extras=True)
+    if not has_force:
+        hints["force"] = Annotated[bool, option("Replace what is there, also an input.", "--force")]
+    asked = [each.replace(annotation=hints[key]) for key, each in parameters.items()]
+    if not has_force:
+        kind = inspect.Parameter.KEYWORD_ONLY
+        force = inspect.Parameter("force", kind, default=False, annotation=hints["force"])
+        asked.append(force)
+    wrapper: Any = checked
+    wrapper.__signature__ = inspect.Signature(asked)
+    wrapper.__annotations__ = hints
+    wrapper.is_guarded = True
+    return wrapper
+
+
+def _paths(value: object) -> Iterator[Path]:
+    """Return the files and folders that are there among the values of an option."""
+    if isinstance(value, list | tuple):
+        for each in value:
+            yield from _paths(each)
+    elif isinstance(value, str | Path) and 0 < len(str(value)) < 4096:
+        with suppress(OSError, ValueError):
+            if Path(value).exists():
+                yield Path(value)
+
+
+def _check_name(output: Path, name: str) -> None:
+    """Refuse names that are no file or folder of their own."""
+    makes_stimuli = name in DEFAULTS
+    what = "a file or a folder of its own"
+    if makes_stimuli:
+        from eigenwalker.stimulus.write_stimulus import SUFFIXES
+
+        what = f"a file that ends in {', '.join(filter(None, SUFFIXES))}"
+    if output in (Path(), Path("..")) or str(output) in ("/", "~"):
+        raise ValueError(f"-o {str(output)!r} names no file to write; name {what}.")
+    with_slash = any(
+        word.endswith(("/", os.sep)) and Path(word.rpartition("=")[2]) == output
+        for word in sys.argv
+    )
+    if makes_stimuli and not (output.suffix or output.is_dir() or with_slash):
+        raise ValueError(
+            f"-o {output} has no suffix; name {what}. For a folder of pictures, one a frame, write "
+            f"{output}{os.sep}"
+        )
+
+
+def _check_free(output: Path, inputs: list[Path], made_by: str) -> None:
+    """Refuse an output that is an input, or that this kind of command did not make."""
+    if not output.exists():
+        return
+    for path in inputs:
+        if path.is_file() and os.path.samefile(path, output):
+            raise ValueError(
+                f"{output} is read by this command, and would be replaced; name another file to "
+                "write, or give --force to replace it."
+            )
+    made = _made(output if output.is_dir() else Path(os.path.realpath(output)).parent)
+    strange = [
+        name for name, state in _state(output).items() if made.get(name) != [made_by, *state]
+    ]
+    if not strange:
+        return
+    if output.is_dir():
+        more = f" and {len(strange) - MAX_NAMED} more" if len(strange) > MAX_NAMED else ""
+        raise ValueError(
+            f"{output} holds files that eigenwalker {made_by} did not make, or that were changed "
+            f"since: {', '.join(sorted(strange)[:MAX_NAMED])}{more}. Name an empty or a new "
+            "folder, or give --force to write into it."
+        )
+    raise ValueError(
+        f"{output} is there, and was not made by eigenwalker {made_by}, or was changed since; name "
+        "another file, or give --force to replace it."
+    )
+
+
+def _state(output: Path) -> dict[str, list[int]]:
+    """Return size and time of an output, or of the files in one that is a folder, by name."""
+    if not output.is_dir():
+        files = {Path(os.path.realpath(output)).name: output} if output.exists() else {}
+    else:
+        below = islice((path for path in output.rglob("*") if path.is_file()), MAX_FILES)
+        files = {path.relative_to(output).as_posix(): path for path in below}
+    stats = {name: path.stat() for name, path in files.items() if not _is_hidden(name)}
+    return {name: [stat.st_size, stat.st_mtime_ns] for name, stat in stats.items()}
+
+
+def _is_hidden(name: str) -> bool:
+    return any(part.startswith(".") for part in Path(name).parts)
+
+
+def _made(folder: Path) -> _Made:
+    """Return which files of a folder were made by which command, as its record says."""
+    try:
+        with (folder / RECORD).open("rb") as file:
+            entries = json.loads(file.read(MAX_BYTES))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return entries if isinstance(entries, dict) else {}
+
+
+def _record(output: Path, before: Mapping[str, list[int]], made_by: str) -> None:
+    """Keep which files of an output the command made or replaced."""
+    new = {name: state for name, state in _state(output).items() if before.get(name) != state}
+    if not new:
+        return
+    folder = output if output.is_dir() else Path(os.path.realpath(output)).parent
+    made = {name: entry for name, entry in _made(folder).items() if (folder / name).exists()}
+    made |= {name: [made_by, *state] for name, state in new.items()}
+    from eigenwalker.core.atomic_write import atomic_write
+
+    with atomic_write(folder / RECORD) as unfinished:
+        unfinished.write_text(json.dumps(made, indent=0, sort_keys=True), encoding="utf-8")

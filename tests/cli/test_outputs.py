@@ -1,0 +1,140 @@
+"""No command replaces an input, or a file that it did not make."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from eigenwalker.cli.main import COMMANDS, load_command, main
+from eigenwalker.cli.outputs import NOT_GUARDED, OUTPUTS, guarded
+
+
+def write_copy(capture: Path, output: Path, text: str = "made") -> None:
+    """Stand for a command that reads a file and writes a file."""
+    output.write_text(text)
+
+
+def write_report(folder: Path | None = None, output: Path = Path("report")) -> None:
+    """Stand for a command that writes a folder."""
+    output.mkdir(exist_ok=True)
+    (output / "index.html").write_text("made")
+
+
+@pytest.fixture
+def copy():
+    return guarded(write_copy, "convert")
+
+
+@pytest.fixture
+def source(tmp_path, monkeypatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("a.c3d").write_text("raw")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["a.c3d", "./a.c3d", "sub/../a.c3d", "soft.c3d", "hard.c3d"])
+def test_an_input_is_not_replaced_by_any_spelling(source, copy, name):
+    Path("sub").mkdir()
+    os.symlink("a.c3d", "soft.c3d")
+    os.link("a.c3d", "hard.c3d")
+    with pytest.raises(ValueError, match=r"is read by this command.*--force"):
+        copy(capture=Path("a.c3d"), output=Path(name))
+    assert Path("a.c3d").read_text() == "raw"
+    copy(capture=Path("a.c3d"), output=Path(name), force=True)
+    assert Path("a.c3d").read_text() == "made"
+
+
+def test_an_output_is_replaced_by_the_command_that_made_it_alone(source, copy):
+    mine = Path("mine.trc")
+    mine.write_text("by hand")
+    with pytest.raises(ValueError, match=r"not made by eigenwalker convert"):
+        copy(capture=Path("a.c3d"), output=mine)
+    for text in ("first", "second"):
+        copy(capture=Path("a.c3d"), output=Path("b.trc"), text=text)
+        assert Path("b.trc").read_text() == text
+    with pytest.raises(ValueError, match=r"not made by eigenwalker fit"):
+        guarded(write_copy, "fit")(capture=Path("a.c3d"), output=Path("b.trc"))
+    Path("b.trc").write_text("edited by hand")
+    with pytest.raises(ValueError, match=r"changed since"):
+        copy(capture=Path("a.c3d"), output=Path("b.trc"))
+    copy(capture=Path("a.c3d"), output=Path("b.trc"), force=True)
+    copy(capture=Path("a.c3d"), output=Path("b.trc"))
+
+
+def test_a_folder_that_holds_other_files_is_not_written_into(source):
+    report = guarded(write_report, "classify")
+    report(output=Path("new"))
+    report(output=Path("new"))
+    Path("new/notes.txt").write_text("mine")
+    with pytest.raises(ValueError, match=r"did not make.*notes.txt"):
+        report(output=Path("new"))
+    report(output=Path("new"), force=True)
+    assert Path("new/notes.txt").read_text() == "mine"
+
+
+def test_a_record_that_is_damaged_makes_nothing_ones_own(source, copy):
+    copy(capture=Path("a.c3d"), output=Path("b.trc"))
+    for content in ("{", "[]", '{"b.trc": 3}', "[" * 100_000):
+        Path(".eigenwalker").write_text(content)
+        with pytest.raises(ValueError, match=r"not made by"):
+            copy(capture=Path("a.c3d"), output=Path("b.trc"))
+
+
+def _commands():
+    for name in COMMANDS:
+        command = load_command(name)
+        yield from getattr(command, "commands", {name: command}).items()
+
+
+def test_every_command_that_writes_is_guarded():
+    writing = {
+        name: {parameter.name for parameter in command.params}
+        for name, command in _commands()
+        if {parameter.name for parameter in command.params} & set(OUTPUTS)
+    }
+    assert {"convert", "fit", "simulate", "classify", "compare", "demo", "stimulus"} <= set(writing)
+    assert {name for name, has in writing.items() if "force" not in has} <= {*NOT_GUARDED, "fetch"}
+    typed = {option for _, command in _commands() for each in command.params for option in each.opts
+             if each.name not in OUTPUTS and each.name != "force"}  # fmt: skip
+    assert not typed & {"-o", "--output"}
+
+
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        (["convert", "{c}", "{c}"], "is read by this command"),
+        (["fit", "{folder}", "-o", "{folder}/x.nc", "--traits", "{t}", "--table", "{t}"],
+         "is read"),
+        (["stimulus", "-o", "stim"], r"has no suffix; name a file that ends in .*\.json"),
+        (["stimulus", "-o", ""], r"names no file to write; name a file that ends in .*\.json"),
+        (["stimulus", "-o", "."], r"names no file to write"),
+        (["stimulus", "-o", "{t}"], "not made by eigenwalker stimulus"),
+        (["synthesize", "-o", "{t}"], "not made by eigenwalker stimulus"),
+        (["simulate", "-o", "{c}"], "not made by eigenwalker simulate"),
+        (["simulate", "-o", "{folder}/x.nc", "--captures", "{folder}"], "holds files"),
+        (["classify", "-o", "{folder}"], "holds files"),
+        (["demo", "-o", "{folder}", "--no-open"], "holds files"),
+        (["compare", "{c}", "{c}", "-o", "{folder}"], "holds files"),
+        (["info", "{c}", "--write-mapping", "{t}"], "not made by eigenwalker info"),
+    ],
+)  # fmt: skip
+def test_nothing_is_lost(tmp_path, monkeypatch, capsys, command, said):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    capture, traits = folder / "a.c3d", folder / "t.csv"
+    capture.write_bytes(b"raw")
+    traits.write_text("file,sex\na.c3d,f\n")
+    places = {"c": capture, "t": traits, "folder": folder}
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    words = [word.format(**places) for word in command]
+    monkeypatch.setattr("sys.argv", ["eigenwalker", *words])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert re.search(said, capsys.readouterr().err.replace("\n", " "))
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+    assert list(tmp_path.iterdir()) == [folder]
