@@ -23,8 +23,10 @@ from eigenwalker.cli.options import option
 
 RECORD = ".eigenwalker"
 """File in a folder that says which files of it were made by which command."""
-OUTPUTS = ("output", "table", "captures", "write_mapping")
-"""Parameters of commands that name what is written."""
+OUTPUT = "output"
+"""Parameter of commands that names what is written."""
+MORE_OUTPUTS = {"fit": "table", "simulate": "captures", "info": "write_mapping"}
+"""Other such parameters, by the command."""
 DEFAULTS = {"stimulus": "stim.json", "synthesize": "walker.mp4"}
 """Outputs of commands that decide them by how they are called."""
 SAME = {"synthesize": "stimulus"}
@@ -55,7 +57,8 @@ def guarded(command: Any, name: str) -> Any:
                 each.callback = guarded(function, below)
         return command
     parameters = inspect.signature(command).parameters
-    if not set(OUTPUTS) & set(parameters) or hasattr(command, "is_guarded"):
+    written = {OUTPUT, MORE_OUTPUTS.get(name, OUTPUT)} & set(parameters)
+    if not written or hasattr(command, "is_guarded"):
         return command
     has_force = "force" in parameters
 
@@ -64,8 +67,8 @@ def guarded(command: Any, name: str) -> Any:
         force = values["force"] if has_force else values.pop("force", False)
         if name in DEFAULTS and values.get("output") is None:
             values["output"] = Path(DEFAULTS[name])
-        outputs = [Path(values[each]) for each in OUTPUTS if values.get(each) is not None]
-        given = (value for key, value in values.items() if key not in OUTPUTS)
+        outputs = [Path(values[each]) for each in written if values.get(each) is not None]
+        given = (value for key, value in values.items() if key not in written)
         inputs = [path for value in given for path in _paths(value)]
         made_by = SAME.get(name, name)
         if len({os.path.realpath(output) for output in outputs}) < len(outputs):
