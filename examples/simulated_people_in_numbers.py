@@ -110,7 +110,7 @@ def beside_the_norms(n_each):
             ("range of the shoulder", "30"): np.ptp(stride["left_shoulder_flexion_deg"].values),
             ("range of the elbow", "29.7 (10.2)"): np.ptp(stride["left_elbow_flexion_deg"].values),
             ("pelvis up and down, mm", "27 to 48, SD 7"): np.ptp(pelvis[:, 2]),
-            ("pelvis to the side, mm", "39 to 70"): np.ptp(pelvis[:, 1]),
+            ("pelvis to the side, mm", "39 to 70 over ground"): np.ptp(pelvis[:, 1]),
             ("pelvis fore and aft, mm", ""): np.ptp(pelvis[:, 0]),
             ("head to the side, mm", "59 (17)"): np.ptp(head[:, 1]),
         }
@@ -218,13 +218,19 @@ def _seen(walker):
     for joint in ("shoulder", "elbow", "hip"):
         left, right = (walk.sel(marker=f"{side}_{joint}", axis="y") for side in ("left", "right"))
         across[joint], middle[joint] = float((left - right).mean()), (left + right).values / 2
-    against = np.exp(-2j * np.pi * np.arange(200) / 200) @ (middle["hip"] - middle["shoulder"])
+    wave = np.exp(-2j * np.pi * np.arange(200) / 200)
+    stride = wave @ walk.sel(marker="left_ankle", axis="x").values
+    phases = {
+        name: np.degrees(np.angle(wave @ path / stride))
+        for name, path in (("own", middle["hip"]), ("less", middle["hip"] - middle["shoulder"]))
+    }
     return {
         "shoulders over hips": f"{across['shoulder'] / across['hip']:.2f}",
         "elbows further apart than shoulders, mm": f"{across['elbow'] - across['shoulder']:.0f}",
         "shoulders to the side, mm": f"{np.ptp(middle['shoulder']):.0f}",
         "hips to the side, mm": f"{np.ptp(middle['hip']):.0f}",
-        "hips against shoulders, phase in degrees": f"{np.degrees(np.angle(against)):.0f}",
+        "hips to the side, phase in the stride, degrees": f"{phases['own']:.0f}",
+        "hips less shoulders, the same": f"{phases['less']:.0f}",
         "pelvis up and down, mm": f"{np.ptp(walk.sel(marker='pelvis', axis='z').values):.0f}",
         "frequency, Hz": f"{walker.frequency_hz:.3f}",
     }

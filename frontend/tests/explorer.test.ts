@@ -164,7 +164,7 @@ it("trouble stays until it is sent away", () => {
 
 describe("a file that is opened", () => {
   const model = goldenModel();
-  const held = { model, population: "" };
+  const held = { model, other: null, population: "" };
   const file = (content: unknown, name = "a.json"): File =>
     new File([typeof content === "string" ? content : JSON.stringify(content)], name);
 

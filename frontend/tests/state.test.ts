@@ -36,6 +36,7 @@ function drawnState(seed: number): State {
     part: one(Object.keys(model.traits[0]!.steps.discriminant)),
     from: one(["average", "own", 0, 5]),
     bias: u() < 0.5 ? null : { trait: "sex", steps: tidy(between(RANGES.bias)) },
+    keepSize: u() < 0.5,
     strengths: model.harmonics.map(() => tidy(between(RANGES.strength))),
     eigenwalkers: model.eigenwalkers.map(() => tidy(between(RANGES.eigenwalker))),
     tempo: tidy(between(RANGES.tempo)),

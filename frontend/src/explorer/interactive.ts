@@ -7,7 +7,7 @@ import type { State } from "../model/state";
 import { button, find, messageOf } from "../page/elements";
 import { panels } from "./panels";
 import {
-  bundleName, bundles, modelSourceOf, openFiles, takeFiles,
+  bundleName, bundles, modelSourceOf, openFiles, takeFiles, withSize,
   type DroppedFiles, type ModelSource, type Opened,
 } from "./openFile";
 import { Notices } from "./notices";
@@ -85,6 +85,14 @@ function addressBar(): View {
   };
 }
 
+/** Begins again with the same walkers, once they are to have their size or to lose it. */
+const sizes = (source: ModelSource): View => ({
+  show({ state, model, own }) {
+    if (!source.other || state.keepSize === model.size_kept) return;
+    queueMicrotask(() => begin(source, addressOf(state, model), own));
+  },
+});
+
 /** The state in an address; without the visitor's own capture, and paused if motion is to be reduced. */
 function stateFor(address: string, { model }: ModelSource, own: OwnWalker | null): State {
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -95,14 +103,16 @@ function stateFor(address: string, { model }: ModelSource, own: OwnWalker | null
 }
 
 /** Show a model in the state of an address. */
-function begin(source: ModelSource, address: string, own: OwnWalker | null = null): void {
+function begin(from: ModelSource, address: string, own: OwnWalker | null = null): void {
   session?.store.end();
   session?.views.forEach((view) => view.remove?.());
-  const store = new Store(source.model, stateFor(address, source, own), own);
+  const source = withSize(from, stateOf(address, from.model).keepSize);
+  const keepSize = source.model.size_kept;
+  const store = new Store(source.model, { ...stateFor(address, source, own), keepSize }, own);
   const main = mainSlider(store);
   find("#main-slider", HTMLDivElement).replaceChildren(main.element);
   const tools = toolbar(store, chooseFiles);
-  const views = [viewerPanel(store), main, tools, panels(store, notices, chooseFiles), addressBar()];
+  const views = [viewerPanel(store), main, tools, panels(store, notices, chooseFiles), addressBar(), sizes(source)];
   session = { source, store, views };
   store.listen((now) => views.forEach((view) => view.show(now)));
   store.publish();

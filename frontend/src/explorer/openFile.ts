@@ -17,6 +17,8 @@ export type Opened = { readonly messages: readonly string[] } & (
 /** A model, and the name of its population on the server; empty if the server does not hold it. */
 export interface ModelSource {
   readonly model: Model;
+  /** The same walkers with their size, if the model's are without it, or the other way round. */
+  readonly other: Model | null;
   readonly population: string;
 }
 
@@ -30,8 +32,16 @@ const COMPANION = /\.asf$/i;
 
 export function modelSourceOf(content: unknown): ModelSource {
   const population = content && typeof content === "object" && "population" in content ? content.population : "";
-  return { model: readModel(content), population: typeof population === "string" ? population : "" };
+  const named = { population: typeof population === "string" ? population : "" };
+  const model = readModel(content);
+  if (!content || typeof content !== "object" || !("other_size" in content)) return { model, other: null, ...named };
+  const keepSize = model.size_kept;
+  return { model: { ...model, keepSize }, other: { ...readModel(content.other_size), keepSize }, ...named };
 }
+
+/** A source whose walkers have their size, or not; as it is where that cannot be chosen. */
+export const withSize = (source: ModelSource, keep: boolean): ModelSource =>
+  source.other && source.model.size_kept !== keep ? { ...source, model: source.other, other: source.model } : source;
 
 /** Files in groups that are opened one after the other. */
 export function bundles(files: readonly File[]): File[][] {
@@ -62,8 +72,9 @@ export async function openFiles(files: readonly File[], source: ModelSource | nu
   const { model, messages } = await readPopulation(files);
   const opened = modelSourceOf(model);
   if (isPopulation) return { kind: "model", source: opened, messages };
-  const named = { ...opened.model, captures: bundleName(captures, folder) };
-  return { kind: "model", source: { ...opened, model: named }, messages: [...fieldsSaid(), ...messages] };
+  const name = { captures: bundleName(captures, folder) };
+  const named = { model: { ...opened.model, ...name }, other: opened.other && { ...opened.other, ...name } };
+  return { kind: "model", source: { ...opened, ...named }, messages: [...fieldsSaid(), ...messages] };
 }
 
 async function openCapture(files: readonly File[], source: ModelSource | null): Promise<Opened> {
@@ -83,7 +94,7 @@ async function openText(file: File, model: Model | null): Promise<Opened> {
   const format = content && typeof content === "object" && "format" in content ? content.format : null;
   try {
     if (format === "eigenwalker model") {
-      return { kind: "model", source: { model: readModel(content), population: "" }, messages: [] };
+      return { kind: "model", source: { ...modelSourceOf(content), population: "" }, messages: [] };
     }
     if (format === "eigenwalker stimulus" && model) {
       return { kind: "own", own: ownWalkerOf(model, readStimulus(content), name), messages: [] };

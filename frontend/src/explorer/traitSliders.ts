@@ -11,7 +11,7 @@ import type { Kind, Model } from "../model/model";
 import { clamped, RANGES, type State } from "../model/state";
 import { button, draw, make, signed } from "../page/elements";
 import { rangeOf, type Axis } from "./axis";
-import { choice, pick, slider, type Option, type Slider } from "./controls";
+import { choice, pick, slider, toggle, type Option, type Slider } from "./controls";
 import { bound, group, note } from "./parts";
 import type { Part, Store } from "./store";
 
@@ -151,6 +151,7 @@ const PARTS: Readonly<Record<string, Omit<Option<string>, "value">>> = {
   frequency: { label: "Frequency" },
   phases: { label: "Phases" },
 };
+const SIZE = "Otherwise all are as large as the average walker: size is divided out, as in Troje (2002)";
 const COMMON = ["all", "structure", "dynamics"];
 
 const KINDS: readonly Option<Kind>[] = [
@@ -175,7 +176,9 @@ export function classifierControls(store: Store): Part {
         ? "The direction that tells people apart best: one step is one standard deviation of the walkers."
         : "From the mean of one class to the mean of the other: shows best what goes along with a trait.";
   };
+  const size = toggle("Keep people's size", (keepSize) => store.change({ keepSize }), SIZE);
   return group({},
+    ...(store.model.keepSize === undefined ? [] : [bound(size, (state) => state.keepSize)]),
     bound(parts, (state) => state.part),
     ...(rest!.length > 0 ? [bound(single, ({ part }) => (COMMON.includes(part) ? "" : part))] : []),
     bound(kind, (state) => state.kind),

@@ -52,6 +52,7 @@ const CODES: { readonly [Part in CodedPart]: Code<State[Part]> } = {
     write: (bias) => (bias ? pairs([[bias.trait, bias.steps]]) : ""),
     read: readBias,
   },
+  keepSize: flag("size"),
   strengths: list("s", RANGES.strength, (model) => model.harmonics.length, 1),
   eigenwalkers: list("e", RANGES.eigenwalker, (model) => model.eigenwalkers.length, 0),
   tempo: number("v", RANGES.tempo),

@@ -44,6 +44,8 @@ export const HEAD = record({
   source: text,
   simulated: flag,
   provenance: map(text),
+  /** Whether the walkers have their own size, or that of the average walker. */
+  size_kept: { ...flag, default: true } as Schema<boolean>,
   n_walkers: integer(1, MAX_POPULATION),
   /** Walkers of doubtful captures, which are left out. */
   n_flagged: integer(0, MAX_POPULATION),
@@ -122,8 +124,11 @@ type Part<F extends (...values: never[]) => Schema> = Checked<ReturnType<F>>;
 
 type Content = Part<typeof bodySchema> & Part<typeof featureSchema> & Part<typeof cloudSchema>;
 
-/** `captures` names the captures that the server has just made into this population. */
-export type Model = Checked<typeof HEAD> & Content & { readonly captures?: string };
+/**
+ * `captures` names the captures that the server has just made into this population; `keepSize` is the initial choice
+ * where the same walkers are there with their size and without.
+ */
+export type Model = Checked<typeof HEAD> & Content & { readonly captures?: string; readonly keepSize?: boolean };
 export type Trait = Model["traits"][number];
 export type KnownWalker = Model["walkers"][number];
 

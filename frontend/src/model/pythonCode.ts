@@ -12,7 +12,7 @@ export function pythonCode(model: Model, state: State, own: OwnWalker | null = n
     "import eigenwalker as ew",
     ...(start.includes("np.") ? ["import numpy as np"] : []),
     "",
-    `people = ew.load_population(${model.source === "" ? "" : quoted(model.source)})${sourceComment(model)}`,
+    `people = ew.load_population(${model.source === "" ? "" : quoted(model.source)})${size(model)}${sourceComment(model)}`,
     start,
     ...Object.entries(state.traits).flatMap(([name, steps]) => traitLines(model, state, name, steps)),
     ...biasLines(model, state),
@@ -22,6 +22,8 @@ export function pythonCode(model: Model, state: State, own: OwnWalker | null = n
     "walker = people.walker(vector)",
   ].join("\n");
 }
+
+const size = ({ size_kept }: Model): string => (size_kept ? "" : ".size_normalised()");
 
 /** How to make the file of the population, if it does not exist yet. */
 const sourceComment = ({ captures }: Model): string =>

@@ -25,6 +25,8 @@ export interface State {
   /** The walker that the changes start from: the average, the visitor's own, or a number among the model's. */
   readonly from: "average" | "own" | number;
   readonly bias: Bias | null;
+  /** Whether walkers have their own size. */
+  readonly keepSize: boolean;
   /** Factors of p1, p2 ...: stride, sway, hop, bounce. */
   readonly strengths: readonly number[];
   /** Standard deviations along each eigenwalker. */
@@ -104,6 +106,7 @@ export function initialState(model: Model): State {
     part: "all",
     from: "average",
     bias: null,
+    keepSize: model.keepSize ?? model.size_kept,
     strengths: model.harmonics.map(() => 1),
     eigenwalkers: model.eigenwalkers.map(() => 0),
     tempo: 1,

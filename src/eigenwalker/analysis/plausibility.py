@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.analysis.span import Span, span_of
 from eigenwalker.core.arguments import check_numbers
 from eigenwalker.population.population import Population, check_population
+
+if TYPE_CHECKING:
+    from eigenwalker.analysis.walker_space import WalkerSpace
 
 LIMBS = {
     "upper arms": ("shoulder", "elbow"),
@@ -75,10 +79,11 @@ def plausibility(population: Population, vector: np.ndarray) -> Plausibility:
     """
     check_population(population)
     walkers = population.X[population.in_average]
-    space = WalkerSpace().fit(walkers)
+    span = span_of(walkers)
+    vector = check_numbers(vector, "vector", "feature")
     own, average = (_limb_lengths(population, each) for each in (vector, population.average))
     return Plausibility(
-        position=position_in_space(space, vector, walkers=walkers),
+        position=_position(span, float(span.variances.sum()), vector, walkers),
         limb_change=own.mean() / average.mean() - 1,
         limb_stretch=own.std() / own.mean(),
     )
@@ -173,16 +178,22 @@ def position_in_space(
             f"A walker in this space is a vector of {len(space.average_walker_)} features; got an "
             f"array of shape {vector.shape}."
         )
-    scores = space.transform(vector[None])
-    z_scores = scores[0] / np.sqrt(space.explained_variance_)
-    average, percentile = space.average_walker_, float("nan")
-    squared = _squared(space, vector[None] - average)[0]
-    if walkers is not None:
-        others = check_numbers(walkers, "walkers", "walker", "feature")
-        nearer = _squared(space, others - average) < squared
-        percentile = 100 * float(nearer.mean())
+    span = Span(space.average_walker_, space.scale_, space.eigenwalkers_, space.explained_variance_)
     total_variance = space.explained_variance_[0] / space.explained_variance_ratio_[0]
-    residual = _squared(space, vector - space.inverse_transform(scores))
+    others = None if walkers is None else check_numbers(walkers, "walkers", "walker", "feature")
+    return _position(span, total_variance, vector, others)
+
+
+def _position(
+    span: Span, total_variance: float, vector: np.ndarray, walkers: np.ndarray | None
+) -> SpacePosition:
+    scores = span.scores(vector[None])
+    z_scores = scores[0] / np.sqrt(span.variances)
+    average, percentile = span.average_walker, float("nan")
+    squared = _squared(span, vector[None] - average)[0]
+    if walkers is not None:
+        percentile = 100 * float((_squared(span, walkers - average) < squared).mean())
+    residual = _squared(span, vector - average - scores @ span.eigenwalkers)
     return SpacePosition(
         distance=float(np.sqrt(squared / total_variance)),
         mahalanobis=float(np.linalg.norm(z_scores)),
@@ -192,6 +203,6 @@ def position_in_space(
     )
 
 
-def _squared(space: WalkerSpace, deviations: np.ndarray) -> np.ndarray:
+def _squared(span: Span, deviations: np.ndarray) -> np.ndarray:
     """Squared lengths of deviations (walker, feature) in standardised features."""
-    return ((deviations / space.scale_) ** 2).sum(axis=1)
+    return ((deviations / span.scale) ** 2).sum(axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 import pandas as pd
@@ -19,8 +20,6 @@ from eigenwalker.population.population import Population, check_population
 
 ALPHAS = (-6, -3, 0, 3, 6)
 """Standard deviations along the trait at which walkers are shown, up to the paper's 6."""
-SIZE_NORMALISED: Mapping[Kind, bool] = {"discriminant": False, "mean_difference": True}
-"""The axes along which a trait is shown, and whether of walkers without their size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +65,12 @@ class TraitStudy:
     class_averages: Mapping[str, Walker]
     X: np.ndarray
     space: WalkerSpace
+    keep_size: bool
 
 
-def study_trait(population: Population, result: Classification | Regression) -> TraitStudy:
+def study_trait(
+    population: Population, result: Classification | Regression, *, keep_size: bool = False
+) -> TraitStudy:
     """Return everything about a trait that its report shows.
 
     Parameters
@@ -77,6 +79,9 @@ def study_trait(population: Population, result: Classification | Regression) -> 
         Its flagged walkers are named and left out of all else.
     result : Classification or Regression
         Of `classify` or `regress`.
+    keep_size : bool
+        Whether walkers along the axes keep the size that goes with the trait. Otherwise it is
+        divided out, as in the stimuli of Troje (2002).
 
     Returns
     -------
@@ -102,17 +107,16 @@ def study_trait(population: Population, result: Classification | Regression) -> 
     trait = contrast.trait
     if contrast.two_classes:
         trait += f"={contrast.negative}:{contrast.positive}"
-    normalised = population.size_normalised()
+    shown = population if keep_size else population.size_normalised()
     views: dict[Kind, TraitView] = {}
-    for kind, without_size in SIZE_NORMALISED.items():
-        shown = normalised if without_size else population
+    for kind in get_args(Kind):
         step = trait_axis(shown, trait, kind=kind).step
         vectors = {_title(contrast, alpha): shown.average + alpha * step for alpha in ALPHAS}
         plausible = {title: plausibility(shown, vector) for title, vector in vectors.items()}
         walkers = {title: shown.walker(vector) for title, vector in vectors.items()}
         views[kind] = TraitView(walkers, plausible, step)
     used = population.select(population.in_average)
-    X = population.X[contrast.rows]
+    X = shown.X[contrast.rows]
     return TraitStudy(
         result=result,
         table=result.table(),
@@ -124,9 +128,10 @@ def study_trait(population: Population, result: Classification | Regression) -> 
         average=population.walker(population.average),
         correlations=used.posture_correlations() if len(used) > 1 else None,
         views=views,
-        class_averages=_class_averages(population, contrast, X) if contrast.two_classes else {},
+        class_averages=_class_averages(shown, contrast, X) if contrast.two_classes else {},
         X=X,
         space=WalkerSpace().fit(X),
+        keep_size=keep_size,
     )
 
 

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    KeepSize,
     OpenPage,
     People,
     Person,
     ReportFolder,
     WithFlagged,
+    is_published,
     load_people,
     open_in_browser,
     option,
@@ -36,6 +38,7 @@ def classify(
     ] = None,
     output: ReportFolder = None,
     permutations: Annotated[int, option("Random permutations of the trait to compare with.")] = 200,
+    keep_size: KeepSize = False,
     person: Person = None,
     with_flagged: WithFlagged = False,
 ) -> None:
@@ -49,7 +52,9 @@ def classify(
     with progress_bar("Classifying") as progress:
         result = _classify(population, trait, n_permutations=permutations, progress=progress)
         if output is not None:
-            page = write_classification_report(study_trait(population, result), output)
+            page = write_classification_report(
+                study_trait(population, result, keep_size=keep_size), output
+            )
     classes = result.contrast
     print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
     _print_result(result, population)
@@ -64,6 +69,7 @@ def demo(
     ),
     trait: Annotated[str | None, option("Trait to tell; left out, the sex, or the first.")] = None,
     open_page: OpenPage = True,
+    keep_size: KeepSize = False,
     with_flagged: WithFlagged = False,
 ) -> None:
     """Classify a trait, and write a page on which anyone can play with the walkers.
@@ -76,7 +82,7 @@ def demo(
     from eigenwalker.core.atomic_write import atomic_write
     from eigenwalker.datasets.built_in import built_in_capture
     from eigenwalker.explorer.interactive_page import interactive_page
-    from eigenwalker.explorer.model import page_model
+    from eigenwalker.explorer.model import page_models
     from eigenwalker.report.blocks import Link
     from eigenwalker.report.classification_report import write_classification_report
 
@@ -88,7 +94,7 @@ def demo(
         with progress_bar("Classifying and filming") as progress:
             result = _classify(population, trait, progress=progress)
             page = write_classification_report(
-                study_trait(population, result),
+                study_trait(population, result, keep_size=keep_size),
                 output,
                 example=built_in_capture() if people is None else None,
                 beside=Link("Play with these walkers", INDEX),
@@ -99,7 +105,8 @@ def demo(
     else:
         output.mkdir(parents=True, exist_ok=True)
         print(f"{n_walkers} walkers are too few to tell {trait} from gait: the page has no report.")
-    model = page_model(population, first=trait, **model_names(people))
+    keep_size = keep_size or is_published(people)
+    model = page_models(population, keep_size=keep_size, first=trait, **model_names(people))
     with atomic_write(index) as unfinished:
         unfinished.write_text(interactive_page(model, report=report), encoding="utf-8")
     print(f"Page to play with: {index}")

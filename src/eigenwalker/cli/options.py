@@ -70,6 +70,10 @@ SkeletonNames = Annotated[
 RestPose = Annotated[str, option("Its arms at rest: t or a.")]
 View = Annotated[float, option("Azimuth in degrees: 0 frontal, 90 profile.")]
 Elevation = Annotated[float, option("Degrees above the horizon.")]
+KeepSize = Annotated[
+    bool,
+    option("Keep people's size; otherwise it is divided out, as in Troje (2002).", "--keep-size"),
+]
 OpenPage = Annotated[bool, option("Open the page if there is a screen.", "--open/--no-open")]
 Seed = Annotated[int, option("The same seed gives the same people.")]
 
@@ -87,6 +91,17 @@ def load_people(path: Path | None, with_flagged: bool, person: str | None = None
     if person is not None:
         population = population.with_persons(person)
     return population.without_flags() if with_flagged else population
+
+
+def sized_people(path: Path | None, with_flagged: bool, keep_size: bool) -> Population:
+    """Return the population that walkers are made of; without their size, unless it is kept."""
+    population = load_people(path, with_flagged)
+    return population if keep_size or is_published(path) else population.size_normalised()
+
+
+def is_published(path: Path | None) -> bool:
+    """Return whether walkers are those of a publication, which keep the size that they have."""
+    return path is not None and path.suffix.lower() in (".json", ".mat")
 
 
 def parse_trait_steps(text: str) -> tuple[str, float]:
@@ -107,10 +122,15 @@ def trait_axes(
     population: Population, texts: Sequence[str] | None, **axis_options: Any
 ) -> list[tuple[TraitAxis, float]]:
     """Return the axis of each ``--trait``, and the standard deviations along it."""
+    steps = [parse_trait_steps(text) for text in texts or ()]
+    return [(_axis(population, trait, **axis_options), each) for trait, each in steps]
+
+
+@cache
+def _axis(population: Population, trait: str, **axis_options: Any) -> TraitAxis:
     from eigenwalker.analysis.trait_axis import trait_axis
 
-    steps = [parse_trait_steps(text) for text in texts or ()]
-    return [(trait_axis(population, trait, **axis_options), each) for trait, each in steps]
+    return trait_axis(population, trait, **axis_options)
 
 
 def start_vector(population: Population, start: str, mapping: Path | None = None) -> np.ndarray:

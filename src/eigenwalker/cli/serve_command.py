@@ -9,10 +9,12 @@ import typer
 
 from eigenwalker.cli.classify_command import model_names
 from eigenwalker.cli.options import (
+    KeepSize,
     MappingFile,
     OpenPage,
     People,
     WithFlagged,
+    is_published,
     load_people,
     open_in_browser,
     option,
@@ -28,6 +30,7 @@ def serve(
         str, option("Where to listen; anything but this machine lets others in.")
     ] = "127.0.0.1",
     open_page: OpenPage = True,
+    keep_size: KeepSize = False,
     with_flagged: WithFlagged = False,
     mapping: MappingFile = None,
 ) -> None:
@@ -51,6 +54,7 @@ def serve(
                 load_people(people, with_flagged),
                 host=host,
                 mapping=mapping,
+                keep_size=keep_size or is_published(people),
                 **model_names(people),
             )
             if host not in LOOPBACK:

@@ -13,7 +13,7 @@ Options may be typed in any order. They are applied in this one: who walks (``--
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,6 +21,7 @@ import typer
 
 from eigenwalker.cli.options import (
     Elevation,
+    KeepSize,
     MappingFile,
     RestPose,
     Seed,
@@ -29,9 +30,11 @@ from eigenwalker.cli.options import (
     TraitSteps,
     View,
     WithFlagged,
+    is_published,
     load_people,
     option,
     progress_bar,
+    sized_people,
     start_capture,
     start_vector,
     trait_axes,
@@ -153,7 +156,12 @@ def stimulus(
         option("So many people, drawn from the population: a .glb, or a folder of .bvh."),
     ] = None,
     seed: Seed = 1,
+    keep_size: KeepSize = False,
     with_flagged: WithFlagged = False,
+    conditions: Annotated[
+        Path | None,
+        option("Table, CSV or XLSX: a stimulus a row, an option a column; -o names the folder."),
+    ] = None,
     mapping: MappingFile = None,
     *,
     context: typer.Context,
@@ -163,40 +171,28 @@ def stimulus(
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
     options = dict(locals())
+    if conditions is not None:
+        from eigenwalker.cli.stimulus_set import write_set
+
+        write_set(context, conditions, output or Path("stimuli"), _made)
+        return
     from eigenwalker.cli.stimulus_provenance import walker_line
-    from eigenwalker.datasets.bml import looks_like_bml
     from eigenwalker.plotting.encoding import FORMATS
-    from eigenwalker.stimulus.write_stimulus import check_suffix, write_stimulus
+    from eigenwalker.stimulus.write_stimulus import write_stimulus
 
     film = str(context.info_name).endswith("synthesize")
-    output = output or Path("walker.mp4" if film else "stim.json")
-    check_suffix(output)
-    rig = _rig_choices(options, output)
-    if strides is not None and (strides < 1 or duration is not None):
-        raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
-    if not (trait or morph_to) and (kind, part, components) != ("discriminant", "all", 10):
-        raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
+    output = options["output"] = output or Path("walker.mp4" if film else "stim.json")
     if crowd is not None:
-        _check_crowd(options, output)
-    if people is not None and people.suffix.lower() == ".json" and not looks_like_bml(people):
-        made, population = _of_a_stimulus(options), None
-    else:
-        population = load_people(people, with_flagged)
-        if crowd is not None:
-            from eigenwalker.cli.crowd import write_crowd
+        from eigenwalker.cli.crowd import write_crowd
 
-            write_crowd(population, output, options, rig)
-            return
-        options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
-        made = _of_a_population(population, options)
-    steps = list(transforms_typed(options, population))
-    for name, parameters in [step for step in steps if step[0] not in OF_THE_DISPLAY]:
-        made = made.then(name, **parameters)
-    made = _on_screen(made, options)
-    for name, parameters in [step for step in steps if step[0] in OF_THE_DISPLAY]:
-        made = made.then(name, **parameters)
-    if strides or (film and duration is None):
-        made = made.whole_strides(strides)
+        _check_how(options)
+        _check_crowd(options, output)
+        people_there = load_people(people, with_flagged)
+        write_crowd(
+            people_there, output, {**options, "keep_size": True}, _rig_choices(options, output)
+        )
+        return
+    made, rig = _made(options, film)
     with progress_bar("Writing") as progress:
         path = write_stimulus(made, output, progress=progress, rig=rig)
     names = ", then ".join(step["name"] for step in made.transforms)
@@ -210,6 +206,45 @@ def stimulus(
 
 
 synthesize = stimulus
+
+
+def _made(
+    options: dict[str, Any],
+    film: bool,
+    people_of: Callable[[Path | None, bool, bool], Population] = sized_people,
+) -> tuple[Stimulus, RigChoices]:
+    """The stimulus that options describe, and how its rig is written."""
+    from eigenwalker.datasets.bml import looks_like_bml
+    from eigenwalker.stimulus.write_stimulus import check_suffix
+
+    output, people, strides = options["output"], options["people"], options["strides"]
+    check_suffix(output)
+    rig = _rig_choices(options, output)
+    _check_how(options)
+    if people is not None and people.suffix.lower() == ".json" and not looks_like_bml(people):
+        made, population = _of_a_stimulus(options), None
+    else:
+        population = people_of(people, options["with_flagged"], options["keep_size"])
+        options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
+        made = _of_a_population(population, options)
+    steps = list(transforms_typed(options, population))
+    for name, parameters in [step for step in steps if step[0] not in OF_THE_DISPLAY]:
+        made = made.then(name, **parameters)
+    made = _on_screen(made, options)
+    for name, parameters in [step for step in steps if step[0] in OF_THE_DISPLAY]:
+        made = made.then(name, **parameters)
+    if strides or (film and options["duration"] is None):
+        made = made.whole_strides(strides)
+    return made, rig
+
+
+def _check_how(options: dict[str, Any]) -> None:
+    strides = options["strides"]
+    if strides is not None and (strides < 1 or options["duration"] is not None):
+        raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
+    how = tuple(options[name] for name in ("kind", "part", "components"))
+    if not (options["trait"] or options["morph_to"]) and how != ("discriminant", "all", 10):
+        raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
 
 
 def _rig_choices(options: dict[str, Any], output: Path) -> RigChoices:
@@ -284,6 +319,7 @@ def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulu
 
 POPULATION_ONLY = (
     *("trait", "start_from", "information", "morph_to", "size", "eye_distance", "crowd"),
+    "keep_size",
 )
 """Options that a stimulus file does not take."""
 
@@ -326,7 +362,7 @@ def _walker(population: Population, options: dict[str, Any]) -> Walker | Figure:
     vector = moved_along_traits(population, start, options["trait"], options)
     if own is not None:
         return _own_figure(population, own, start, vector)
-    if options["trait"]:
+    if options["trait"] and not options.get("quiet"):
         _print_plausibility(population, vector)
     if options["information"]:
         return with_information(population, vector, options["information"])
@@ -366,8 +402,14 @@ def moved_along_traits(
     axis_options = {name: options[name] for name in ("kind", "part")}
     axes = trait_axes(population, traits, n_components=options["components"], **axis_options)
     vector = vector + sum(steps * axis.step for axis, steps in axes)
-    for axis, steps in axes:
+    for axis, steps in [] if options.get("quiet") else axes:
         print(_position_line(population, axis, vector, steps))
+    if (
+        axes
+        and not options.get("quiet")
+        and not (options["keep_size"] or is_published(options["people"]))
+    ):
+        print("People's size is divided out; --keep-size keeps it.")
     return vector
 
 

@@ -20,16 +20,17 @@ LONGEST = 2000
 def of_a_walker(population: Population, options: dict[str, Any]) -> dict[str, str]:
     """Return the provenance of a stimulus whose walker is made from a population."""
     from eigenwalker.analysis.contrast import trait_contrast
-    from eigenwalker.cli.options import parse_trait_steps
+    from eigenwalker.cli.options import is_published, parse_trait_steps
     from eigenwalker.datasets.built_in import BUILT_IN
 
     path, start = options["people"], options["start_from"]
     steps = [parse_trait_steps(text) for text in options["trait"] or ()]
     about = {
         "population": BUILT_IN if path is None else Path(path).name,
-        "population_sha256": population_sha256(population, path),
+        "population_sha256": population_sha256(path),
         "started_from": {"average": "the average walker"}.get(start, _start_text(start)),
         "information": options["information"] or "full",
+        "size": "kept" if options["keep_size"] or is_published(path) else "divided out",
     }
     if steps or options["morph_to"]:
         contrasts = [trait_contrast(population, trait) for trait, _ in steps]
@@ -65,11 +66,13 @@ def command() -> str:
     return typed.encode("utf-8", "replace").decode()[:LONGEST]
 
 
-def population_sha256(population: Population, path: Path | None) -> str:
+def population_sha256(path: Path | None) -> str:
     """Return the hash of a population's file; of the built-in one, of its features to 1e-6."""
+    from eigenwalker.datasets.built_in import load_population
+
     if path is not None:
         return _sha256(Path(path).read_bytes())
-    return _sha256(population.X.round(6).astype("<f8").tobytes())
+    return _sha256(load_population().X.round(6).astype("<f8").tobytes())
 
 
 def walker_line(about: dict[str, str]) -> str:

@@ -15,7 +15,7 @@ from fastapi.responses import HTMLResponse, Response
 
 from eigenwalker.explorer import tasks
 from eigenwalker.explorer.interactive_page import interactive_page
-from eigenwalker.explorer.model import page_model
+from eigenwalker.explorer.model import page_models
 from eigenwalker.io.sandbox import Job
 from eigenwalker.markers.mapping import as_mapping
 from eigenwalker.population.population import Population
@@ -53,6 +53,7 @@ def make_app(
     title: str = "",
     source: str = "",
     mapping: Any = None,
+    keep_size: bool = False,
 ) -> FastAPI:
     """Return the application that serves the interactive page of a population.
 
@@ -70,7 +71,8 @@ def make_app(
     memory, and removed afterwards. What cannot be used is refused with a sentence (``detail``).
     """
     runner = TaskRunner()
-    model = page_model(population, title=title, source=source) | {"population": _SERVED}
+    models = page_models(population, keep_size=keep_size, title=title, source=source)
+    model = models | {"population": _SERVED}
     page = interactive_page(model, server=True)
 
     @asynccontextmanager

@@ -81,6 +81,18 @@ def page_model(
     }
 
 
+def page_models(population: Population, *, keep_size: bool = False, **named: Any) -> dict[str, Any]:
+    """Return the model of a page on which size can be kept or divided out (Troje 2002, eq. 12).
+
+    The model with which the page begins; its entry ``other_size`` holds the other one.
+    """
+    models = {
+        sized: page_model(people, **named) | {"size_kept": sized}
+        for sized, people in ((True, population), (False, population.size_normalised()))
+    }
+    return models[keep_size] | {"other_size": models[not keep_size]}
+
+
 def walker_model(walker: Walker, *, title: str = "One walker") -> dict[str, Any]:
     """Return one walker, of any markers, as the page holds it: it is its own average."""
     layout = FeatureLayout.of(walker)

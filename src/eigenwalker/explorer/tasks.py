@@ -156,10 +156,10 @@ def _traits_table(captures: Path) -> Path | None:
 
 
 def _model(people: Any, folder: Path, title: str) -> Answer:
-    from eigenwalker.explorer.model import page_model
+    from eigenwalker.explorer.model import page_models
 
     people.save(folder / PEOPLE)
-    return page_model(people, title=title, source=PEOPLE)
+    return page_models(people, title=title, source=PEOPLE)
 
 
 @_task

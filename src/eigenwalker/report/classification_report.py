@@ -158,7 +158,8 @@ def _results(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
 def _appearance(
     study: TraitStudy, figures: dict[str, Figure], films: dict[Kind, list[Film]]
 ) -> list[Block]:
-    blocks: list[Block] = []
+    size = WORDS["views"]["size_kept" if study.keep_size else "size_out"]
+    blocks: list[Block] = [Text(size)]
     for kind, view in study.views.items():
         tables = [gait_table(view.walkers), plausibility_table(view.plausibility)]
         blocks += [Text(WORDS["views"][kind]), *films[kind], figures[kind], *tables]
