@@ -41,7 +41,8 @@ def captured_body(walk: xr.DataArray, own: Walker, start: Walker, styled: Walker
     def carry(name: str, parent: str, turned: Rotation) -> None:
         child, carrier = names.index(name), names.index(parent)
         way = places[:, child] - places[:, carrier]
-        longer = _length(walk.values[:, child] - walk.values[:, carrier]) / _length(way)
+        length = _length(way)  # 0 where a capture has two joints in one place
+        longer = _length(walk.values[:, child] - walk.values[:, carrier]) / length if length else 1
         new[:, child] = new[:, carrier] + turned.apply(way * longer)
 
     for dot, parent in parents.items():

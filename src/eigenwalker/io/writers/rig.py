@@ -393,7 +393,8 @@ def _frame(up: np.ndarray, left: np.ndarray, *, keep: Literal["up", "left"]) -> 
 def _mean_place(frame: Rotation, ways: np.ndarray) -> np.ndarray:
     """Return the mean of ways in a frame, as long as they are by the median."""
     mean = frame.inv().apply(ways).mean(axis=0)
-    return mean * np.median(np.linalg.norm(ways, axis=1)) / np.linalg.norm(mean)
+    length = np.linalg.norm(mean)
+    return mean * np.median(np.linalg.norm(ways, axis=1)) / length if length else mean
 
 
 def _pitched(turn: Rotation, angle: np.ndarray) -> Rotation:
