@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import shlex
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +52,7 @@ def of_a_walker(population: Population, options: dict[str, Any]) -> dict[str, st
     return {name: text[:LONGEST] for name, text in about.items() if text}
 
 
-def of_a_file(path: Path, earlier: dict[str, str]) -> dict[str, str]:
+def of_a_file(path: Path, earlier: Mapping[str, str]) -> dict[str, str]:
     """Return the provenance of a stimulus that is made from one in a file."""
     about = {**earlier, "made_from": f"{path.name}, sha256 {_sha256(path.read_bytes())}"}
     before = earlier.get("command") or earlier.get("call")
@@ -75,7 +76,7 @@ def population_sha256(path: Path | None) -> str:
     return _sha256(load_population().X.round(6).astype("<f8").tobytes())
 
 
-def walker_line(about: dict[str, str]) -> str:
+def walker_line(about: Mapping[str, str]) -> str:
     """Return who walks, as one line: traits, information, and what it started from."""
     if "population" not in about:
         return f"Walker: as in {about['made_from'].partition(',')[0]}"
