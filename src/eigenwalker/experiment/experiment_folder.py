@@ -67,8 +67,14 @@ class Material:
         return shown_walkers(self.design, len(self.walker_names))
 
     def texts(self, language: str) -> Texts:
-        """Return the texts of a language."""
-        return read_texts(self.folder / TEXTS, language)
+        """Return the texts of a language, which are read once."""
+        if language not in self._texts:
+            self._texts[language] = read_texts(self.folder / TEXTS, language)
+        return self._texts[language]
+
+    @cached_property
+    def _texts(self) -> dict[str, Texts]:
+        return {}
 
     def stimulus_path(self, name: str) -> Path:
         """Return the file of a stimulus."""
@@ -128,9 +134,8 @@ class Material:
 
     def state(self) -> list[tuple[str, int, int]]:
         """Return sizes and times of what a hash would read, to see at once whether it changed."""
-        folders = (STIMULI, TEXTS)
-        paths = [DESIGN, PEOPLE, *folders]
-        paths += [f"{TEXTS}/{language}.md" for language in self.design.languages]
+        paths = [DESIGN, PEOPLE, STIMULI, TEXTS]
+        paths += sorted(f"{TEXTS}/{path.name}" for path in (self.folder / TEXTS).glob("*.md"))
         found = [(path, (self.folder / path).stat()) for path in paths]
         return [(path, stat.st_size, stat.st_mtime_ns) for path, stat in found]
 

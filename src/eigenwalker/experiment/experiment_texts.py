@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
 
@@ -31,8 +32,9 @@ class Texts:
         """Hash of exactly what an observer consents to."""
         return hashlib.sha256(self["consent"].encode()).hexdigest()
 
+    @cached_property
     def for_page(self) -> dict[str, str]:
-        """Return the texts as the page shows them: pages as HTML without any script."""
+        """The texts as the page shows them: pages as HTML without any script."""
         markdown = _markdown()
         return {
             name: markdown.render(text) if name in PAGES else text

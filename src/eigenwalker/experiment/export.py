@@ -116,8 +116,8 @@ class _ParquetTable:
         self._rows: list[Sequence[Any]] = []
         self._writer: Any = None
         try:
-            import pyarrow as pa
-            import pyarrow.parquet
+            import pyarrow as pa  # type: ignore[import]
+            import pyarrow.parquet  # type: ignore[import]
         except ImportError:
             self.available = False
             return
@@ -176,8 +176,8 @@ def _write_questions(database: sqlite3.Connection, folder: Path, name: str) -> s
 def _write_frames(database: Any, folder: Path, name: str) -> str:
     """Write the times of all frames, one list an answer."""
     try:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
+        import pyarrow as pa  # type: ignore[import]
+        import pyarrow.parquet as pq  # type: ignore[import]
     except ImportError:
         raise ImportError(
             "Frame times are written as Parquet, which needs pyarrow; install it."

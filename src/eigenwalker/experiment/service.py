@@ -63,16 +63,16 @@ class Service:
 
     def keep_version(self, *, freeze: bool = False) -> str:
         """Keep the folder's design, texts and stimuli as a version, and return its hash."""
+        material = self.material
         try:
-            state = self.material.state()
+            state = material.state()
+            if not freeze and self._current[0] == state:
+                return self._current[1]
+            version = material.hash()
         except (ValueError, OSError):  # it is being edited: new sessions get what was there
             if freeze or not self._current[1]:
                 raise
             return self._current[1]
-        if not freeze and self._current[0] == state:
-            return self._current[1]
-        material = self.material
-        version = material.hash()
         target = self.folder / VERSIONS / version[:16]
         if not target.exists():
             target.parent.mkdir(exist_ok=True)
@@ -152,7 +152,7 @@ class Service:
         return {
             "name": design.name,
             "state": self._state(design, begun),
-            "languages": {name: each.for_page() for name, each in texts.items()},
+            "languages": {name: each.for_page for name, each in texts.items()},
             "consent": {name: each.consent_hash for name, each in texts.items()},
             "test": link["kind"] == "preview" or link["observer_kind"] == "test",
             "personal": link["observer"] is not None,
@@ -185,7 +185,7 @@ class Service:
         material = self.version_material(version)
 
         def begin(db: sqlite3.Connection) -> Content:
-            observer = link["observer"] or self._arriving(db, link, own_key, site)
+            observer = link["observer"] or self._arriving(db, link, own_key, site, material)
             begun = store.sessions_of(db, observer)
             if begun and begun[-1]["outcome"] is None:
                 store.note_seen(db, begun[-1]["session"])
@@ -318,13 +318,14 @@ class Service:
         link: Content,
         own_key: str,
         site: Mapping[str, str] | None,
+        material: Material,
     ) -> int:
         """Return the observer who comes by a link for many, recognised or new."""
         own = store.find_link(db, hash_of(own_key))
         if own is not None:
             return own["observer"]
         kind = "test" if link["kind"] == "preview" else "real"
-        recruiting = self.material.design.recruiting
+        recruiting = material.design.recruiting
         known = {name: text for name, text in (site or {}).items() if name in recruiting.parameters}
         site_hash = self._site_hash(db, known) if known and kind == "real" else None
         observer = store.observer_of_site(db, site_hash) if site_hash else None

@@ -107,8 +107,9 @@ def _row(
 def _since_start(content: Row) -> float | None:
     """Return the milliseconds from the beginning of a trial to its first frame."""
     first, start = content.get("first_frame"), content.get("started_ms")
-    known = isinstance(first, int | float) and isinstance(start, int | float)
-    return round(first - start, 3) if known else None
+    if isinstance(first, int | float) and isinstance(start, int | float):
+        return round(first - start, 3)
+    return None
 
 
 def _places(response: Any) -> list[int]:

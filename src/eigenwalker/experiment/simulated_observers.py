@@ -232,7 +232,7 @@ class _Answering:
         step = middle + self.truth.shift + self.truth.gain * seen * block.steps / 5
         if lapses:
             step = self.rng.uniform(0.5, block.steps + 0.5)
-        return int(np.clip(round(step), 1, block.steps))
+        return int(np.clip(np.round(step), 1, block.steps))
 
     def _level(self, block: Detection) -> int:
         n_levels = len(block.mask_dots)

@@ -36,7 +36,15 @@ class Sessions(Protocol):
     """What answers for an experiment."""
 
     def welcome(self, key: str, site: Mapping[str, str] | None = None) -> Any: ...  # noqa: D102
-    def start(self, key: str, **options: Any) -> Any: ...  # noqa: D102
+    def start(  # noqa: D102
+        self,
+        key: str,
+        *,
+        consent: str,
+        language: str,
+        own_key: str = "",
+        site: Mapping[str, str] | None = None,
+    ) -> Any: ...
     def stimuli(self, key: str, session: int) -> Any: ...  # noqa: D102
     def answers(self, key: str, session: int, items: Sequence[Any]) -> Any: ...  # noqa: D102
     def end(self, key: str, session: int, how: str) -> Any: ...  # noqa: D102
