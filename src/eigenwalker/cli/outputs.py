@@ -88,13 +88,13 @@ def guarded(command: Any, name: str) -> Any:
     hints = get_type_hints(command, include_extras=True)
     if not has_force:
         hints["force"] = Annotated[bool, option("Replace what is there, also an input.", "--force")]
-    asked = [each.replace(annotation=hints[key]) for key, each in parameters.items()]
+    signature = [each.replace(annotation=hints[key]) for key, each in parameters.items()]
     if not has_force:
         kind = inspect.Parameter.KEYWORD_ONLY
         force = inspect.Parameter("force", kind, default=False, annotation=hints["force"])
-        asked.append(force)
+        signature.append(force)
     wrapper: Any = checked
-    wrapper.__signature__ = inspect.Signature(asked)
+    wrapper.__signature__ = inspect.Signature(signature)
     wrapper.__annotations__ = hints
     wrapper.is_guarded = True
     return wrapper
@@ -143,16 +143,16 @@ def _check_free(output: Path, inputs: list[Path], made_by: str) -> None:
                 "write, or give --force to replace it."
             )
     made = _made(output if output.is_dir() else Path(os.path.realpath(output)).parent)
-    strange = [
+    foreign = [
         name for name, state in _state(output).items() if made.get(name) != [made_by, *state]
     ]
-    if not strange:
+    if not foreign:
         return
     if output.is_dir():
-        more = f" and {len(strange) - MAX_NAMED} more" if len(strange) > MAX_NAMED else ""
+        more = f" and {len(foreign) - MAX_NAMED} more" if len(foreign) > MAX_NAMED else ""
         raise ValueError(
             f"{output} holds files that eigenwalker {made_by} did not make, or that were changed "
-            f"since: {', '.join(sorted(strange)[:MAX_NAMED])}{more}. Name an empty or a new "
+            f"since: {', '.join(sorted(foreign)[:MAX_NAMED])}{more}. Name an empty or a new "
             "folder, or give --force to write into it."
         )
     raise ValueError(
