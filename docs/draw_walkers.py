@@ -7,7 +7,7 @@ from pathlib import Path
 import eigenwalker as ew
 
 if __name__ == "__main__":
-    people = ew.load_population()
+    people = ew.load_population().size_normalised()
     sex = ew.trait_axis(people, "sex")
     alphas = {"female 6 SD": -6, "female 3 SD": -3, "average": 0, "male 3 SD": 3, "male 6 SD": 6}
     walkers = {
