@@ -26,7 +26,12 @@ from .plausibility import (
     plausibility as plausibility,
     position_in_space as position_in_space,
 )
+from .several_classes import (
+    SeveralClasses as SeveralClasses,
+    classify_several as classify_several,
+)
 from .trait_axis import TraitAxis as TraitAxis, trait_axis as trait_axis
+from .trait_model import TraitModel as TraitModel, trait_model as trait_model
 from .trait_study import (
     TraitStudy as TraitStudy,
     TraitView as TraitView,

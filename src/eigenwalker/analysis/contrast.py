@@ -137,6 +137,46 @@ def usual_trait(population: Population) -> str:
     return min(found, key=lambda name: (name.lower() != "sex", not found[name]))
 
 
+def class_labels(
+    population: Population, trait: str
+) -> tuple[str, np.ndarray, np.ndarray, np.ndarray | None]:
+    """Return the column of a trait of several classes, rows that have it, labels and persons.
+
+    ``style=active:normal:elderly`` names some of its classes.
+    """
+    check_population(population)
+    name, _, some = trait.partition("=")
+    column = trait_column(population.traits, name)
+    values = _as_text(population.traits[column])
+    known = (values != "") & ~population.flagged
+    if some:
+        wanted = some.split(":")
+        if missing := sorted(set(wanted) - set(values[known])):
+            raise ValueError(
+                f"{column} has no value {missing[0]!r}; it has {sorted(set(values[known]))}."
+            )
+        known &= values.isin(wanted)
+    rows = np.flatnonzero(known)
+    labels = values.iloc[rows].to_numpy(dtype=str)
+    if len(set(labels)) < 2:
+        raise ValueError(
+            f"The trait {column} is the same for all walkers that may be used, so there is nothing "
+            "to tell apart."
+        )
+    return column, rows, labels, _persons(population, rows)
+
+
+def has_several_classes(population: Population, trait: str) -> bool:
+    """Return whether a trait, or what is named of its values, is three classes or more of text."""
+    name, _, some = trait.partition("=")
+    values = population.traits[trait_column(population.traits, name)]
+    known = set(_as_text(values[~population.flagged])) - {""}
+    if some:
+        return len(some.split(":")) > 2 and set(some.split(":")) <= known
+    is_text = not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values)
+    return is_text and 2 < len(known) <= len(values) / 2
+
+
 def _as_text(values: pd.Series) -> pd.Series:
     """Values as a user types them: 1 for 1.0, and nothing for a missing one."""
     if not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values):

@@ -16,6 +16,8 @@ COMMANDS = {
     "demo": ("classify_command", "Classify a trait, and write a page to play with the walkers."),
     "serve": ("serve_command", "Serve the interactive page, which then reads captures."),
     "info": ("capture_commands", "Say what is in a file, and what is wrong with it."),
+    "parameters": ("parameters_command", "Measure the gait of all captures of a folder."),
+    "predict": ("predict_command", "Tell a trait of new captures, and how sure that is."),
     "convert": ("capture_commands", "Write a capture in another format."),
     "fit": ("population_commands", "Make a population of a folder of captures."),
     "simulate": ("population_commands", "Simulate walkers of known truth, and their captures."),

@@ -47,8 +47,9 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
         - ``step_length_left_mm``: along x between the places on the ground of a right heel strike
           and the left one that follows, in the direction of travel; ``step_length_right_mm``;
           ``step_width_mm``: along y;
-        - ``stance_share_left``, ``stance_share_right``, ``double_support_share``: of the stride;
-          double support is 0 where at moments no foot stands, as in running;
+        - ``stance_share_left``, ``stance_share_right``, ``swing_share_left``,
+          ``swing_share_right``, ``double_support_share``: of the stride; double
+          support is 0 where at moments no foot stands, as in running;
         - ``step_asymmetry``, ``stance_asymmetry``: left minus right over their mean, NaN where one
           of them is not above 0;
         - ``pelvis_vertical_range_mm``: mean over strides.
@@ -115,6 +116,8 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
             "stance_share_left": stance[0],
             "stance_share_right": stance[1],
             "stance_asymmetry": _asymmetry(*stance),
+            "swing_share_left": 1 - stance[0],
+            "swing_share_right": 1 - stance[1],
             "double_support_share": float(np.maximum(sum(stance) - 1, 0)),
             "pelvis_vertical_range_mm": _vertical_range(walk, frequency_hz),
         }

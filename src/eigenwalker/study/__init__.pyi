@@ -2,6 +2,14 @@ from .capture_table import capture_table as capture_table
 from .fit_folder import Study as Study, fit_folder as fit_folder
 from .inspect import inspect_file as inspect_file
 from .messages import reasons as reasons, summarise as summarise
+from .parameter_table import (
+    ParameterTable as ParameterTable,
+    parameter_table as parameter_table,
+)
+from .predict_captures import (
+    Predictions as Predictions,
+    predict_captures as predict_captures,
+)
 from .process_capture import (
     CaptureResult as CaptureResult,
     NoWalkError as NoWalkError,

@@ -76,7 +76,7 @@ def capture_table(
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
     if not trait_from_name:
         return check_traits(table)
-    named = _named_traits(table[FILE], trait_from_name)
+    named = traits_of_names(table[FILE], trait_from_name)
     if both := [str(name) for name in named if name in table]:
         raise ValueError(f"Both the traits table and the pattern name {both}; let one do so.")
     return check_traits(table.join(named))
@@ -229,7 +229,8 @@ def _as_on_disk(names: pd.Series, folder: Path) -> list[str]:
     return names_found
 
 
-def _named_traits(names: pd.Series, pattern: str) -> pd.DataFrame:
+def traits_of_names(names: pd.Series, pattern: str) -> pd.DataFrame:
+    """Return the traits that the named groups of a pattern find in file names, a row a name."""
     try:
         compiled = re.compile(unicodedata.normalize("NFC", pattern))
     except re.error as error:

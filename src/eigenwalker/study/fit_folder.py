@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -243,35 +243,48 @@ def _outcomes(
             yield name, earlier, True
         else:
             waiting[name] = state
-    for name, (walker, row) in _in_processes(folder, list(waiting), settings, n_jobs):
+    made = outcomes_in_processes(folder, list(waiting), settings, n_jobs, _walker_and_row)
+    for name, (walker, row) in zip(waiting, made, strict=True):
         if checkpoint is not None and walker is not None:
             checkpoint.append(name, waiting[name], walker, row)
         yield name, (walker, row), False
 
 
-def _in_processes(
-    folder: Path, names: list[str], settings: Mapping[str, Any], n_jobs: int
-) -> Iterator[tuple[str, _Outcome]]:
+def outcomes_in_processes(
+    folder: Path,
+    names: list[str],
+    settings: Mapping[str, Any],
+    n_jobs: int,
+    outcome_of: Callable[[CaptureResult], _Outcome],
+) -> Iterator[_Outcome]:
     """Process captures in parallel; where the system ends a process, some one by one."""
     done = 0
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(names))
     while done < len(names):
-        tasks = [joblib.delayed(_outcome)(folder, name, settings) for name in names[done:]]
+        tasks = [
+            joblib.delayed(_outcome)(folder, name, settings, outcome_of) for name in names[done:]
+        ]
         try:
             outcomes: Any = joblib.Parallel(n_processes, return_as="generator")(tasks)
             for outcome in outcomes:
-                yield names[done], outcome
+                yield outcome
                 done += 1
         except TerminatedWorkerError:
             for name in names[done : done + 2 * n_processes]:  # one of these was being read
-                yield name, _alone(folder, name, settings)
+                yield _alone(folder, name, settings, outcome_of)
                 done += 1
 
 
-def _alone(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
+def _alone(
+    folder: Path,
+    name: str,
+    settings: Mapping[str, Any],
+    outcome_of: Callable[[CaptureResult], _Outcome],
+) -> _Outcome:
     """Process one capture in a process that the system may end."""
     try:
-        outcomes: Any = joblib.Parallel(2)([joblib.delayed(_outcome)(folder, name, settings)])
+        task = joblib.delayed(_outcome)(folder, name, settings, outcome_of)
+        outcomes: Any = joblib.Parallel(2)([task])
     except TerminatedWorkerError:
         return _refused(
             "the system ended the process that read it, as it does when memory runs out; look "
@@ -280,14 +293,18 @@ def _alone(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
     return outcomes[0]
 
 
-def _outcome(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
+def _outcome(
+    folder: Path,
+    name: str,
+    settings: Mapping[str, Any],
+    outcome_of: Callable[[CaptureResult], _Outcome],
+) -> _Outcome:
     """Process one capture; errors become its row."""
     try:
         path = _within(folder, name)
         with threadpool_limits(1), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the row holds what they say
-            result = process_capture(path, **settings)
-        return result.walker, _row(result)
+            return outcome_of(process_capture(path, **settings))
     except ValueError as error:
         return _refused(str(error))
     except Exception as error:  # one capture must not stop the others
@@ -298,6 +315,10 @@ def _outcome(folder: Path, name: str, settings: Mapping[str, Any]) -> _Outcome:
 
 def _refused(reason: str) -> _Outcome:
     return None, {"status": "refused", "reason": reason}
+
+
+def _walker_and_row(result: CaptureResult) -> _Outcome:
+    return result.walker, _row(result)
 
 
 def _row(result: CaptureResult) -> dict[str, Any]:

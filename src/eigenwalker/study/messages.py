@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -27,6 +27,9 @@ from eigenwalker.quality import quality as limit
 from eigenwalker.quality.quality import BONE_VARIATION, FLICKER_SHARE, Quality
 from eigenwalker.study.body_warnings import WIDE_HIPS, RetargetingWarnings
 from eigenwalker.study.process_capture import CaptureResult
+
+if TYPE_CHECKING:
+    from eigenwalker.analysis.trait_model import TraitModel
 
 Fact = str | float | int | bool | None | list[str]
 
@@ -146,6 +149,11 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
     return f"{name}: classes, {shown}{more}, {len(known)} values{missing}"
 
 
+def parameter_codebook() -> dict[str, tuple[str, str, str]]:
+    """Return of each column of a table of gait parameters its kind, unit and meaning."""
+    return {name: tuple(about) for name, about in _words()["codebook"].items()}
+
+
 def persons_in_words(traits: pd.DataFrame) -> list[str]:
     """Return who walked, by a table of traits, or what to do where that is not known.
 
@@ -167,6 +175,30 @@ def persons_in_words(traits: pd.DataFrame) -> list[str]:
         way = f"take population.with_persons({like[0]!r})"
         sentences.append(f"The values of {names} repeat as persons do. If they are, {way}.")
     return sentences
+
+
+def error_to_expect(model: TraitModel) -> str:
+    """Return the error to expect of new people, in a sentence, with that of guessing."""
+    from eigenwalker.analysis.several_classes import SeveralClasses
+
+    found, n = model.validation, len(model.rows)
+    whose = "" if model.population.persons is None else ", with all walks of their person"
+    how = f"Of {n} walkers left out{whose}, of every choice"
+    if isinstance(found, SeveralClasses):
+        return (
+            f"{how}, {found.errors} ({100 * found.error:.1f} %) are taken for another of the "
+            f"{len(found.classes)} classes; guessing misses {100 * found.error_of_guessing:.0f} %."
+        )
+    if model.is_number:
+        return (
+            f"{how}, the error of {model.trait} is {found.rmse:.3g} (RMSE; R2 {found.r2:.2f}); "
+            f"always answering the mean has {found.y.std():.3g}."
+        )
+    guess = min((found.y > 0).mean(), (found.y < 0).mean())
+    return (
+        f"{how}, {found.errors} ({100 * model.error:.1f} %) are misclassified; always answering "
+        f"the more frequent class misses {100 * guess:.1f} %."
+    )
 
 
 def _persons_of_column(column: str, persons: np.ndarray) -> str:

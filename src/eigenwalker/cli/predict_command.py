@@ -1,0 +1,117 @@
+"""``eigenwalker predict``: the class or value of a trait for new captures."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
+from eigenwalker.cli.option_names import in_options
+from eigenwalker.cli.options import (
+    Partial,
+    Person,
+    Rate,
+    Subject,
+    Unit,
+    WithFlagged,
+    load_people,
+    option,
+    progress_bar,
+)
+from eigenwalker.io.errors import printable
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def predict(
+    people: Annotated[Path, typer.Argument(help="Population file to learn from (.nc).")],
+    files: Annotated[list[Path], typer.Argument(help="New captures, or folders of them.")],
+    trait: Annotated[
+        str, option("Trait to tell: sex, weight_kg, style, style=feminine:masculine.")
+    ] = "sex",
+    output: Annotated[
+        Path | None, option("Table to write (.csv); a .json beside it.", "-o", "--output")
+    ] = None,
+    person_from_name: Annotated[
+        str | None, option("Pattern over names of new files: '(?P<person>S[0-9]+)_'.")
+    ] = None,
+    person: Person = None,
+    with_flagged: WithFlagged = False,
+    jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
+    unit: Unit = None,
+    rate: Rate = None,
+    partial: Partial = "refuse",
+    subject: Subject = None,
+) -> None:
+    """Tell a trait of new captures, with the error to expect and a warning of unusual walks.
+
+    Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
+    """
+    from eigenwalker.core.atomic_write import write_table
+    from eigenwalker.report.result_files import write_json
+    from eigenwalker.study.messages import error_to_expect
+    from eigenwalker.study.predict_captures import predict_captures
+
+    if output is not None and output.suffix.lower() != ".csv":
+        raise ValueError(f"{output}: the table is written as .csv; name it so: predictions.csv.")
+    if output is not None and not output.parent.is_dir():
+        raise ValueError(f"{output}: there is no folder {output.parent} to write into; make it.")
+    population = load_people(people, with_flagged, person)
+    with progress_bar("Predicting") as progress:
+        found = predict_captures(
+            population,
+            trait,
+            files,
+            trait_from_name=person_from_name,
+            n_jobs=jobs,
+            progress=progress,
+            unit=unit,
+            rate_hz=rate,
+            partial=partial,
+            subject=subject,
+        )
+    table, model = found.table, found.model
+    sentence = error_to_expect(model)
+    shown = table.drop(columns=["reason", "error", "typicality"], errors="ignore")
+    shown = shown.rename(columns={"person_known": "learnt from"})
+    shown["far"] = ["far" if far is True else "" for far in table.get("far", [""] * len(table))]
+    text = shown.to_string(index=False, na_rep="-", float_format=lambda number: f"{number:.3g}")
+    print(f"{printable(text)}\n\n{sentence}")
+    _warn(table)
+    if output is not None:
+        write_table(table, output, index=False)
+        facts = {"trait": model.trait, "error": model.error, "error_in_words": sentence}
+        write_json(facts | {"predictions": table}, output.with_suffix(".json"))
+        print(f"Table: {output}; as JSON: {output.with_suffix('.json')}")
+    n_refused = int((table["status"] == "refused").sum())
+    if n_refused:
+        raise typer.Exit(EXIT_FAILED if n_refused == len(table) else EXIT_PARTIAL)
+
+
+def _warn(table: pd.DataFrame) -> None:
+    """Say what speaks against predictions: walks far from all known, flags, persons known."""
+    for row in table.itertuples():
+        if row.reason:
+            reason = str(row.reason).removeprefix(f"{row.file}: ")
+            line = printable(in_options(f"{row.file}: {reason}"))
+            print(f"{row.status}: {line}", file=sys.stderr)
+    far = table[table.get("far", False) == True]  # noqa: E712 - empty of refused ones
+    if len(far):
+        names = printable(", ".join(far["file"]))
+        print(
+            f"eigenwalker: far from all walkers learnt from, so that neither prediction nor error "
+            f"can be relied on: {names}.",
+            file=sys.stderr,
+        )
+    known = table[table["person_known"] != ""]
+    if len(known):
+        who = printable(", ".join(f"{row.file} ({row.person_known})" for row in known.itertuples()))
+        print(
+            f"eigenwalker: learnt from the same people, so that the error to expect of new people "
+            f"is not that of these: {who}.",
+            file=sys.stderr,
+        )

@@ -1,0 +1,61 @@
+"""Results to take away from a report: tables as CSV and JSON, figures as SVG and PDF."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.figure
+import pandas as pd
+
+from eigenwalker._version import __version__
+from eigenwalker.core.atomic_write import atomic_write, write_table
+
+FIGURES = (".svg", ".pdf")
+
+
+def write_json(content: Mapping[str, Any], path: Path) -> Path:
+    """Write tables and facts as one JSON file, which says its program; return its path.
+
+    Tables are lists of rows; what is not known is null.
+    """
+    made = {"program": f"eigenwalker {__version__}", "date": datetime.now(UTC).date().isoformat()}
+    plain = {name: _plain(value) for name, value in content.items()}
+    with atomic_write(path) as unfinished:
+        text = json.dumps({**made, **plain}, indent=1, ensure_ascii=False, allow_nan=False)
+        unfinished.write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
+    return path
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, pd.DataFrame):
+        return json.loads(value.to_json(orient="records", double_precision=12))
+    if isinstance(value, float) and value != value:
+        return None
+    return value
+
+
+def write_figures(figures: Mapping[str, matplotlib.figure.Figure], folder: Path) -> list[Path]:
+    """Write figures by name as SVG and PDF into a folder; return their paths."""
+    paths = []
+    for name, drawn in figures.items():
+        plain = "-".join("".join(c if c.isalnum() else " " for c in name).split())
+        for suffix in FIGURES:
+            path = folder / f"{plain}{suffix}"
+            fonts = {"svg.hashsalt": "eigenwalker", "svg.fonttype": "none", "pdf.fonttype": 42}
+            metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
+            with mpl.rc_context(fonts), atomic_write(path) as unfinished:
+                drawn.savefig(unfinished, metadata=metadata)
+            paths.append(path)
+    return paths
+
+
+def write_tables(tables: Mapping[str, pd.DataFrame], folder: Path) -> list[Path]:
+    """Write tables by name as CSV into a folder; return their paths."""
+    return [
+        write_table(table, folder / f"{name}.csv", index=False) for name, table in tables.items()
+    ]

@@ -1,0 +1,67 @@
+"""Predictions and gait parameters of captures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import eigenwalker as ew
+from eigenwalker.simulation import simulate_population, simulate_walk
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("new")
+    for seed, name in enumerate(["S1_a", "S1_b", "S7_a"]):
+        ew.write_mocap(simulate_walk(seed=seed, rate_hz=60), folder / f"{name}.c3d")
+    (folder / "none.c3d").write_text("nothing")
+    return folder
+
+
+def test_predictions_name_refused_files_and_people_who_were_learnt_from(
+    folder, tmp_path, run_command
+) -> None:
+    people = simulate_population(6, 6, seed=4)
+    traits = people.traits.assign(subject=[f"S{row}" for row in range(12)])
+    path = ew.Population(people.walkers, traits).save(tmp_path / "people.nc")
+    output = tmp_path / "new.csv"
+    code, printed, errors = run_command(
+        "predict", path, folder, "--trait", "sex", "-o", output, "--jobs", 1
+    )
+    table = pd.read_csv(output).set_index("file")
+    assert code == 1
+    assert table.loc["none.c3d", "status"] == "refused"
+    assert "C3D" in table.loc["none.c3d", "reason"]
+    assert table.loc["S1_a.c3d", "prediction"] in ("female", "male")
+    assert table.loc["S7_a.c3d", "person_known"] == "S7"
+    assert "are misclassified" in printed
+    assert "learnt from the same people" in errors
+    stored = json.loads(output.with_suffix(".json").read_text())
+    assert 0 <= stored["error"] <= 1
+    assert len(stored["predictions"]) == 4
+
+
+def test_parameters_of_a_folder_have_units_means_and_reasons(folder, tmp_path, run_command) -> None:
+    output = tmp_path / "gait.csv"
+    pattern = "(?P<subject>S[0-9])_"
+    code, _, errors = run_command(
+        "parameters", folder, "-o", output, "--trait-from-name", pattern, "--jobs", 1
+    )
+    assert code == 1
+    assert "refused: none.c3d: expected a C3D file" in errors
+    table = pd.read_csv(output).set_index("file")
+    assert table.loc["none.c3d", "status"] == "refused"
+    walks = table.drop(index="none.c3d")
+    assert walks["cadence_steps_min"].between(70, 140).all()
+    assert (walks["stance_share_left"] + walks["swing_share_left"]).round(6).eq(100).all()
+    persons = pd.read_csv(tmp_path / "gait-persons.csv").set_index(["person", "parameter"])
+    first = persons.loc[("S1", "step_width_mm")]
+    assert first["walks"] == 2
+    assert first["mean"] == pytest.approx(walks["step_width_mm"][:2].mean())
+    assert first["unit"] == "mm"
+    book = pd.read_csv(tmp_path / "gait-codebook.csv")
+    assert book["column"].tolist() == list(pd.read_csv(output, nrows=0))
+    assert len(json.loads((tmp_path / "gait.json").read_text())["files"]) == 4
