@@ -67,5 +67,5 @@ def test_persons_are_left_out_whole() -> None:
     found = classify_several(Population(twice.walkers, traits, twice.correspondence), "kind")
     alone = Population(twice.walkers, traits.assign(person=""), twice.correspondence)
     assert found.n_folds == 16
-    assert found.error > 0.4
-    assert classify_several(alone, "kind").error < found.error - 0.2
+    assert found.error > 0.5
+    assert classify_several(alone, "kind").error < found.error

@@ -63,8 +63,8 @@ class Oddness:
             standard deviations. ``typicality``: the share of walkers known, this one among them,
             that are as odd; oddness is the largest of the distances by everything and by each
             block, each above its median and relative to how far the 95th percentile of the known is
-            above it. ``far``: whether that is 2 % at most, or as little as it can be; ``far_in``, the
-            block that is oddest then.
+            above it. ``far``: whether that is 2 % at most, or as little as it can be; ``far_in``,
+            the block that is oddest then.
 
         References
         ----------

@@ -174,7 +174,7 @@ def classify_several(
     >>> kinds = people.traits["sex"].where(tall.eq("tall"), "short")
     >>> people = ew.Population(people.walkers, people.traits.assign(kind=kinds))
     >>> classify_several(people, "kind").confusion.sum(axis=1).tolist()
-    [10, 2, 8]
+    [2, 8, 10]
     """
     column, rows, labels, persons = class_labels(population, trait)
     X = population.X[rows]

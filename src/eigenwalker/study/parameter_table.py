@@ -100,8 +100,8 @@ def parameter_table(
     ...     _ = ew.write_mocap(ew.simulate_walk(seed=1), f"{folder}/anna.c3d")
     ...     table = parameter_table(folder, n_jobs=1)
     >>> table.files[["file", "status", "cadence_steps_min"]].round(0)
-            file status  cadence_steps_min
-    0  anna.c3d   used              103.0
+           file status  cadence_steps_min
+    0  anna.c3d   used              104.0
     """
     folder = Path(folder)
     table = capture_table(folder, traits, trait_from_name)
