@@ -104,6 +104,8 @@ class Classification:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
+    random_state : str
+        Seed of the permutations; "generator" if one was given.
 
     See Also
     --------
@@ -113,6 +115,11 @@ class Classification:
     contrast: Contrast
     results: tuple[InputResult[JackknifeCurves], ...]
     n_permutations: int = 0
+    random_state: str = "0"
+
+    def _repr_html_(self) -> str:
+        """The table of results, for notebooks."""
+        return self.table().to_html(index=False, escape=True, float_format="{:.3g}".format)
 
     def table(self) -> pd.DataFrame:
         """Return the results as a table of one row an input.
@@ -173,6 +180,8 @@ class Regression:
         One for each input.
     n_permutations : int
         Permuted traits that each input was compared with.
+    random_state : str
+        Seed of the permutations; "generator" if one was given.
 
     See Also
     --------
@@ -182,6 +191,11 @@ class Regression:
     contrast: Contrast
     results: tuple[InputResult[RegressionCurves], ...]
     n_permutations: int = 0
+    random_state: str = "0"
+
+    def _repr_html_(self) -> str:
+        """The table of results, for notebooks."""
+        return self.table().to_html(index=False, escape=True, float_format="{:.3g}".format)
 
     def table(self) -> pd.DataFrame:
         """Return the results as a table of one row an input.
@@ -275,7 +289,7 @@ def classify(
     results = _results(
         jackknife_curves, population, contrast, inputs, n_permutations, random_state, progress
     )
-    return Classification(contrast, results, n_permutations)
+    return Classification(contrast, results, n_permutations, seed_text(random_state))
 
 
 def regress(
@@ -335,7 +349,12 @@ def regress(
     results = _results(
         regression_curves, population, contrast, inputs, n_permutations, random_state, progress
     )
-    return Regression(contrast, results, n_permutations)
+    return Regression(contrast, results, n_permutations, seed_text(random_state))
+
+
+def seed_text(random_state: RandomState) -> str:
+    """Return a seed as it is written in a report."""
+    return "generator" if isinstance(random_state, np.random.Generator) else str(random_state)
 
 
 def _results(

@@ -50,6 +50,8 @@ class TraitStudy:
         Of either class, and both with their difference tripled; none of a number.
     X, space
         The walkers that have the trait (walker, feature), and the space fitted to them.
+    contrast_walkers : tuple of Walker
+        The same as walkers.
     """
 
     result: Classification | Regression
@@ -66,6 +68,7 @@ class TraitStudy:
     X: np.ndarray
     space: WalkerSpace
     keep_size: bool
+    contrast_walkers: tuple[Walker, ...] = ()
 
 
 def study_trait(
@@ -132,6 +135,7 @@ def study_trait(
         X=X,
         space=WalkerSpace().fit(X),
         keep_size=keep_size,
+        contrast_walkers=tuple(population.walkers[row] for row in contrast.rows.tolist()),
     )
 
 

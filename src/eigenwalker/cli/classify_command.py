@@ -34,7 +34,7 @@ BUILT_IN_TITLE = "How people walk"
 def classify(
     people: People = None,
     trait: Annotated[
-        str | None, option("Trait to tell: sex, weight_kg, style=feminine:masculine.")
+        str | None, option("Trait to tell: sex, weight_kg, style, style=feminine:masculine.")
     ] = None,
     output: ReportFolder = None,
     permutations: Annotated[int, option("Random permutations of the trait to compare with.")] = 200,
@@ -42,19 +42,41 @@ def classify(
     person: Person = None,
     with_flagged: WithFlagged = False,
 ) -> None:
-    """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test."""
+    """Tell a trait from gait: separation, jack-knife, nested jack-knife, permutation test.
+
+    Three classes or more are told apart as a whole: errors, which are taken for which, chance.
+    """
+    from eigenwalker.analysis.contrast import has_several_classes
+    from eigenwalker.analysis.several_classes import SeveralClasses, classify_several
     from eigenwalker.analysis.trait_study import study_trait
     from eigenwalker.report.classification_report import write_classification_report
+    from eigenwalker.report.several_classes_report import (
+        several_classes_text,
+        write_several_classes_report,
+    )
+    from eigenwalker.study.messages import persons_in_words
 
     population = load_people(people, with_flagged, person)
     trait = trait or _usual_trait(population)
     page = None
     with progress_bar("Classifying") as progress:
-        result = _classify(population, trait, n_permutations=permutations, progress=progress)
-        if output is not None:
-            page = write_classification_report(
-                study_trait(population, result, keep_size=keep_size), output
-            )
+        if has_several_classes(population, trait):
+            result = classify_several(population, trait, progress=progress)
+            if output is not None:
+                page = write_several_classes_report(result, population, output)
+        else:
+            result = _classify(population, trait, n_permutations=permutations, progress=progress)
+            if output is not None:
+                page = write_classification_report(
+                    study_trait(population, result, keep_size=keep_size), output
+                )
+    if isinstance(result, SeveralClasses):
+        print(f"{several_classes_text(result)}\n")
+        for sentence in persons_in_words(population.traits.iloc[result.rows]):
+            print(in_options(sentence))
+        if page is not None:
+            print(f"Report: {page}")
+        return
     classes = result.contrast
     print(f"{classes.trait}: {classes.negative} to {classes.positive}, {len(classes.rows)} walkers")
     _print_result(result, population)
@@ -145,11 +167,14 @@ def _print_result(result: Classification | Regression, population: Population) -
         permutation_sentence,
         person_sentences,
         printed_results,
+        size_sentence,
+        terms,
     )
 
     print(printed_results(result).to_string(index=False))
     print(f"\n{chance_sentence(result)}")
-    sentences = [permutation_sentence(result), multiple_inputs_sentence(result)]
+    sentences = [*terms(result), size_sentence(result)]
+    sentences += [permutation_sentence(result), multiple_inputs_sentence(result)]
     sentences += person_sentences(result.contrast, population.traits)
     for sentence in filter(None, sentences):
         print(in_options(sentence))

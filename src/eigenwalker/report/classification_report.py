@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
-from eigenwalker._version import __version__
 from eigenwalker.analysis.classification import Classification
 from eigenwalker.analysis.direction import Kind
 from eigenwalker.analysis.trait_study import TraitStudy
-from eigenwalker.report.blocks import Block, Code, Figure, Film, Items, Link, Report, Section, Text
+from eigenwalker.report.blocks import Block, Figure, Film, Items, Link, Report, Section, Text
 from eigenwalker.report.classification_figures import draw_figures, write_films
 from eigenwalker.report.classification_tables import (
     chance_sentence,
@@ -20,13 +20,17 @@ from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
     multiple_inputs_sentence,
+    people_gait_table,
     permutation_sentence,
     person_sentences,
     plausibility_table,
     results_table,
+    size_sentence,
+    terms,
     traits_table,
 )
 from eigenwalker.report.html_report import write_report
+from eigenwalker.report.result_files import made_with, write_figures, write_json, write_tables
 from eigenwalker.report.words import CITE, WORDS
 
 
@@ -71,16 +75,41 @@ def write_classification_report(
         title=f"{_capital(trait)} from gait",
         lead=_lead(study),
         sections=[
+            Section("What tells them apart", _results(study, figures)),
             Section("Who walked", _who(study)),
             Section("How well the model holds", _model(study, figures)),
-            Section("What tells them apart", _results(study, figures)),
             Section("What it looks like", _appearance(study, figures, films)),
             Section("Mind", [Items(_cautions(study))]),
-            Section("Made with", [Code(f"eigenwalker {__version__}\n{CITE['troje2002']}")]),
+            Section("Made with", [made_with(_seed(study), CITE["troje2002"])]),
         ],
         beside=beside,
     )
+    write_files(study, figures, folder)
     return write_report(report, folder)
+
+
+def write_files(study: TraitStudy, figures: dict[str, Figure], folder: Path) -> None:
+    """Write results as CSV and JSON, and figures as SVG and PDF, beside the page."""
+    result, contrast = study.result, study.result.contrast
+    walkers = study.traits.iloc[contrast.rows].reset_index(drop=True)
+    nested = pd.DataFrame(
+        {each.input.title: each.nested.held_out for each in result.results}
+    ).add_prefix("held out, ")
+    tables = {"results": study.table, "predictions": walkers.join(nested)}
+    write_tables(tables, folder)
+    facts = {
+        "trait": contrast.trait,
+        "negative": contrast.negative,
+        "positive": contrast.positive,
+        "permutations": result.n_permutations,
+        "p_permutes_within_persons": contrast.varies_within_persons,
+    }
+    write_json(facts | tables, folder / "results.json")
+    write_figures({name: each.figure for name, each in figures.items()}, folder / "figures")
+
+
+def _seed(study: TraitStudy) -> str:
+    return f"{study.result.n_permutations} permutations, random state {study.result.random_state}"
 
 
 def _capital(text: str) -> str:
@@ -95,17 +124,18 @@ def _lead(study: TraitStudy) -> str:
         n = best["best n"]
         components = "component that does" if n == 1 else f"{n} components that do"
         return (
-            f"Left out one at a time, {best['errors']} of {n_walkers} walkers {are} misclassified "
-            f"from everything that is known of them, with the {components} best; "
-            f"{best['nested errors']} when that number is chosen without them. "
-            f"{chance_sentence(result)}"
+            f"Left out of everything, {best['nested errors']} of {n_walkers} walkers "
+            f"({best['nested %']:.3g} %) are misclassified from all that is known of them: the "
+            f"error to expect of new people. {best['errors']} {are} with the {components} best on "
+            f"these walkers, which is too few. {chance_sentence(result)} {size_sentence(result)}"
         )
     return (
-        f"Predicted from everything, {result.contrast.trait} of {n_walkers} walkers left out one "
-        f"at a time correlates with the truth at {best['correlation']:.2f} (R2 {best['R2']:.2f}) "
-        "with the number of components that does best; at "
-        f"{best['nested correlation']:.2f} (R2 {best['nested R2']:.2f}) when that number is chosen "
-        f"without them. {chance_sentence(result)}"
+        f"Predicted from everything, {result.contrast.trait} of {n_walkers} walkers left out of "
+        f"all that is learnt and chosen correlates with the truth at "
+        f"{best['nested correlation']:.2f} (R2 {best['nested R2']:.2f}, RMSE "
+        f"{best['nested RMSE']:.3g}): what to expect of new people. With the number of components "
+        f"that does best on these walkers it is {best['correlation']:.2f} (R2 {best['R2']:.2f}), "
+        f"which is too good. {chance_sentence(result)} {size_sentence(result)}"
     )
 
 
@@ -121,7 +151,11 @@ def _who(study: TraitStudy) -> list[Block]:
     provenance = [f"{key}: {v}" for key, v in study.provenance.items() if key != "recipe"]
     if provenance:
         blocks.append(Items(provenance))
-    tables = (traits_table(study.traits), flags_table(study.names, flags))
+    tables = (
+        traits_table(study.traits),
+        people_gait_table(study),
+        flags_table(study.names, flags),
+    )
     return blocks + [table for table in tables if table]
 
 
@@ -147,7 +181,12 @@ def _model(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
 def _results(study: TraitStudy, figures: dict[str, Figure]) -> list[Block]:
     result = study.result
     blocks: list[Block] = [results_table(study)]
-    sentences = (permutation_sentence(result), multiple_inputs_sentence(result))
+    sentences = (
+        size_sentence(result),
+        permutation_sentence(result),
+        multiple_inputs_sentence(result),
+    )
+    blocks.append(Items(terms(result)))
     blocks += [Text(sentence) for sentence in sentences if sentence]
     if not isinstance(result, Classification):
         return [*blocks, figures["regression curves"]]

@@ -18,6 +18,21 @@ from eigenwalker.report.blocks import Table
 from eigenwalker.report.words import TABLES, WORDS
 from eigenwalker.study.messages import persons_in_words
 
+_POSSIBLE = {
+    "double_support_share": (0, 1),
+    "stance_share_left": (0.3, 1),
+    "stance_share_right": (0.3, 1),
+    "swing_share_left": (0, 0.7),
+    "swing_share_right": (0, 0.7),
+    "step_length_left_mm": (0, 2000),
+    "step_length_right_mm": (0, 2000),
+    "stride_length_mm": (0, 4000),
+    "step_width_mm": (-300, 800),
+    "step_asymmetry": (-1, 1),
+    "stance_asymmetry": (-1, 1),
+}
+"""Between which limits parameters of a walk are."""
+
 
 def results_table(study: TraitStudy) -> Table:
     """Return how well a trait is predicted from each input."""
@@ -50,12 +65,39 @@ def printed_results(
 
     printed = pd.DataFrame({name: [cell(value) for value in table[name]] for name in table})
     printed = printed.assign(p=[printed_p(p) for p in table["p"]])
+    honest = [name for name in printed if str(name).startswith("nested")]
+    rest = [name for name in printed if name not in ("input", "p", *honest)]
+    printed = printed[["input", *honest, "p", *rest]]
     return printed.rename(columns={"p": p_heading(result.contrast)})
 
 
 def p_heading(contrast: Contrast) -> str:
     """Return the heading of p values, which says if they permute within persons."""
     return "p within persons" if contrast.varies_within_persons else "p"
+
+
+def terms(result: Classification | Regression) -> list[str]:
+    """Return what the columns of the results mean."""
+    return list(WORDS["terms"]["classes" if isinstance(result, Classification) else "number"])
+
+
+def size_sentence(result: Classification | Regression) -> str:
+    """Return that size alone tells as much as everything, where it does; else nothing."""
+    table = result.table().set_index("input")
+    error = "nested RMSE" if isinstance(result, Regression) else "nested errors"
+    size, whole = "size alone", ("everything, with size", "everything, size divided out")
+    known = [name for name in whole if name in table.index]
+    if size not in table.index or not known:
+        return ""
+    least = table.loc[known, error].min()
+    if table.loc[size, error] > least:
+        return ""
+    unit = "" if isinstance(result, Regression) else " walkers"
+    return (
+        f"Size alone, one number, does as well as everything or better ({error} "
+        f"{table.loc[size, error]:.3g}, not {least:.3g}{unit}): what tells them may be how tall "
+        "they are, not how they walk."
+    )
 
 
 def permutation_sentence(result: Classification | Regression) -> str:
@@ -120,10 +162,46 @@ def gait_table(walkers: Mapping[str, Walker]) -> Table:
     parameters = [gait_parameters(walker) for walker in walkers.values()]
     rows = []
     for name, (title, factor, decimals) in WORDS["gait"].items():
-        cells = [_fixed(factor * each[name], decimals) for each in parameters]
+        cells = [_fixed(factor * _possible(name, each[name]), decimals) for each in parameters]
         if any(cells):
             rows.append([title, *cells])
-    return Table("Gait of the walkers shown", ["", *walkers], rows)
+    caption = "Gait of the synthetic walkers shown; a dash where a walk could not have such a value"
+    return Table(caption, ["", *walkers], rows)
+
+
+def people_gait_table(study: TraitStudy) -> Table:
+    """Return gait parameters of the people themselves: mean and SD, by class where there are."""
+    contrast = study.result.contrast
+    parameters = pd.DataFrame([gait_parameters(walker) for walker in study.contrast_walkers])
+    groups = {f"all {len(parameters)}": np.ones(len(parameters), dtype=bool)}
+    if contrast.two_classes:
+        groups = {
+            f"{name} ({int(members.sum())})": members
+            for name, members in (
+                (contrast.negative, contrast.y < 0),
+                (contrast.positive, contrast.y > 0),
+            )
+        }
+    rows = []
+    for name, (title, factor, decimals) in WORDS["gait"].items():
+        values = factor * parameters[name].map(lambda value, name=name: _possible(name, value))
+        cells = [_mean_and_sd(values[members].dropna(), decimals) for members in groups.values()]
+        if any(cells):
+            rows.append([title, *cells])
+    return Table(TABLES["people"], ["", *groups], rows)
+
+
+def _mean_and_sd(values: pd.Series, decimals: int) -> str | None:
+    if values.empty:
+        return None
+    mean = _fixed(float(values.mean()), decimals)
+    return f"{mean} (SD {values.std():.{decimals}f})" if len(values) > 1 else mean
+
+
+def _possible(name: str, value: float) -> float:
+    """Return a parameter, NaN where no walk could have such a value."""
+    low, high = _POSSIBLE.get(name, (-np.inf, np.inf))
+    return value if low < value < high else float("nan")
 
 
 def plausibility_table(walkers: Mapping[str, Plausibility]) -> Table:

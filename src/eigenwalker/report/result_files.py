@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import platform
+import shlex
+import sys
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +18,10 @@ import pandas as pd
 
 from eigenwalker._version import __version__
 from eigenwalker.core.atomic_write import atomic_write, write_table
+from eigenwalker.report.blocks import Code
 
 FIGURES = (".svg", ".pdf")
+_LIBRARIES = ("numpy", "scipy", "scikit-learn", "xarray")
 
 
 def write_json(content: Mapping[str, Any], path: Path) -> Path:
@@ -42,6 +48,7 @@ def _plain(value: Any) -> Any:
 def write_figures(figures: Mapping[str, matplotlib.figure.Figure], folder: Path) -> list[Path]:
     """Write figures by name as SVG and PDF into a folder; return their paths."""
     paths = []
+    folder.mkdir(parents=True, exist_ok=True)
     for name, drawn in figures.items():
         plain = "-".join("".join(c if c.isalnum() else " " for c in name).split())
         for suffix in FIGURES:
@@ -52,6 +59,23 @@ def write_figures(figures: Mapping[str, matplotlib.figure.Figure], folder: Path)
                 drawn.savefig(unfinished, metadata=metadata)
             paths.append(path)
     return paths
+
+
+def made_with(*lines: str) -> Code:
+    """Return what a result was made with: command, program, versions, date; then other lines."""
+    typed = Path(sys.argv[0]).name in ("eigenwalker", "eigenwalker.exe", "__main__.py")
+    call = shlex.join(["eigenwalker", *sys.argv[1:]]) if typed else "called from Python"
+    libraries = ", ".join(f"{name} {version(name)}" for name in _LIBRARIES)
+    return Code(
+        "\n".join(
+            [
+                call,
+                f"eigenwalker {__version__}, Python {platform.python_version()}, {libraries}",
+                datetime.now(UTC).date().isoformat(),
+                *lines,
+            ]
+        )
+    )
 
 
 def write_tables(tables: Mapping[str, pd.DataFrame], folder: Path) -> list[Path]:
