@@ -57,6 +57,7 @@ def capture(folder: Path, settings: Answer) -> Answer:
     from eigenwalker.io.read import is_capture
     from eigenwalker.population.population import Population
     from eigenwalker.study.messages import capture_lines, flag_of
+    from eigenwalker.study.predict_captures import prediction_lines
     from eigenwalker.study.process_capture import process_capture
 
     files = [files_of(folder) / name for name in settings["files"]]
@@ -81,7 +82,7 @@ def capture(folder: Path, settings: Answer) -> Answer:
         "vector": vector.tolist(),
         "verdict": result.quality.verdict,
         "flag": flag_of(result.quality),
-        "messages": capture_lines(result),
+        "messages": [*capture_lines(result), *prediction_lines(people, vector)],
         "measures": {
             str(name): None if math.isnan(value) else value
             for name, value in walker_measures(made).items()

@@ -126,8 +126,9 @@ def _lead(study: TraitStudy) -> str:
         return (
             f"Left out of everything, {best['nested errors']} of {n_walkers} walkers "
             f"({best['nested %']:.3g} %) are misclassified from all that is known of them: the "
-            f"error to expect of new people. {best['errors']} {are} with the {components} best on "
-            f"these walkers, which is too few. {chance_sentence(result)} {size_sentence(result)}"
+            f"error to expect of new people. With the {components} best on these very walkers "
+            f"{best['errors']} {are}: too few, as the number was chosen for them. "
+            f"{chance_sentence(result)} {size_sentence(result)}"
         )
     return (
         f"Predicted from everything, {result.contrast.trait} of {n_walkers} walkers left out of "

@@ -14,6 +14,7 @@ from eigenwalker.psychophysics.fit_to_answers import AS_PUBLISHED, FITTED, Metri
 from eigenwalker.psychophysics.weights_file import BY_CHOICES_NAME, WEIGHTS_NAME, save_weights
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
+from eigenwalker.report.result_files import write_blocks
 from eigenwalker.report.words import CITE, TABLES, WORDS, figure, plain_name
 
 FEW_OBSERVERS = 10
@@ -121,7 +122,9 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
         Section("How this was done", [Items(method), Text(CITE["prazak2010"])]),
     ]
     lead = " ".join(fit_sentences(fit))
-    return write_report(Report("A metric fitted to answers", lead, sections), folder)
+    report = Report("A metric fitted to answers", lead, sections)
+    write_blocks(report, Path(folder))
+    return write_report(report, folder)
 
 
 def _weights_figure(fit: MetricFit) -> Figure:

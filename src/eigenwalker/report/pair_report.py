@@ -15,6 +15,7 @@ from eigenwalker.plotting.fitted_weights import figure_shares
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table, Text
 from eigenwalker.report.html_report import write_report
 from eigenwalker.report.pair_figures import component_maps, loop_and_pair_maps, transitions
+from eigenwalker.report.result_files import made_with, write_blocks
 from eigenwalker.report.words import (
     CITE,
     TABLES,
@@ -58,10 +59,12 @@ def write_pair_report(
         Section("Where", _where(comparison)),
         Section("Motion maps", maps),
         Section("From one walk into the other", transitions(comparison, names)),
-        Section("How this was done", [Items(_method(comparison)), Text(CITE["prazak2010"])]),
+        Section("How this was done", [Items(_method(comparison)), made_with(CITE["prazak2010"])]),
     ]
     lead = " ".join([*pair_sentences(result, names), *remark_sentences(remarks or {})])
-    return write_report(Report(f"{names[0]} and {names[1]}", lead, sections), folder)
+    report = Report(f"{names[0]} and {names[1]}", lead, sections)
+    write_blocks(report, Path(folder))
+    return write_report(report, folder)
 
 
 def pair_sentences(result: ReferenceComparison, names: tuple[str, str]) -> list[str]:

@@ -21,8 +21,9 @@ from eigenwalker.psychophysics.dissimilarity_structure import (
     map_of_walks,
     order_of_walks,
 )
-from eigenwalker.report.blocks import Figure, Items, Report, Section, Table, Text
+from eigenwalker.report.blocks import Figure, Items, Report, Section, Table
 from eigenwalker.report.html_report import write_report
+from eigenwalker.report.result_files import made_with, write_blocks
 from eigenwalker.report.words import CITE, TABLES, WORDS, body_sentence, figure, missing_points
 from eigenwalker.study.walks import Walks
 
@@ -91,10 +92,12 @@ def write_pairs_report(
         if reasons:
             sections.append(Section(title, [_items(reasons)]))
     sections.append(
-        Section("How this was done", [Items(_method(walks, metric)), Text(CITE["prazak2010"])])
+        Section("How this was done", [Items(_method(walks, metric)), made_with(CITE["prazak2010"])])
     )
     lead = " ".join(pairs_sentences(table, metric))
-    return write_report(Report(f"{len(names)} walks compared", lead, sections), folder)
+    report = Report(f"{len(names)} walks compared", lead, sections)
+    write_blocks(report, Path(folder))
+    return write_report(report, folder)
 
 
 def pairs_sentences(table: pd.DataFrame, metric: GroupMetric) -> list[str]:

@@ -18,7 +18,7 @@ import pandas as pd
 
 from eigenwalker._version import __version__
 from eigenwalker.core.atomic_write import atomic_write, write_table
-from eigenwalker.report.blocks import Code
+from eigenwalker.report.blocks import Code, Figure, Report, Table
 
 FIGURES = (".svg", ".pdf")
 _LIBRARIES = ("numpy", "scipy", "scikit-learn", "xarray")
@@ -76,6 +76,26 @@ def made_with(*lines: str) -> Code:
             ]
         )
     )
+
+
+def write_blocks(report: Report, folder: Path) -> None:
+    """Write the tables of a report as CSV and JSON, and its figures as SVG and PDF, beside it."""
+    figures: dict[str, matplotlib.figure.Figure] = {}
+    tables: dict[str, pd.DataFrame] = {}
+    for section in report.sections:
+        for number, block in enumerate(section.blocks, start=1):
+            name = f"{section.title} {number}".lower().replace(" ", "-")
+            if isinstance(block, Figure):
+                figures[name] = block.figure
+            elif isinstance(block, Table):
+                tables[name] = pd.DataFrame(
+                    [list(row) for row in block.rows], columns=block.columns
+                )
+    (folder / "tables").mkdir(parents=True, exist_ok=True)
+    write_tables(tables, folder / "tables")
+    write_figures(figures, folder / "figures")
+    lead = {"title": report.title, "results": report.lead}
+    write_json(lead | tables, folder / "results.json")
 
 
 def write_tables(tables: Mapping[str, pd.DataFrame], folder: Path) -> list[Path]:

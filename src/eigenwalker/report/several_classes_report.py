@@ -94,6 +94,7 @@ def write_several_classes_report(
             [
                 [str(row.one), str(row.other), int(row.walkers), f"{100 * float(row.share):.0f} %"]
                 for row in confused.head(12).itertuples()
+                if row.walkers
             ],
         ),
     ]

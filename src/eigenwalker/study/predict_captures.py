@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from eigenwalker.analysis.contrast import usual_trait
 from eigenwalker.analysis.trait_model import TraitModel, trait_model
 from eigenwalker.core.progress import Progress
 from eigenwalker.core.walker import Walker
@@ -20,8 +21,11 @@ from eigenwalker.population.persons import persons_of
 from eigenwalker.population.population import Population
 from eigenwalker.study.capture_table import FILE, captures_in, traits_of_names
 from eigenwalker.study.fit_folder import outcomes_in_processes
-from eigenwalker.study.messages import flag_of
+from eigenwalker.study.messages import error_to_expect, flag_of
 from eigenwalker.study.process_capture import CaptureResult
+
+MOST_WAITED_FOR = 150
+"""Walkers of whom a page learns while somebody waits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,6 +133,29 @@ def predict_captures(
         table["error"] = np.where(table["status"] == "refused", np.nan, model.error)
     table["person_known"] = _persons_known(model, table[FILE], trait_from_name)
     return Predictions(model, table.assign(reason=reason))
+
+
+def prediction_lines(population: Population, vector: np.ndarray) -> list[str]:
+    """Return what the usual trait of a population is for one walk, in sentences; none of many.
+
+    Of more than 150 walkers it would take too long for who waits.
+    """
+    try:
+        trait = usual_trait(population)
+        if len(population) > MOST_WAITED_FOR:
+            return [f"{trait} of many walkers is told by 'eigenwalker predict'."]
+        model = trait_model(population, trait)
+    except ValueError:  # nothing tells these walkers apart
+        return []
+    row = model.predict(vector).iloc[0]
+    value = f"{row['prediction']:.4g}" if model.is_number else str(row["prediction"])
+    lines = [f"Predicted {model.trait}: {value}. {error_to_expect(model)}"]
+    if row["far"]:
+        lines.append(
+            f"This walk is far from all walkers learnt from (in {row['far_in']}): do not rely on "
+            "what is predicted."
+        )
+    return lines
 
 
 def _paths(files: Sequence[str | Path] | str | Path) -> list[Path]:
