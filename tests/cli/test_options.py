@@ -26,6 +26,7 @@ TAKE_A_TRAIT = {
     "demo": ("--trait", "beauty"),
     "classify": ("--trait", "beauty"),
     "compare": ("people.nc", "--trait", "beauty"),
+    "predict": ("people.nc", "people.nc", "--trait", "beauty"),
     "synthesize": ("--trait", "beauty=1"),
     "stimulus": ("--trait", "beauty=1"),
 }

@@ -11,6 +11,7 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    MappingFile,
     Partial,
     Person,
     Rate,
@@ -41,6 +42,7 @@ def parameters(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    mapping: MappingFile = None,
 ) -> None:
     """Measure cadence, speed, steps, strides, stance, swing and double support of each capture.
 
@@ -50,6 +52,7 @@ def parameters(
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
     """
     from eigenwalker.core.atomic_write import write_table
+    from eigenwalker.markers.mapping import as_mapping
     from eigenwalker.population.persons import persons_of
     from eigenwalker.report.result_files import write_json
     from eigenwalker.study.parameter_table import parameter_table
@@ -72,6 +75,7 @@ def parameters(
             rate_hz=rate,
             partial=partial,
             subject=subject,
+            mapping=None if mapping is None else as_mapping(mapping).as_dict(),
         )
     stem = output.with_suffix("")
     tables = {"files": table.files, "persons": table.persons, "codebook": table.codebook}

@@ -11,6 +11,7 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
+    MappingFile,
     Partial,
     Person,
     Rate,
@@ -46,12 +47,14 @@ def predict(
     rate: Rate = None,
     partial: Partial = "refuse",
     subject: Subject = None,
+    mapping: MappingFile = None,
 ) -> None:
     """Tell a trait of new captures, with the error to expect and a warning of unusual walks.
 
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
     """
     from eigenwalker.core.atomic_write import write_table
+    from eigenwalker.markers.mapping import as_mapping
     from eigenwalker.report.result_files import write_json
     from eigenwalker.study.messages import error_to_expect
     from eigenwalker.study.predict_captures import predict_captures
@@ -73,6 +76,7 @@ def predict(
             rate_hz=rate,
             partial=partial,
             subject=subject,
+            mapping=None if mapping is None else as_mapping(mapping).as_dict(),
         )
     table, model = found.table, found.model
     sentence = error_to_expect(model)
