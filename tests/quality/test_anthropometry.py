@@ -84,6 +84,12 @@ def test_a_body_twice_or_half_as_broad_is_found(person):
         assert "breadth" in kinds(person.copy(data=person.values * [1, factor, 1]))
 
 
+def test_a_camera_that_makes_all_lengths_vary_tells_nothing_of_links(person):
+    noise = np.random.default_rng(0).normal(0, 30, person.shape)
+    assert "link" not in kinds(person + noise)
+    assert "link" in kinds(exchanged(person, JOINTS.index("sternum"), JOINTS.index("left_wrist")))
+
+
 @pytest.mark.parametrize(
     "build",
     [

@@ -34,18 +34,18 @@ LIMITS = {
     "speed": (of.FASTEST_FROUDE,),
     "hardly_periodic": (of.HOPELESS_R2, of.STEADY_R2),
     "not_periodic": (of.HOPELESS_R2,),
-    "cadence": of.FREQUENCIES_HZ,
+    "cadence": (*of.FREQUENCIES_HZ, of.SLOWEST_HZ, of.SHORT_STRIDE),
     "one_stride": (of.FEWEST_STRIDES,),
     "unsteady": (of.ENOUGH_STRIDES, of.STEADY_SHARE),
     "filled_gaps": (of.MISSING_SHARE,),
-    "elastic_limbs": (of.BONE_VARIATION, of.SYNTHESISED_R2),
+    "elastic_limbs": (of.BONE_VARIATION, of.GROWN_MM, of.SYNTHESISED_R2),
     "flicker": (of.FLICKER_SHARE,),
     "length": (joints.LENGTH_FACTOR,),
     "unequal": (joints.SIDE_FACTOR,),
     "place": (joints.ONE_PLACE,),
     "middle": (joints.MIDDLE, joints.NEAR_MIDDLE),
-    "breadth": joints.BREADTH_FACTORS,
-    "link": (joints.LINK_VARIATION,),
+    "breadth": (*joints.TORSO_FACTORS, *joints.BREADTH_FACTORS),
+    "link": (joints.LINK_VARIATION, joints.LINK_OF_LIMBS),
 }
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import eigenwalker as ew
+from eigenwalker.markers.virtual_markers import virtual_markers
+from eigenwalker.quality.assessment import bone_length_variation
 from eigenwalker.study import messages
 from eigenwalker.study.process_capture import NoWalkError, process_capture
 
@@ -81,8 +83,9 @@ def test_all_joints_have_the_walker_and_the_quality_of_the_fifteen(person):
     full, usual = process_capture(person, joints="full"), process_capture(person)
     assert set(ew.JOINTS.markers) < set(full.walk.marker.values.tolist())
     assert full.walker.markers == usual.walker.markers
-    of_walker = usual.quality.bone_length_variation  # whose steady walk can end a frame later
-    assert full.quality.bone_length_variation == pytest.approx(of_walker, rel=0.01)
+    steady = virtual_markers(person).sel(time=full.walk.time.values)
+    expected = bone_length_variation(steady)
+    assert full.quality.bone_length_variation == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_capture_without_a_walk_says_what_is_known_of_it(person):

@@ -11,17 +11,11 @@ from numpy.typing import ArrayLike
 
 from eigenwalker.analysis.span import Span, span_of
 from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.skeleton import LIMBS
 from eigenwalker.population.population import Population, check_population
 
 if TYPE_CHECKING:
     from eigenwalker.analysis.walker_space import WalkerSpace
-
-LIMBS = {
-    "upper arms": ("shoulder", "elbow"),
-    "forearms": ("elbow", "wrist"),
-    "thighs": ("hip", "knee"),
-    "shanks": ("knee", "ankle"),
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from eigenwalker.core.quaternions import product
 
+GRAVITY_MM_S2 = 9810.0
+
 
 def forward_kinematics(
     parents: Sequence[int], offsets: np.ndarray, rotations: np.ndarray

@@ -9,6 +9,14 @@ from importlib.resources import files
 
 Segment = tuple[str, str]
 
+LIMBS = {
+    "upper arms": ("shoulder", "elbow"),
+    "forearms": ("elbow", "wrist"),
+    "thighs": ("hip", "knee"),
+    "shanks": ("knee", "ankle"),
+}
+"""The segments that are single bones, by the joints of one side."""
+
 
 @dataclass(frozen=True)
 class Skeleton:

@@ -8,7 +8,7 @@ import numpy as np
 
 SIDES = ("left", "right")
 
-FLAT = 0.01
+FLAT = 0.03
 """Thickness of a body over its length below which a capture has two dimensions: skeletons of real
 captures reach 0.15 and more."""
 

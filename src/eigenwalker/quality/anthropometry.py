@@ -9,14 +9,14 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.skeleton import JOINTS
+from eigenwalker.core.skeleton import JOINTS, LIMBS
 from eigenwalker.gait.body_points import SIDES
 
 SEGMENTS = {
-    ("hip", "knee"): 0.245,
-    ("knee", "ankle"): 0.246,
-    ("shoulder", "elbow"): 0.186,
-    ("elbow", "wrist"): 0.146,
+    LIMBS["thighs"]: 0.245,
+    LIMBS["shanks"]: 0.246,
+    LIMBS["upper arms"]: 0.186,
+    LIMBS["forearms"]: 0.146,
 }
 """Lengths as shares of stature (Winter 2009, fig. 4.1, after Drillis & Contini 1966)."""
 
@@ -46,6 +46,9 @@ BREADTH_FACTORS = (0.6, 1.5)
 """Range of their geometric mean over `BREADTHS`, set outside what our captures and simulated people
 show, 0.66 to 1.32."""
 
+TORSO_FACTORS = (0.65, 1.6)
+"""The same of hips and shoulders alone, on which posture tells nothing; shown are 0.71 to 1.51."""
+
 NARROWEST = 0.25
 """Share of `BREADTHS` below which a single breadth counts as this, so that none decides alone."""
 
@@ -70,8 +73,11 @@ of skeletons reach 0.09."""
 
 LINK_VARIATION = 0.10
 """Coefficient of variation of distances within pelvis and trunk: skeletons and skin stay below
-0.04. Noisy depth cameras reach 0.3: such a pelvis and trunk cannot be told from exchanged labels,
-so these captures are not to be used either."""
+0.04."""
+
+LINK_OF_LIMBS = 3.0
+"""The same over the median one of the limbs. Where a noisy camera makes all lengths vary, those of
+pelvis and trunk tell nothing of labels: depth cameras reach about 3."""
 
 FRAMES = 200
 """Frames that are looked at."""
@@ -173,7 +179,7 @@ def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
         for pair in _ABOVE
         if _has(path, *pair) and not np.median(path[pair[0]][:, 2] - path[pair[1]][:, 2]) > 0
     ]
-    found += _links(path)
+    found += _links(path, np.median([_variation(path, *points) for points in lengths]))
     return tuple(found)
 
 
@@ -237,9 +243,11 @@ def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
         if np.median(apart) <= least or (part in ("hip", "shoulder") and sloping):
             yield WrongJoint("side", (f"left_{part}", f"right_{part}"))
         logs.append(np.log(max(np.median(apart) / stature / share, NARROWEST)))
-    breadth = float(np.exp(np.mean(logs)))
-    if len(logs) == len(BREADTHS) and not BREADTH_FACTORS[0] <= breadth <= BREADTH_FACTORS[1]:
-        yield WrongJoint("breadth", (), breadth)
+    torso, whole = float(np.exp(np.mean(logs[:2]))), float(np.exp(np.mean(logs)))
+    if len(lines) == 2 and not TORSO_FACTORS[0] <= torso <= TORSO_FACTORS[1]:
+        yield WrongJoint("breadth", (), torso)
+    elif len(logs) == len(BREADTHS) and not BREADTH_FACTORS[0] <= whole <= BREADTH_FACTORS[1]:
+        yield WrongJoint("breadth", (), whole)
 
 
 def _left_by_legs(path: dict[str, np.ndarray]) -> np.ndarray:
@@ -263,11 +271,16 @@ def _cosine(one: np.ndarray, other: np.ndarray) -> float:
     return float(np.median(np.einsum("ta,ta->t", one, other)))
 
 
-def _links(path: dict[str, np.ndarray]) -> Iterator[WrongJoint]:
-    """Yield distances within pelvis and trunk that do not hold."""
+def _variation(path: dict[str, np.ndarray], one: str, other: str) -> float:
+    length = np.linalg.norm(path[one] - path[other], axis=1)
+    return float(length.std() / max(length.mean(), 1e-9))
+
+
+def _links(path: dict[str, np.ndarray], of_limbs: float) -> Iterator[WrongJoint]:
+    """Yield distances within pelvis and trunk that do not hold, beside those of limbs."""
     for pair in _LINKS:
         if not _has(path, *pair):
             continue
-        length = np.linalg.norm(path[pair[0]] - path[pair[1]], axis=1)
-        if length.std() > LINK_VARIATION * max(length.mean(), 1e-9):
-            yield WrongJoint("link", pair, float(length.std() / max(length.mean(), 1e-9)))
+        variation = _variation(path, *pair)
+        if variation > max(LINK_VARIATION, LINK_OF_LIMBS * of_limbs):
+            yield WrongJoint("link", pair, variation)

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker.core.fourier import share_explained
+from eigenwalker.core.skeleton import LIMBS
 from eigenwalker.core.smoothing import running_mean
 from eigenwalker.core.trajectories import check_trajectories, sampling_rate
 from eigenwalker.gait.body_points import SIDES, thickness
@@ -20,18 +21,6 @@ from eigenwalker.quality.anthropometry import wrong_joints
 from eigenwalker.quality.ground_contact import ground_contact
 from eigenwalker.quality.marker_places import wrong_markers
 from eigenwalker.quality.quality import Quality
-
-LIMBS = tuple(
-    (f"{side}_{upper}", f"{side}_{lower}")
-    for side in SIDES
-    for upper, lower in (
-        ("hip", "knee"),
-        ("knee", "ankle"),
-        ("shoulder", "elbow"),
-        ("elbow", "wrist"),
-    )
-)
-"""The segments that are single bones."""
 
 FEWEST_POINTS = 6
 """Fewer may lie in a plane without the capture having two dimensions."""
@@ -153,7 +142,8 @@ def judge(
             strides = strides.sel(marker=walk.marker)
     height_mm, lean_deg = _height_and_lean(repaired.values, names)
     seen = strides if walk is None else walk
-    markers, mirrored = wrong_markers((repaired if labelled is None else labelled)[steady])
+    points = (repaired if labelled is None else labelled)[steady]
+    markers, mirrored = wrong_markers(points)
     return Quality(
         rate_hz=rate_hz,
         duration_s=len(capture) / rate_hz,
@@ -167,7 +157,7 @@ def judge(
         height_mm=height_mm,
         lean_deg=lean_deg,
         extent_mm=_extent(repaired.values),
-        thickness=thickness(seen.values) if len(names) >= FEWEST_POINTS else np.nan,
+        thickness=_thickness(seen.values, points.values),
         wrong_joints=markers or wrong_joints(seen),
         problem=problem,
         **(
@@ -202,6 +192,13 @@ def _height_and_lean(positions: np.ndarray, names: list[str]) -> tuple[float, fl
     return body_height(positions, names), float(np.degrees(np.arctan2(np.hypot(x, y), z)))
 
 
+def _thickness(*bodies: np.ndarray) -> float:
+    """Return the least thickness of the points that are always seen, of joints and of markers."""
+    always = [body[:, np.isfinite(body).all(axis=(0, 2))] for body in bodies]
+    always = [body for body in always if body.shape[1] >= FEWEST_POINTS]
+    return min(map(thickness, always), default=float("nan"))
+
+
 def _extent(positions: np.ndarray) -> float:
     """Return the median diagonal of the box about a body, in mm."""
     seen = positions[np.isfinite(positions).any(axis=(1, 2))]
@@ -215,7 +212,8 @@ def bone_length_variation(capture: xr.DataArray) -> dict[tuple[str, str], float]
     """Return the coefficient of variation of each limb's length."""
     place = {name: index for index, name in enumerate(capture.marker.values.tolist())}
     variation = {}
-    for upper, lower in LIMBS:
+    limbs = [(f"{s}_{upper}", f"{s}_{lower}") for s in SIDES for upper, lower in LIMBS.values()]
+    for upper, lower in limbs:
         if upper in place and lower in place:
             bone = capture.values[:, place[upper]] - capture.values[:, place[lower]]
             length = np.linalg.norm(bone[np.isfinite(bone).all(axis=1)], axis=1)

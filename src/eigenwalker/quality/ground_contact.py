@@ -1,4 +1,4 @@
-"""How a walk in place stands on its ground: lean, slope, speed, stance, and bend of the knees."""
+"""How a walk in place stands on its ground: lean, slope, speed, length of strides, and stance."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.fourier import fit_basis, harmonic_basis
+from eigenwalker.core.kinematics import GRAVITY_MM_S2
 from eigenwalker.gait.body_points import (
     ANKLE_HEIGHT_OF_LEG,
     SIDES,
@@ -19,15 +19,6 @@ from eigenwalker.gait.events import events_at
 from eigenwalker.gait.heading import known_speed
 from eigenwalker.gait.parameters import stance_shares as shares_of
 
-GRAVITY_MM_S2 = 9810.0
-
-LOADING_BEND_DEG = 4.0
-"""Bend of the knee that counts as one under load: in forward walking the mean curve has some 20
-degrees at 14 per cent of the stride (Schwartz et al. 2008, J Biomech 41:1639)."""
-
-_N_HARMONICS = 5
-_FEWEST_FRAMES = 4 * _N_HARMONICS + 2
-"""Twice what the harmonics need."""
 _STANDING_SHARE = 0.25
 """Share of the frames in which an ankle moves backwards most evenly: those of stance."""
 
@@ -39,7 +30,7 @@ class GroundContact(NamedTuple):
     standing_slope: float = float("nan")
     froude: float = float("nan")
     stance_shares: float = float("nan")
-    knees_bend_under_load: bool = False
+    stride_of_leg: float = float("nan")
 
 
 def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
@@ -56,7 +47,7 @@ def ground_contact(walk: xr.DataArray, rate_hz: float) -> GroundContact:
         standing_slope=float(slope),
         froude=speed**2 / (GRAVITY_MM_S2 * max(leg_mm, 1e-9)),
         stance_shares=sum(shares_of(events_at(walk, frequency_hz), frequency_hz)),
-        knees_bend_under_load=all(_bends_under_load(leg, frequency_hz / rate_hz) for leg in legs),
+        stride_of_leg=abs(speed) / frequency_hz / max(leg_mm, 1e-9),
     )
 
 
@@ -91,24 +82,3 @@ def _slope(ankle: np.ndarray, rate_hz: float) -> float:
     first = int(np.argmin(backwards[n - 1 :] - backwards[: len(backwards) - n + 1]))
     stance = velocity[order[first : first + n]].mean(axis=0)
     return float(stance[2] / stance[0])
-
-
-def _bends_under_load(leg: np.ndarray, strides_a_frame: float) -> bool:
-    """Return whether a knee has a second wave of flexion a stride, beside that of the swing."""
-    if len(leg) < _FEWEST_FRAMES:
-        return False
-    thigh, shank = np.diff(leg, axis=1).swapaxes(0, 1)
-    lengths = np.linalg.norm(thigh, axis=1) * np.linalg.norm(shank, axis=1)
-    cosine = np.einsum("ta,ta->t", thigh, shank) / np.maximum(lengths, 1e-9)
-    flexion = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-    weights = fit_basis(
-        harmonic_basis(np.arange(len(leg)) * strides_a_frame, _N_HARMONICS), flexion
-    )
-    cycle = harmonic_basis(np.arange(100) / 100, _N_HARMONICS) @ weights
-    cycle = np.roll(cycle, -int(cycle.argmax()))
-    rises = cycle[1:-1] > np.maximum(cycle[:-2], cycle[2:])
-    peaks = np.flatnonzero(rises) + 1
-    return any(
-        cycle[peak] - max(cycle[:peak].min(), cycle[peak:].min()) > LOADING_BEND_DEG
-        for peak in peaks
-    )

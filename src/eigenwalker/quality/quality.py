@@ -34,8 +34,20 @@ STEADY_SHARE = 0.40
 BONE_VARIATION = 0.05
 """Coefficient of variation above which a limb is no bone: markers on skin stay below 0.03."""
 
+GROWN_MM = 1500.0
+"""From ankles to head of a grown person. Skin moves over bones by millimetres, so the limbs of
+smaller bodies may vary by as many millimetres as theirs, which is a greater share."""
+
 FREQUENCIES_HZ = (0.5, 1.4)
-"""Strides a second of walking people; above this people run, below they shuffle or pause."""
+"""Strides a second of walking people; above this people run, below they walk slowly or pause."""
+
+SLOWEST_HZ = 0.25
+"""Strides a second below which nothing is steady; patients walk with 0.35 and more."""
+
+SHORT_STRIDE = 1.2
+"""Length of a stride over that of the leg, up to which slow strides are those of slow people. Steps
+grow with cadence (walk ratio: Sekiya et al. 1996, J Hum Mov Stud 30:241); at the usual pace people
+have 1.6, and keep it where only the frame rate is wrong."""
 
 MISSING_SHARE = 0.10
 """Share of filled samples above which a walk is partly interpolated."""
@@ -135,11 +147,10 @@ class Quality:
     frequency_hz, speed_mm_s, climb, climb_mm, wander_mm : float
         Of the steady strides: climb is rise over run, negative downwards, climb_mm the rise;
         wander_mm the root mean square distance from a straight line walked at constant speed.
-    standing_slope, froude, stance_shares : float
+    standing_slope, froude, stance_shares, stride_of_leg : float
         Rise over run of the standing ankles; speed squared over gravity and length of leg; shares
-        of the stride in which left and right foot stand, added. NaN if unknown.
-    knees_bend_under_load : bool
-        Whether knees bend twice a stride, as they do under load in forward walking.
+        of the stride in which left and right foot stand, added; length of a stride over that of the
+        leg. NaN if unknown.
     filled_share, r2, periodicity : float
         Of the steady strides: share of samples that were filled; share of variance that two
         harmonics explain; correlation of the movement with itself a stride later.
@@ -180,7 +191,7 @@ class Quality:
     standing_slope: float = np.nan
     froude: float = np.nan
     stance_shares: float = np.nan
-    knees_bend_under_load: bool = False
+    stride_of_leg: float = np.nan
     filled_share: float = 0.0
     r2: float = np.nan
     periodicity: float = np.nan
@@ -200,8 +211,8 @@ class Quality:
         """Codes of all that speaks against the capture; empty for "use"."""
         walk = _of_walk(self) if self.n_strides else {"no_steady_walk": True}
         body = _of_body(self)
-        checks = body | walk | _of_labels(self)
-        follow = next((_FOLLOW[code] for code in _FOLLOW if body.get(code)), set())
+        checks = body | _of_joints(self) | walk | _of_labels(self)
+        follow = next((_FOLLOW[code] for code in _FOLLOW if checks.get(code)), set())
         return tuple(code for code, holds in checks.items() if holds and code not in follow)
 
     @property
@@ -218,6 +229,18 @@ class Quality:
         """
         tiny = self.height_mm < HEIGHTS_MM[0] and self.extent_mm < EXTENTS_MM[0]
         return self.height_mm if self.upright or tiny else self.extent_mm
+
+    @property
+    def rigid_variation(self) -> float:
+        """Coefficient of variation up to which limbs of this size are rigid."""
+        small = self.upright and self.height_mm < GROWN_MM
+        return BONE_VARIATION * (GROWN_MM / self.height_mm if small else 1.0)
+
+    @property
+    def slow_people(self) -> bool:
+        """Whether strides are slow and short, as those of people who walk slowly."""
+        slow = SLOWEST_HZ <= self.frequency_hz < FREQUENCIES_HZ[0]
+        return bool(slow and self.stride_of_leg <= SHORT_STRIDE)
 
     @property
     def level(self) -> bool:
@@ -245,16 +268,17 @@ class Quality:
         return sum(repair.kind == "swap" for repair in self.repairs)
 
 
+_OF_BODY = {"wrong_joints", "sides_swapped", "tilted", "sloping", "elastic_limbs"}
+_OF_BODY |= {"not_level", "backwards", "speed", "no_double_support"}
 _FOLLOW = {
-    "flat": {"wrong_joints", "tilted", "sides_swapped"},
-    "impossible_height": {
-        *("elastic_limbs", "sides_swapped", "wrong_joints", "tilted", "sloping"),
-        *("not_level", "backwards", "speed", "no_double_support"),
-    },
-    "head_below_feet": {"wrong_joints", "tilted"},
-    "leaning": {"wrong_joints", "tilted"},
+    "flat": _OF_BODY,
+    "impossible_height": _OF_BODY,
+    "head_below_feet": _OF_BODY - {"not_level"},
+    "leaning": _OF_BODY - {"not_level"},
+    "sides_swapped": {"wrong_joints", "tilted", "sloping"},
+    "wrong_joints": {"sides_swapped", "tilted", "sloping"},
 }
-"""Findings that are no news after one about the body."""
+"""Findings that are no news after one about the body or its joints."""
 
 
 def _of_body(quality: Quality) -> dict[str, bool]:
@@ -286,20 +310,26 @@ def _of_walk(quality: Quality) -> dict[str, bool]:
         "no_double_support": quality.stance_shares < 1,
         "hardly_periodic": HOPELESS_R2 <= r2 < STEADY_R2,
         "not_periodic": not r2 >= HOPELESS_R2,
-        "cadence": not FREQUENCIES_HZ[0] <= quality.frequency_hz <= FREQUENCIES_HZ[1],
+        "cadence": not quality.slow_people
+        and not FREQUENCIES_HZ[0] <= quality.frequency_hz <= FREQUENCIES_HZ[1],
         "one_stride": n_strides < FEWEST_STRIDES,
         "unsteady": few and n_strides >= FEWEST_STRIDES and quality.steady_share < STEADY_SHARE,
         "filled_gaps": quality.filled_share > MISSING_SHARE,
     }
 
 
-def _of_labels(quality: Quality) -> dict[str, bool]:
+def _of_joints(quality: Quality) -> dict[str, bool]:
+    kinds = {each.kind for each in quality.wrong_joints}
     return {
-        "elastic_limbs": not quality.r2 > SYNTHESISED_R2
-        and max(quality.bone_length_variation.values(), default=0) > BONE_VARIATION,
-        "sides_swapped": quality.sides_swapped
-        and not any(each.kind == "side" for each in quality.wrong_joints),
-        "wrong_joints": bool(quality.wrong_joints),
+        "sides_swapped": quality.sides_swapped and "side" not in kinds,
+        "wrong_joints": bool(kinds),
+    }
+
+
+def _of_labels(quality: Quality) -> dict[str, bool]:
+    most = max(quality.bone_length_variation.values(), default=0)
+    return {
+        "elastic_limbs": not quality.r2 > SYNTHESISED_R2 and most > quality.rigid_variation,
         "repeated_names": bool(quality.repeated),
         "swapped_labels": quality.left_right_swaps > 0,
         "flicker": max(quality.removed_share.values(), default=0) > FLICKER_SHARE,

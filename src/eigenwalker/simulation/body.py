@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GRAVITY = 9810.0
-"""mm/s2."""
 TOE_BEND = np.radians(28)
 """How far toes bend up before the ball leaves the ground."""
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from eigenwalker.core.fourier import harmonic_basis
-from eigenwalker.simulation.body import GRAVITY, Body
+from eigenwalker.core.kinematics import GRAVITY_MM_S2
+from eigenwalker.simulation.body import Body
 from eigenwalker.simulation.norms import FREE_SPEED, delay, norm_coefficients
 
 LEG_HARMONICS = 8
@@ -55,7 +56,7 @@ def gait_parameters(person: Mapping[str, float], body: Body) -> GaitParameters:
     faster = (speed / 1000 / np.sqrt(size) - 0.7) / 0.9
     # Schwartz et al. (2008): steps of 0.64, 0.76, 0.85 leg lengths at 0.29, 0.43, 0.56.
     effort = FREE_SPEED + (stride_length / 2 / body.leg - 0.76) / 0.78
-    dimensionless = speed / np.sqrt(GRAVITY * body.leg)
+    dimensionless = speed / np.sqrt(GRAVITY_MM_S2 * body.leg)
     return GaitParameters(
         stride_length=stride_length,
         frequency=person["frequency_hz"],
@@ -141,7 +142,7 @@ def pelvis_paths(person: Mapping[str, float], gait: GaitParameters) -> np.ndarra
     ahead, side, up = np.zeros((3, 2 * PELVIS_HARMONICS + 1))
     side[1] = gait.lateral_range / 2
     up[4] = gait.vertical_range / 2
-    ahead[4] = GRAVITY * up[4] / gait.speed / (4 * np.pi * gait.frequency)
+    ahead[4] = GRAVITY_MM_S2 * up[4] / gait.speed / (4 * np.pi * gait.frequency)
     highest = 0.30 + person["bob_lag"]
     lags = highest - 0.125, 0.02 + person["sway_lag"], highest
     return np.array([delay(path, lag) for path, lag in zip((ahead, side, up), lags, strict=True)])

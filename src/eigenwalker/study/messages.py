@@ -24,7 +24,7 @@ from eigenwalker.population.persons import (
     persons_of,
 )
 from eigenwalker.quality import quality as limit
-from eigenwalker.quality.quality import BONE_VARIATION, FLICKER_SHARE, Quality
+from eigenwalker.quality.quality import FLICKER_SHARE, Quality
 from eigenwalker.study.body_warnings import WIDE_HIPS, RetargetingWarnings
 from eigenwalker.study.process_capture import CaptureResult
 
@@ -247,6 +247,7 @@ def _values(quality: Quality) -> dict[str, object]:
     wrong = [
         form[each.kind].format(*each.points, value=each.value) for each in quality.wrong_joints
     ]
+    rigid = quality.rigid_variation
     limb = max(variation, key=lambda limb: variation[limb], default=("", ""))
     swaps = [repair_in_words(repair) for repair in quality.repairs if repair.kind == "swap"]
     jumping = dict.fromkeys(repair.marker for repair in quality.repairs if repair.kind == "jump")
@@ -261,7 +262,6 @@ def _values(quality: Quality) -> dict[str, object]:
         "roll": abs(quality.roll_deg),
         "speed": quality.speed_mm_s / 1000,
         "backwards": -quality.speed_mm_s / 1000,
-        "reversed": _words()["reversed"]["yes" if quality.knees_bend_under_load else "no"],
         "wrong_points": "Joints are not where those of people are"
         if all({*each.points} <= {*JOINTS.markers} for each in quality.wrong_joints)
         else "Labels are wrong",
@@ -269,11 +269,15 @@ def _values(quality: Quality) -> dict[str, object]:
         "wrong_unit": f"the unit {quality.unit or 'of length'} is wrong",
         "rises": "rises" if quality.climb > 0 else "falls",
         "rise": abs(quality.climb_mm),
-        "n_elastic": sum(share > BONE_VARIATION for share in variation.values()),
+        "elastic": rigid,
+        "n_elastic": sum(share > rigid for share in variation.values()),
         "n_limbs": len(variation),
         "worst": f"{limb[0]} to {limb[1]}, "
-        f"{_beside(100 * variation.get(limb, 0), 100 * BONE_VARIATION, digits=1)}%",
+        f"{_beside(100 * variation.get(limb, 0), 100 * rigid, digits=1)}%",
         "r2": _beside(quality.r2, limit.STEADY_R2, digits=2),
+        "pace": _words()["pace"][
+            "fast" if quality.frequency_hz > limit.FREQUENCIES_HZ[1] else "slow"
+        ],
         "frequency": _beside(quality.frequency_hz, *limit.FREQUENCIES_HZ, digits=2),
         "repeated": ", ".join(quality.repeated),
         "swaps": "; ".join(swaps[:3]) + (f" and {len(swaps) - 3} more" if len(swaps) > 3 else ""),
