@@ -37,7 +37,24 @@ _SIDES = {
 
 @dataclass(frozen=True)
 class MarkerMapping:
-    """The markers of joints and of landmarks on the skin, and where they are written."""
+    """The markers of joints and of landmarks on the skin, and where they are written.
+
+    Attributes
+    ----------
+    joints : mapping of str to tuple of str
+        Joint (``"left_knee"``) to the markers whose mean it is.
+    skin : mapping of str to tuple of str
+        Landmark of a known marker set (``"LASI"``) to the markers that stand for it.
+    source : str
+        Name of the file it comes from.
+    lines : mapping of str to int
+        Lines of that file, for messages.
+
+    See Also
+    --------
+    read_mapping : From a TOML file.
+    eigenwalker.virtual_markers : Takes a mapping.
+    """
 
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     skin: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
@@ -83,7 +100,31 @@ def as_mapping(given: MarkerMapping | Mapping[str, Any] | str | Path | None) -> 
 
 
 def read_mapping(path: Path) -> MarkerMapping:
-    """Return the mapping in a TOML file; what is wrong in it is told with its line."""
+    """Return the mapping of marker names in a TOML file.
+
+    Parameters
+    ----------
+    path : path
+        A file with tables ``[joints]`` and ``[skin]``, as ``eigenwalker info FILE --write-mapping``
+        starts one.
+
+    Raises
+    ------
+    ValueError
+        With the line, for what a mapping cannot have.
+
+    See Also
+    --------
+    eigenwalker.virtual_markers : Takes the mapping, or the path itself.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> path = Path(getfixture("tmp_path")) / "names.toml"
+    >>> _ = path.write_text('[joints]\\nleft_ankle = "ANKLE_L"')
+    >>> read_mapping(path).joints
+    {'left_ankle': ('ANKLE_L',)}
+    """
     try:
         if path.stat().st_size > MAX_BYTES:
             raise ValueError(f"it has more than {MAX_BYTES // 1000} kB")
