@@ -100,7 +100,7 @@ def as_mapping(given: MarkerMapping | Mapping[str, Any] | str | Path | None) -> 
 
 
 def read_mapping(path: Path) -> MarkerMapping:
-    """Return the mapping of marker names in a TOML file.
+    r"""Return the mapping of marker names in a TOML file.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def read_mapping(path: Path) -> MarkerMapping:
     --------
     >>> from pathlib import Path
     >>> path = Path(getfixture("tmp_path")) / "names.toml"
-    >>> _ = path.write_text('[joints]\\nleft_ankle = "ANKLE_L"')
+    >>> _ = path.write_text('[joints]\nleft_ankle = "ANKLE_L"')
     >>> read_mapping(path).joints
     {'left_ankle': ('ANKLE_L',)}
     """
