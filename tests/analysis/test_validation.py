@@ -229,3 +229,10 @@ def test_the_class_that_is_lost_with_a_group_is_named():
     X, _ = population(8)
     with pytest.raises(ValueError, match="Without A no walker of the class m is left"):
         nested_leave_one_out(X, list("fmmfffff"), groups=list("AAABCDEF"))
+
+
+def test_a_number_of_permutations_below_zero_is_refused():
+    y = np.repeat([-1, 1], 4)
+    X = np.random.default_rng(0).normal(size=(8, 2))
+    with pytest.raises(ValueError, match="n_permutations=-3"):
+        permutation_test(X, y, n_permutations=-3)

@@ -272,6 +272,8 @@ def _permuted_labels(
     r: np.ndarray, groups: ArrayLike | None, n_permutations: int, random_state: RandomState
 ) -> np.ndarray:
     """Targets as they are, then in random orders: shape (walker, 1 + permutation)."""
+    if n_permutations < 0:
+        raise ValueError(f"n_permutations={n_permutations} is too few; give 0 or more.")
     rng = np.random.default_rng(random_state)
     _, first, group = np.unique(
         np.arange(len(r)) if groups is None else np.asarray(groups),

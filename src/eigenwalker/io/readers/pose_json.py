@@ -90,7 +90,8 @@ def _trajectories(file: CaptureFile, data: Any) -> xr.DataArray:
     if _is_dict(frames):
         frames = _records(frames)
     if not _is_list(frames) or not frames:
-        raise file.error("a list of frames", f"{type(frames).__name__}")
+        got = "a list without any" if _is_list(frames) else type(frames).__name__
+        raise file.error("a list of frames", got)
     names, positions = _positions(file, frames, top)
     return body_trajectories(file, TableValues(positions, *_times(frames)), names, notes)
 
