@@ -127,6 +127,8 @@ OF_FILES = {
     "simulation.write_captures",
     "study.capture_table",
     "study.fit_folder",
+    "study.parameter_table",
+    "study.predict_captures",
     "study.summarise",
 }
 """Take folders, or what other functions made of them."""
@@ -164,6 +166,8 @@ CALLS = {
     },
     "stimulus.Stimulus.play": lambda: {"self": ew.make_stimulus(walkers()[0]), "time": STRIDE},
     "analysis.classify": lambda: {"population": people(), "trait": "sex", "n_permutations": 0},
+    "analysis.classify_several": lambda: {"population": people(), "trait": "sex"},
+    "analysis.trait_model": lambda: {"population": people(), "trait": "sex"},
     "analysis.direction": lambda: {"space": space(), "discriminant": discriminant()},
     "analysis.jackknife_curves": of_x_and_y,
     "analysis.nested_leave_one_out": of_x_and_y,

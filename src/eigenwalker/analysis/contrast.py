@@ -168,6 +168,7 @@ def class_labels(
 
 def has_several_classes(population: Population, trait: str) -> bool:
     """Return whether a trait, or what is named of its values, is three classes or more of text."""
+    check_population(population)
     name, _, some = trait.partition("=")
     values = population.traits[trait_column(population.traits, name)]
     known = set(_as_text(values[~population.flagged])) - {""}
