@@ -177,8 +177,7 @@ def stimulus(
         write_set(context, conditions, output or Path("stimuli"), _made)
         return
     from eigenwalker.cli.stimulus_provenance import walker_line
-    from eigenwalker.plotting.encoding import FORMATS
-    from eigenwalker.stimulus.write_stimulus import write_stimulus
+    from eigenwalker.stimulus.write_stimulus import FILMS, write_stimulus
 
     film = str(context.info_name).endswith("synthesize")
     output = options["output"] = output or Path("walker.mp4" if film else "stim.json")
@@ -202,7 +201,7 @@ def stimulus(
         from eigenwalker.stimulus.animation import animated
 
         print(animated(made, choices=rig, closed=path.suffix.lower() == ".glb"))
-    print(f"{'Film' if path.suffix.lower() in FORMATS else 'Stimulus'}: {path}")
+    print(f"{'Film' if path.suffix.lower() in FILMS else 'Stimulus'}: {path}")
 
 
 synthesize = stimulus
