@@ -142,8 +142,10 @@ def judge(
             strides = strides.sel(marker=walk.marker)
     height_mm, lean_deg = _height_and_lean(repaired.values, names)
     seen = strides if walk is None else walk
-    points = (repaired if labelled is None else labelled)[steady]
-    markers, mirrored = wrong_markers(points)
+    points = repaired if labelled is None else labelled
+    if labelled is not None and any(repair.kind == "swap" for repair in record.repairs):
+        points = repair_labels(labelled)
+    markers, mirrored = wrong_markers(points[steady])
     return Quality(
         rate_hz=rate_hz,
         duration_s=len(capture) / rate_hz,
