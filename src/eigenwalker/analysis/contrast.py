@@ -54,9 +54,12 @@ class Contrast:
     @property
     def varies_within_persons(self) -> bool:
         """Whether some person has several values, so that permutations stay within persons."""
-        if self.persons is None:
-            return False
-        return bool((pd.Series(self.y).groupby(self.persons).nunique() > 1).any())
+        return self.persons is not None and bool((self.values_of_persons() > 1).any())
+
+    def values_of_persons(self) -> pd.Series[int]:
+        """Return how many values of the trait each person has."""
+        table = pd.DataFrame({"y": self.y, "person": self.persons})
+        return table.groupby("person")["y"].nunique()
 
     @property
     def labels(self) -> np.ndarray:

@@ -44,9 +44,7 @@ class Oddness:
         X, layout = population.X, population.layout
         parts = {name: layout.columns(name) for name in layout.blocks}
         who = np.arange(len(X)) if persons is None else persons
-        rows = []
-        for row, vector in enumerate(X):
-            rows.append(_distances(vector[None], X[who != who[row]], parts))
+        rows = [_distances(vector[None], X[who != who[row]], parts) for row, vector in enumerate(X)]
         return cls(X, parts, pd.concat(rows, ignore_index=True))
 
     def of(self, vectors: np.ndarray) -> pd.DataFrame:

@@ -99,11 +99,12 @@ class SeveralClasses:
         Columns ``one``, ``other``, ``walkers``, and ``share`` of the walkers of both.
         """
         table, names = self.confusion.to_numpy(), self.classes
-        rows = []
-        for i, j in combinations(range(len(names)), 2):
-            n = int(table[i, j] + table[j, i])
-            rows.append((names[i], names[j], n, n / table[[i, j]].sum()))
+        rows = [
+            (names[i], names[j], int(table[i, j] + table[j, i]), int(table[[i, j]].sum()))
+            for i, j in combinations(range(len(names)), 2)
+        ]
         pairs = pd.DataFrame(rows, columns=["one", "other", "walkers", "share"])
+        pairs["share"] = pairs["walkers"] / pairs["share"]
         return pairs.sort_values("share", ascending=False, kind="stable", ignore_index=True)
 
     def table(self) -> pd.DataFrame:
@@ -111,12 +112,12 @@ class SeveralClasses:
 
         The last row is of all.
         """
-        counts = self.confusion
-        rows = []
-        for name in self.classes:
-            n, right = int(counts.loc[name].sum()), int(counts.loc[name, name])
-            wrong = counts.loc[name].drop(name)
-            most = str(wrong.idxmax()) if wrong.max() else ""
+        counts = self.confusion.to_numpy()
+        rows: list[tuple[str, int, int, float, str]] = []
+        for row, name in enumerate(self.classes):
+            n, right = int(counts[row].sum()), int(counts[row, row])
+            wrong = np.where(np.arange(len(counts)) == row, 0, counts[row])
+            most = self.classes[int(wrong.argmax())] if wrong.any() else ""
             rows.append((name, n, n - right, 100 * (n - right) / n if n else np.nan, most))
         rows.append(("all", len(self.labels), self.errors, 100 * self.error, ""))
         heads = [self.trait, "walkers", "errors", "error %", "mostly taken for"]

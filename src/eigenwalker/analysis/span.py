@@ -53,7 +53,7 @@ def divisors(X: np.ndarray, scale: Scale) -> np.ndarray:
 
     Above 0 everywhere; 1 for a feature that does not vary.
     """
-    n_features = X.shape[1]
+    n_features = int(X.shape[1])
     if scale is None:
         return np.ones(n_features)
     if isinstance(scale, str):

@@ -7,7 +7,6 @@ from typing import Protocol
 
 import numpy as np
 import pandas as pd
-from sklearn.pipeline import make_pipeline
 
 from eigenwalker.analysis.contrast import has_several_classes, trait_contrast
 from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
@@ -158,26 +157,27 @@ def trait_model(
         oddness = Oddness.learnt(population.select(found.rows), found.persons)
         return TraitModel(found.trait, population, found.rows, predictor, found, (), oddness)
     contrast = trait_contrast(population, trait)
-    X, y, persons = population.X[contrast.rows], contrast.y, contrast.persons
-    nested = nested_leave_one_out(X, y, groups=persons, progress=progress)
+    walkers, y, persons = population.X[contrast.rows], contrast.y, contrast.persons
+    nested = nested_leave_one_out(walkers, y, groups=persons, progress=progress)
     curves_of = jackknife_curves if contrast.two_classes else regression_curves
-    n = curves_of(X, y, groups=persons).best_n
-    predictor = make_pipeline(WalkerSpace(), DiscriminantRegressor(n_components=n)).fit(X, y)
-    poles = ()
-    if contrast.two_classes:
-        predictor = _Sums(X, y, n)
-        poles = (contrast.negative, contrast.positive)
+    n = curves_of(walkers, y, groups=persons).best_n
+    predictor = _Sums(walkers, y, n, contrast.two_classes)
+    poles = (contrast.negative, contrast.positive) if contrast.two_classes else ()
     oddness = Oddness.learnt(population.select(contrast.rows), persons)
     return TraitModel(contrast.trait, population, contrast.rows, predictor, nested, poles, oddness)
 
 
 class _Sums:
-    """The sum of eq. 11 of walkers."""
+    """The sum of eq. 11 of walkers, or the number that the regression predicts."""
 
-    def __init__(self, X: np.ndarray, y: np.ndarray, n_components: int) -> None:
-        self._discriminant = make_pipeline(
-            WalkerSpace(), DiscriminantClassifier(n_components=n_components)
-        ).fit(X, y)
+    def __init__(self, X: np.ndarray, y: np.ndarray, n_components: int, classes: bool) -> None:
+        self._space = WalkerSpace().fit(X)
+        scores = self._space.transform(X)
+        if classes:
+            classifier = DiscriminantClassifier(n_components=n_components).fit(scores, y)
+            self._predict = classifier.decision_function
+        else:
+            self._predict = DiscriminantRegressor(n_components=n_components).fit(scores, y).predict
 
     def predict(self, X: np.ndarray) -> np.ndarray:
-        return self._discriminant.decision_function(X)
+        return self._predict(self._space.transform(X))

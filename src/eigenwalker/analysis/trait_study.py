@@ -135,7 +135,7 @@ def study_trait(
         X=X,
         space=WalkerSpace().fit(X),
         keep_size=keep_size,
-        contrast_walkers=tuple(population.walkers[row] for row in contrast.rows.tolist()),
+        contrast_walkers=tuple(population.select(contrast.rows).walkers),
     )
 
 

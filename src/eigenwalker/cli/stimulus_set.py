@@ -79,10 +79,11 @@ def _cells(table: Path) -> pd.DataFrame:
 def _rows(context: typer.Context, cells: pd.DataFrame, table: Path, folder: Path) -> Iterator[_Row]:
     import typer
 
-    refusals = typer.BadParameter.__bases__  # click's UsageError, wherever typer has click from
+    # click's UsageError, wherever typer has click from:
+    refusals: Any = typer.BadParameter.__bases__
     typed = _typed(context)
-    columns = _options_of(context.command, list(cells), table)
-    named = next((column for column in cells if column.lower() in NAMES), None)
+    columns = _options_of(context.command, [str(name) for name in cells], table)
+    named = next((name for name in map(str, cells) if name.lower() in NAMES), None)
     lines, files = cells.attrs["line"], set[str]()
     for number, (line, row) in enumerate(zip(lines, cells.to_dict("records"), strict=True)):
         where = f"{table.name}, line {line}"
@@ -105,7 +106,7 @@ def _rows(context: typer.Context, cells: pd.DataFrame, table: Path, folder: Path
         yield _Row(file, options, f"{where} ({file.name})")
 
 
-def _typed(context: typer.Context) -> dict[str, Any]:
+def _typed(context: Any) -> dict[str, Any]:
     """Return the options that are not left out."""
     source = context.get_parameter_source
     return {
@@ -164,7 +165,7 @@ def _file(name: str, folder: Path, where: str) -> Path:
 def _write_manifest(cells: pd.DataFrame, rows: list[_Row], folder: Path) -> Path:
     from eigenwalker.core.atomic_write import write_table
 
-    others = [column for column in cells if column.lower() != "file"]
+    others = [column for column in cells if str(column).lower() != "file"]
     table = cells[others].copy()
     table.insert(0, "file", [row.file.name for row in rows])
     return write_table(table, folder / MANIFEST, index=False)

@@ -97,7 +97,8 @@ class BmlModel:
         name, so that all commands and pages that take a population show the published axes. Sex has
         two walkers, ``female`` and ``male``; the others have three, -1, 0 and 1.
         """
-        walkers, traits = [self.walker()], [dict.fromkeys(set(self.axes) - {"sex"}, 0.0)]
+        walkers = [self.walker()]
+        traits: list[dict[str, Any]] = [dict.fromkeys(set(self.axes) - {"sex"}, 0.0)]
         for axis in self.axes:
             # As many as make the standard deviation of the walkers that differ in the trait 1.
             far = np.sqrt(0.5) if axis == "sex" else 1.0

@@ -108,7 +108,7 @@ def permutation_sentence(result: Classification | Regression) -> str:
     if not contrast.varies_within_persons:
         who = "walks" if contrast.persons is None else "persons, each with all their walks"
         return f"p permutes {contrast.trait} among {who}."
-    values = pd.Series(contrast.y).groupby(contrast.persons).nunique()
+    values = contrast.values_of_persons()
     return (
         f"p permutes {contrast.trait} within each person, as {(values > 1).sum()} of {len(values)} "
         "persons have several values of it: it asks whether walks of one person are told apart, "
@@ -125,7 +125,7 @@ def _both_sexes(contrast: Contrast) -> list[str]:
     """Return a warning if persons have several values of a trait that people do not change."""
     if not contrast.varies_within_persons or contrast.trait.lower() not in ("sex", "gender"):
         return []
-    values = pd.Series(contrast.y).groupby(contrast.persons).nunique()
+    values = contrast.values_of_persons()
     return [
         f"{contrast.trait} is not the same for all walks of a person ({values.idxmax()!r} for one):"
         " do numbers of persons begin again in each group?"

@@ -53,7 +53,7 @@ def write_figures(figures: Mapping[str, matplotlib.figure.Figure], folder: Path)
         plain = "-".join("".join(c if c.isalnum() else " " for c in name).split())
         for suffix in FIGURES:
             path = folder / f"{plain}{suffix}"
-            fonts = {"svg.hashsalt": "eigenwalker", "svg.fonttype": "none", "pdf.fonttype": 42}
+            fonts: Any = {"svg.hashsalt": "eigenwalker", "svg.fonttype": "none", "pdf.fonttype": 42}
             metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
             with mpl.rc_context(fonts), atomic_write(path) as unfinished:
                 drawn.savefig(unfinished, metadata=metadata)
@@ -89,7 +89,7 @@ def write_blocks(report: Report, folder: Path) -> None:
                 figures[name] = block.figure
             elif isinstance(block, Table):
                 tables[name] = pd.DataFrame(
-                    [list(row) for row in block.rows], columns=block.columns
+                    [list(row) for row in block.rows], columns=list(block.columns)
                 )
     (folder / "tables").mkdir(parents=True, exist_ok=True)
     write_tables(tables, folder / "tables")

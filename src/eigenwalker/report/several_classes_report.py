@@ -31,8 +31,8 @@ def several_classes_sentences(found: SeveralClasses) -> list[str]:
     confused = found.confused[found.confused["walkers"] > 0].head(3)
     if len(confused):
         pairs = "; ".join(
-            f"{row.one} and {row.other} ({row.walkers} walkers, {100 * float(row.share):.0f} %)"
-            for row in confused.itertuples()
+            f"{one} and {other} ({n} walkers, {100 * share:.0f} %)"
+            for one, other, n, share in confused.to_numpy().tolist()
         )
         sentences.append(f"Confused most are {pairs}.")
     else:
@@ -92,9 +92,9 @@ def write_several_classes_report(
             "Pairs of classes, those confused most first: walkers of one taken for the other",
             ["one class", "other class", "walkers", "of both"],
             [
-                [str(row.one), str(row.other), int(row.walkers), f"{100 * float(row.share):.0f} %"]
-                for row in confused.head(12).itertuples()
-                if row.walkers
+                [one, other, n, f"{100 * share:.0f} %"]
+                for one, other, n, share in confused.head(12).to_numpy().tolist()
+                if n
             ],
         ),
     ]

@@ -255,8 +255,8 @@ def outcomes_in_processes(
     names: list[str],
     settings: Mapping[str, Any],
     n_jobs: int,
-    outcome_of: Callable[[CaptureResult], _Outcome],
-) -> Iterator[_Outcome]:
+    outcome_of: Callable[[CaptureResult], tuple[Any, dict[str, Any]]],
+) -> Iterator[tuple[Any, dict[str, Any]]]:
     """Process captures in parallel; where the system ends a process, some one by one."""
     done = 0
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(names))
@@ -279,8 +279,8 @@ def _alone(
     folder: Path,
     name: str,
     settings: Mapping[str, Any],
-    outcome_of: Callable[[CaptureResult], _Outcome],
-) -> _Outcome:
+    outcome_of: Callable[[CaptureResult], tuple[Any, dict[str, Any]]],
+) -> tuple[Any, dict[str, Any]]:
     """Process one capture in a process that the system may end."""
     try:
         task = joblib.delayed(_outcome)(folder, name, settings, outcome_of)
@@ -297,8 +297,8 @@ def _outcome(
     folder: Path,
     name: str,
     settings: Mapping[str, Any],
-    outcome_of: Callable[[CaptureResult], _Outcome],
-) -> _Outcome:
+    outcome_of: Callable[[CaptureResult], tuple[Any, dict[str, Any]]],
+) -> tuple[Any, dict[str, Any]]:
     """Process one capture; errors become its row."""
     try:
         path = _within(folder, name)

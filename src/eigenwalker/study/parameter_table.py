@@ -113,7 +113,7 @@ def parameter_table(
         rows.append(row[1])
         if progress:
             progress(len(rows), len(names))
-    measured = pd.DataFrame(rows).reindex(columns=parameter_codebook())
+    measured = pd.DataFrame(rows).reindex(columns=list(parameter_codebook()))
     traits_of = table.drop(columns=[name for name in measured if name in table and name != FILE])
     files = pd.concat([traits_of, measured.drop(columns=FILE, errors="ignore")], axis=1)
     who = persons_of(table)
@@ -137,7 +137,7 @@ def _measured(result: CaptureResult) -> tuple[None, dict[str, Any]]:
         "duration_s": result.quality.duration_s,
         "events_from": ", ".join(sorted({_plain(name) for name in events["marker"]})),
     }
-    return None, row | {name: _in_unit(name, value) for name, value in parameters.items()}
+    return None, row | {str(name): _in_unit(str(name), v) for name, v in parameters.items()}
 
 
 def _plain(marker: str) -> str:

@@ -183,7 +183,10 @@ def walks_of_folder(
     table = capture_table(folder, None, trait_from_name)
     if person is not None:
         table = name_persons(table, person)
-    persons = dict(zip(table[FILE], persons_of(table), strict=True)) if person_column(table) else {}
+    who = persons_of(table)
+    persons: dict[str, str] = {}
+    if who is not None:
+        persons = dict(zip(table[FILE].tolist(), who.tolist(), strict=True))
     label = next((name for name in table if name not in (FILE, person_column(table))), None)
     walks = Walks({})
     for row in ticked(table.to_dict("records"), len(table), progress):
