@@ -13,7 +13,6 @@ import eigenwalker as ew
 from eigenwalker.stimulus import Stimulus, make_stimulus, write_stimulus
 from eigenwalker.stimulus.plugin_folder import COPIED, PAGE, STIMULI, write_plugin
 
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 TRIALS = """async ([n, duration, block]) => {
   const jsPsych = initJsPsych();
   const busy = () => { const from = performance.now(); while (performance.now() - from < block); };
@@ -30,17 +29,6 @@ TRIALS = """async ([n, duration, block]) => {
 @pytest.fixture(scope="module")
 def walker() -> Stimulus:
     return make_stimulus(ew.load_population().walkers[0], duration_s=0.3, size_px=(200, 200))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed, so nobody visits the page")
-    with playwright.sync_playwright() as starting:
-        started = starting.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 def test_the_folder_has_all_that_a_page_without_network_needs(walker, tmp_path):

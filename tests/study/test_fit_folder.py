@@ -230,10 +230,10 @@ def test_a_full_disk_ends_the_checkpoint_and_not_the_fit(folder, tmp_path) -> No
 
 
 def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monkeypatch) -> None:
-    def killed(where: Path, name: str, settings: dict, made=fitting._outcome):
+    def killed(where: Path, name: str, *others, made=fitting._outcome):
         if name == "men/male_4.c3d":
             os.kill(os.getpid(), signal.SIGKILL)
-        return made(where, name, settings)
+        return made(where, name, *others)
 
     monkeypatch.setattr(fitting, "_outcome", killed)
     found = fit_folder(folder, n_jobs=2)
