@@ -17,7 +17,7 @@ SETTING = """\
 import eigenwalker as ew
 from eigenwalker.stimulus import Figure, make_stimulus, with_information
 
-people = ew.load_population()
+people = ew.load_population().size_normalised()
 average = people.walker(people.average)
 along_sex = ew.trait_axis(people, "sex").step
 woman, man = (people.walker(people.average + sds * along_sex) for sds in (-3, 3))

@@ -66,9 +66,11 @@ def direction(
     Examples
     --------
     >>> walkers = np.array([[1.0, 5], [2, 4], [6, 4], [7, 5]])
-    >>> space = WalkerSpace(scale=None).fit(walkers)
+    >>> space = ew.analysis.WalkerSpace(scale=None).fit(walkers)
     >>> sex = ["female", "female", "male", "male"]
-    >>> classifier = DiscriminantClassifier(n_components=1).fit(space.transform(walkers), sex)
+    >>> classifier = ew.analysis.DiscriminantClassifier(n_components=1).fit(
+    ...     space.transform(walkers), sex
+    ... )
     >>> step = direction(space, classifier, units="classmean")
     >>> (space.average_walker_ + step).round(6).tolist()
     [6.5, 4.5]

@@ -161,7 +161,7 @@ def position_in_space(
     Examples
     --------
     >>> walkers = np.array([[1.0, 5], [2, 4], [6, 4], [7, 5]])
-    >>> space = WalkerSpace(n_components=1).fit(walkers)
+    >>> space = ew.analysis.WalkerSpace(n_components=1).fit(walkers)
     >>> report = position_in_space(space, [14, 4.5], walkers=walkers)
     >>> report.z_scores.round(2).tolist(), report.percentile
     ([3.4], 100.0)

@@ -179,7 +179,8 @@ def wrong_joints(capture: xr.DataArray) -> tuple[WrongJoint, ...]:
         for pair in _ABOVE
         if _has(path, *pair) and not np.median(path[pair[0]][:, 2] - path[pair[1]][:, 2]) > 0
     ]
-    found += _links(path, np.median([_variation(path, *points) for points in lengths]))
+    variations = [_variation(path, *points) for points in lengths]
+    found += _links(path, float(np.median(variations)) if variations else 0.0)
     return tuple(found)
 
 
