@@ -96,10 +96,15 @@ function jitteringScreen(late: (frame: number) => boolean = () => false): void {
   );
 }
 
-it("shows as many whole frames as fit best, whatever the clock's jitter", async () => {
+/** The plugin as a page on such a screen loads it: it has seen no other, and no clock of this machine. */
+async function pluginOnJitteringScreen(): Promise<typeof WalkerPlugin> {
   jitteringScreen();
-  vi.resetModules(); // it has seen no other screen
-  const { default: type } = await import("../plugin-walker/src/index");
+  vi.resetModules();
+  return (await import("../plugin-walker/src/index")).default;
+}
+
+it("shows as many whole frames as fit best, whatever the clock's jitter", async () => {
+  const type = await pluginOnJitteringScreen();
   const jsPsych = initJsPsych();
   const trial = { type, stimulus, choices: "NO_KEYS", trial_duration: 120 };
   const shown = { 100: 6, 94: 6, 50: 3, 1: 1 };
@@ -115,11 +120,11 @@ it("shows as many whole frames as fit best, whatever the clock's jitter", async 
 });
 
 it("says which frames were missed, also the one that should have ended it", async () => {
+  const type = await pluginOnJitteringScreen();
+  await run({ type, trial_duration: 50 }); // which waits until the screen is measured
   for (const missed of [[4], [4, 5, 9], [12]]) {
-    let first = 0;
-    jitteringScreen((frame) => missed.includes(frame - first));
-    first = 1; // frame 1 is the first of the trial
-    const data = await run({ stimulus_duration: 200, trial_duration: 300 });
+    jitteringScreen((frame) => missed.includes(frame - 1)); // frame 1 is the first of the trial
+    const data = await run({ type, stimulus_duration: 200, trial_duration: 300 });
     const inside = missed.filter((frame) => frame < 12).length;
     expect(data).toMatchObject({ frames_planned: 12, frames_shown: 12 - inside, frames_dropped: missed.length });
     expect(data["frame_interval_max"]).toBeGreaterThan(missed[0] === 12 ? 15 : 30);
