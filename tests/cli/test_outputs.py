@@ -119,6 +119,13 @@ def test_every_command_that_writes_is_guarded():
         (["demo", "-o", "{folder}", "--no-open"], "holds files"),
         (["compare", "{c}", "{c}", "-o", "{folder}"], "holds files"),
         (["info", "{c}", "--write-mapping", "{t}"], "not made by eigenwalker info"),
+        (["stimulus", "--conditions", "{t}", "-o", "{folder}"], "holds files"),
+        (["stimulus", "--conditions", "{t}", "-o", "{t}"], "expected a folder .* is a file"),
+        (["stimulus", "--crowd", "2", "-o", "{folder}"], "holds files"),
+        (["stimulus", "-o", "{folder}/a.py"], "a.npz is there, and was not made"),
+        (["predict", "{c}", "{c}", "-o", "{folder}/a.csv"], "a.json is there, and was not made"),
+        (["simulate", "-o", "{folder}/x.nc", "--captures", "{t}"], "expected a folder"),
+        (["plugin", "-o", "{t}/below"], "expected a folder"),
     ],
 )  # fmt: skip
 def test_nothing_is_lost(tmp_path, monkeypatch, capsys, command, said):
@@ -129,6 +136,8 @@ def test_nothing_is_lost(tmp_path, monkeypatch, capsys, command, said):
     capture.write_bytes(b"raw")
     traits.write_text("file,sex\na.c3d,f\n")
     places = {"c": capture, "t": traits, "folder": folder}
+    for beside in ("a.npz", "a.json"):
+        (folder / beside).write_text("mine")
     before = {path: path.read_bytes() for path in folder.iterdir()}
     words = [word.format(**places) for word in command]
     monkeypatch.setattr("sys.argv", ["eigenwalker", *words])

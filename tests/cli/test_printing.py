@@ -31,7 +31,8 @@ def folder(tmp_path_factory, write_c3d) -> Path:
 def test_the_population_is_saved_whatever_becomes_of_what_is_printed(
     folder, tmp_path, printed_to
 ) -> None:
-    command = [*COMMAND, "fit", str(folder), "-o", str(tmp_path / "a.nc"), "--jobs", "1"]
+    outputs = ("-o", str(tmp_path / "a.nc"), "--table", str(tmp_path / "a.csv"))
+    command = [*COMMAND, "fit", str(folder), *outputs, "--jobs", "1"]
     with Path("/dev/full").open("w") as full:
         reading, writing = os.pipe()
         os.close(reading)
@@ -45,6 +46,7 @@ def test_the_population_is_saved_whatever_becomes_of_what_is_printed(
         )
         os.close(writing)
     assert len(Population.load(tmp_path / "a.nc")) == 1
+    assert len((tmp_path / "a.csv").read_text("utf-8").splitlines()) > 1
     assert fit.returncode == len(list(folder.iterdir())) - 1
     lost = b"eigenwalker: not all could be printed: No space left on device.\n"
     assert fit.stderr == (lost if printed_to == "a full disk" else b"")

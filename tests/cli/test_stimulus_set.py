@@ -72,6 +72,11 @@ def test_a_workbook_is_a_table_and_rows_without_names_are_numbered(run):
     assert run("conditions.xlsx", "-o", "set")[0] == 0
     made = [Stimulus.load(f"set/stimulus_00{number}.json") for number in (1, 2)]
     assert [each.timing.duration_s for each in made] == [2, 2.5]
+    assert run("conditions.xlsx", "-o", "set")[0] == 0
+    Path("set/stimuli.csv").write_text("by hand")
+    assert "changed since: stimuli.csv" in run("conditions.xlsx", "-o", "set")[2]
+    assert run("conditions.xlsx")[0] == 0
+    assert Path("stimuli/stimulus_001.json").is_file()
 
 
 @pytest.mark.parametrize(

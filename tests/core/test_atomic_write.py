@@ -18,11 +18,13 @@ import eigenwalker as ew
 from eigenwalker.datasets import load_population
 people = load_population()
 small = {"duration_s": 0.2, "size_px": (96, 96)}
-shown = ew.make_stimulus(people.walker(people.average), style="sticks", **small)
+dots, shown = (ew.make_stimulus(people.walker(people.average), style=style, **small)
+               for style in ("dots", "sticks"))
 outputs = {
     **{each: lambda path: ew.write_stimulus(shown, path) for each in (
-        "a.json", "a.mp4", "a.webm", "a.gif", "a.png", "a.svg", "a.csv", "a.npz", "a.mat", "a.py",
+        "a.json", "a.mp4", "a.webm", "a.gif", "a.png", "a.svg", "a.csv", "a.npz", "a.mat",
         "a.html", "a.glb", "a.bvh", "frames")},
+    "d.py": lambda path: ew.write_stimulus(dots, path),
     **{each: lambda path: ew.write_mocap(people.walker(people.average), path) for each in (
         "b.c3d", "b.trc", "b.csv", "b.nc", "b.bvh")},
     "people.nc": people.save,

@@ -164,4 +164,4 @@ def test_tables_are_walkers_to_every_command_and_no_stimulus(tmp_path, made_up, 
     assert run_command("stimulus", tmp_path / "s.json", "-o", tmp_path / "s.svg")[0] == 0
     code, said, _ = run_command("demo", tables, "-o", tmp_path / "page", "--no-open")
     assert (code, "walkers are too few to tell sex from gait" in said) == (0, True)
-    assert [path.name for path in (tmp_path / "page").iterdir()] == ["index.html"]
+    assert [path.name for path in (tmp_path / "page").glob("[!.]*")] == ["index.html"]

@@ -163,9 +163,6 @@ def _refuse(options: set[str], reason: str) -> None:
 def _check_output(output: Path | None) -> None:
     if output is None:
         return
-    above = next(each for each in (output, *output.absolute().parents) if each.exists())
-    if not above.is_dir():
-        raise ValueError(f"-o {output}: {above} is a file; name a folder to write a report into.")
     if output.suffix.lower() in {POPULATION, *FILE_SUFFIXES} and not output.exists():
         raise ValueError(
             f"-o {output} is called like a file; name a folder. The report with its pictures, "

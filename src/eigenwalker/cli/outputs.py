@@ -27,6 +27,10 @@ OUTPUT = "output"
 """Parameter of commands that names what is written."""
 MORE_OUTPUTS = {"fit": "table", "simulate": "captures", "info": "write_mapping"}
 """Other such parameters, by the command."""
+FOLDERS = ("classify", "compare", "demo", "plugin", "captures")
+"""Commands whose output is a folder, and parameters that name one."""
+BESIDE = {"predict": (".csv", ".json"), "stimulus": (".py", ".npz"), "synthesize": (".py", ".npz")}
+"""Suffixes of outputs, and of what is written beside them."""
 DEFAULTS = {"stimulus": "stim.json", "synthesize": "walker.mp4"}
 """Outputs of commands that decide them by how they are called."""
 SAME = {"synthesize": "stimulus"}
@@ -66,17 +70,19 @@ def guarded(command: Any, name: str) -> Any:
     def checked(*args: Any, **values: Any) -> Any:
         force = values["force"] if has_force else values.pop("force", False)
         if name in DEFAULTS and values.get("output") is None:
-            values["output"] = Path(DEFAULTS[name])
-        outputs = [Path(values[each]) for each in written if values.get(each) is not None]
+            is_set = values.get("conditions") is not None
+            values["output"] = Path("stimuli" if is_set else DEFAULTS[name])
+        named = {each: Path(values[each]) for each in written if values.get(each) is not None}
+        for parameter, output in named.items():
+            _check_name(output, name, is_folder=_is_folder(output, name, parameter, values))
+        outputs = [*named.values(), *_beside(named.get(OUTPUT), name)]
         given = (value for key, value in values.items() if key not in written)
         inputs = [path for value in given for path in _paths(value)]
         made_by = SAME.get(name, name)
         if len({os.path.realpath(output) for output in outputs}) < len(outputs):
             raise ValueError(f"{outputs[0]} is named for two outputs; name one file for each.")
-        for output in outputs:
-            _check_name(output, name)
-            if not force:
-                _check_free(output, inputs, made_by)
+        for output in () if force else outputs:
+            _check_free(output, inputs, made_by)
         before = {output: _state(output) for output in outputs}
         try:
             return command(*args, **values)
@@ -111,7 +117,21 @@ def _paths(value: object) -> Iterator[Path]:
                 yield Path(value)
 
 
-def _check_name(output: Path, name: str) -> None:
+def _is_folder(output: Path, name: str, parameter: str, values: Mapping[str, Any]) -> bool:
+    """Whether an output is a folder whatever it is called; sets and crowds of stimuli are such."""
+    if parameter != OUTPUT or name not in DEFAULTS:
+        return (name if parameter == OUTPUT else parameter) in FOLDERS
+    is_crowd = values.get("crowd") is not None
+    return values.get("conditions") is not None or (is_crowd and not output.suffix)
+
+
+def _beside(output: Path | None, name: str) -> list[Path]:
+    """Return the file that is written beside an output, if any."""
+    suffix, other = BESIDE.get(name, ("", ""))
+    return [output.with_suffix(other)] if output and output.suffix.lower() == suffix != "" else []
+
+
+def _check_name(output: Path, name: str, *, is_folder: bool) -> None:
     """Refuse names that are no file or folder of their own."""
     makes_stimuli = name in DEFAULTS
     what = "a file or a folder of its own"
@@ -121,6 +141,11 @@ def _check_name(output: Path, name: str) -> None:
         what = f"a file that ends in {', '.join(filter(None, SUFFIXES))}"
     if output in (Path(), Path("..")) or str(output) in ("/", "~"):
         raise ValueError(f"-o {str(output)!r} names no file to write; name {what}.")
+    if is_folder:
+        above = next(each for each in (output, *output.absolute().parents) if each.exists())
+        if not above.is_dir():
+            raise ValueError(f"-o {output}: expected a folder to write into; {above} is a file.")
+        return
     with_slash = any(
         word.endswith(("/", os.sep)) and Path(word.rpartition("=")[2]) == output
         for word in sys.argv

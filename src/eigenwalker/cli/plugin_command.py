@@ -29,8 +29,6 @@ def plugin(
     """
     from eigenwalker.stimulus.plugin_folder import PAGE, write_plugin
 
-    if output.exists() and not output.is_dir():
-        raise ValueError(f"-o {output}: expected a folder to write into; this is a file.")
     shown = _read(stimuli) if stimuli else _example()
     keep = write_plugin(shown, output, force=force)
     print(f"{len(shown)} stimuli: {', '.join(shown)}")

@@ -46,10 +46,13 @@ def write_table(table: pd.DataFrame, path: Path, **options: Any) -> Path:
 
     A text that a spreadsheet would run as a formula gets an apostrophe before it.
     """
+    import pandas as pd
+
     plain: Any = table.rename(index=_no_formula)
     for name in table:
         if table[name].dtype.kind not in "biuf":
-            plain[name] = plain[name].map(_no_formula)
+            cells = [_no_formula(cell) for cell in plain[name]]
+            plain[name] = pd.Series(cells, plain.index, dtype=object)  # also what is no text
     with atomic_write(path) as unfinished:
         plain.to_csv(unfinished, errors="backslashreplace", **options)
     return path

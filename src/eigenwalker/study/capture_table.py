@@ -7,7 +7,7 @@ import re
 import unicodedata
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -71,7 +71,7 @@ def capture_table(
         table = _traits_table(traits, folder)
     else:
         names = sorted(captures_in(folder))
-        table = pd.DataFrame({FILE: names})
+        table = pd.DataFrame({FILE: names}, dtype=object)  # names that are no text are kept too
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
     if not trait_from_name:
@@ -111,7 +111,7 @@ def _traits_table(traits: pd.DataFrame | str | Path, folder: Path) -> pd.DataFra
         raise ValueError(f"{kind} {lines[unnamed[0]]} of the traits table names no file.")
     keep = ~blank.all(axis=1)
     table, lines = table[keep].reset_index(drop=True), lines[keep.to_numpy()]
-    table[FILE] = _as_on_disk(table[FILE].astype(str), folder)
+    table[FILE] = pd.Series(_as_on_disk(map(str, table[FILE]), folder), dtype=object)
     if (twice := table[FILE][table[FILE].duplicated()]).any():
         raise ValueError(f"The traits table lists {sorted(set(twice))[:5]} more than once.")
     persons = person_column(table)
@@ -186,7 +186,7 @@ def _tidied(values: pd.Series) -> pd.Series:
     return tidy.astype(object)
 
 
-def _as_on_disk(names: pd.Series, folder: Path) -> list[str]:
+def _as_on_disk(names: Iterable[str], folder: Path) -> list[str]:
     r"""Return listed files by the names that they have in the folder.
 
     A name that is not there as it is written is compared with those of the captures: both composed
