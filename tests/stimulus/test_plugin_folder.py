@@ -69,6 +69,11 @@ def test_the_command_takes_files_or_makes_an_example(walker, tmp_path, monkeypat
     assert (code, "tall <_script>" in said) == (0, True)
     code, said, _ = run_command("plugin", "-o", "two")
     assert (code, "4 stimuli: woman_3, woman_1, man_1, man_3" in said) == (0, True)
+    with Path("two", PAGE).open("a") as page:
+        page.write("<!-- mine -->")
+    code, said, _ = run_command("plugin", "-o", "two")
+    assert (code, "was edited and is left as it is" in said) == (0, True)
+    assert Path("two", PAGE).read_text().endswith("mine -->")
     Path("three").mkdir()
     shutil.copy("tall <_script>.json", "three/tall <_script>.json")
     _, _, complaint = run_command(

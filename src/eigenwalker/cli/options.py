@@ -183,6 +183,13 @@ def check_choice(value: str, known: Collection[str], option: str) -> None:
         raise ValueError(f"{option} {value!r} is not known; choose from {list(known)}.")
 
 
+def check_folder(output: Path) -> None:
+    """Refuse an output that is a file, or is below one, where a folder is to be written."""
+    above = next(each for each in (output, *output.absolute().parents) if each.exists())
+    if not above.is_dir():
+        raise ValueError(f"-o {output}: expected a folder to write into; {above} is a file.")
+
+
 def check_population_file(path: Path) -> None:
     """Refuse, before any work, a file that no population could be written to."""
     if path.suffix != ".nc":

@@ -19,7 +19,7 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from eigenwalker.cli.options import option
+from eigenwalker.cli.options import check_folder, option
 
 RECORD = ".eigenwalker"
 """File in a folder that says which files of it were made by which command."""
@@ -27,7 +27,7 @@ OUTPUT = "output"
 """Parameter of commands that names what is written."""
 MORE_OUTPUTS = {"fit": "table", "simulate": "captures", "info": "write_mapping"}
 """Other such parameters, by the command."""
-FOLDERS = ("classify", "compare", "demo", "plugin", "captures")
+FOLDERS = ("classify", "compare", "demo", "captures")
 """Commands whose output is a folder, and parameters that name one."""
 BESIDE = {"predict": (".csv", ".json"), "stimulus": (".py", ".npz"), "synthesize": (".py", ".npz")}
 """Suffixes of outputs, and of what is written beside them."""
@@ -35,7 +35,7 @@ DEFAULTS = {"stimulus": "stim.json", "synthesize": "walker.mp4"}
 """Outputs of commands that decide them by how they are called."""
 SAME = {"synthesize": "stimulus"}
 """Commands that are another by a second name."""
-NOT_GUARDED = ("data", "plan", "run", "new")
+NOT_GUARDED = ("data", "plan", "run", "new", "plugin")
 """Commands whose folders grow by design, and are checked by themselves."""
 MAX_BYTES = 10_000_000
 MAX_NAMED = 3
@@ -142,9 +142,7 @@ def _check_name(output: Path, name: str, *, is_folder: bool) -> None:
     if output in (Path(), Path("..")) or str(output) in ("/", "~"):
         raise ValueError(f"-o {str(output)!r} names no file to write; name {what}.")
     if is_folder:
-        above = next(each for each in (output, *output.absolute().parents) if each.exists())
-        if not above.is_dir():
-            raise ValueError(f"-o {output}: expected a folder to write into; {above} is a file.")
+        check_folder(output)
         return
     with_slash = any(
         word.endswith(("/", os.sep)) and Path(word.rpartition("=")[2]) == output

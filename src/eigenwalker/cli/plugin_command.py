@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from eigenwalker.cli.options import option
+from eigenwalker.cli.options import check_folder, option
 
 if TYPE_CHECKING:
     from eigenwalker.stimulus.stimulus import Stimulus
@@ -29,6 +29,7 @@ def plugin(
     """
     from eigenwalker.stimulus.plugin_folder import PAGE, write_plugin
 
+    check_folder(output)
     shown = _read(stimuli) if stimuli else _example()
     keep = write_plugin(shown, output, force=force)
     print(f"{len(shown)} stimuli: {', '.join(shown)}")
