@@ -21,11 +21,11 @@ people = ew.load_population().size_normalised()
 average = people.walker(people.average)
 along_sex = ew.trait_axis(people, "sex").step
 woman, man = (people.walker(people.average + sds * along_sex) for sds in (-3, 3))
-small = {"duration_s": 2.42, "rate_hz": 25, "size_px": (128, 128)}
+small = {"duration_s": 2.38, "rate_hz": 25, "size_px": (128, 128)}
 shown = make_stimulus(average, **small)
 """
 """What the lines of all rows begin with; it stands in the page."""
-COMMAND = "eigenwalker stimulus --duration 2.42 --rate 25 --size 128x128 {} -o {}"
+COMMAND = "eigenwalker stimulus --duration 2.38 --rate 25 --size 128x128 {} -o {}"
 TITLES = {
     "body": "The body",
     "time": "Time",
@@ -204,9 +204,9 @@ ROWS = (
     Row(
         "dots",
         "blur",
-        'make_stimulus(average, duration_s=1.21, rate_hz=25, size_px=(64, 64)).then("blur", '
+        'make_stimulus(average, duration_s=1.2, rate_hz=25, size_px=(64, 64)).then("blur", '
         "sd_usual_mm=80)",
-        "--duration 1.21 --size 64x64 --blur 80",
+        "--duration 1.2 --size 64x64 --blur 80",
         "One blob that changes its shape; the sex is told at chance (Barclay, Cutting and "
         "Kozlowski, 1978). Small and one stride long, as blobs make large GIFs.",
     ),
@@ -272,9 +272,9 @@ ROWS = (
         *(
             "begin",
             "mannequin",
-            'make_stimulus(average, style="mannequin", **small | {"duration_s": 1.21})',
+            'make_stimulus(average, style="mannequin", **small | {"duration_s": 1.2})',
         ),
-        "--style mannequin --duration 1.21",
+        "--style mannequin --duration 1.2",
         "The same walk on a wooden mannequin, the same for all, woman or man, as in Pražák "
         "and others (2010).",
     ),
@@ -356,7 +356,7 @@ def page() -> str:
             "makes it.",
             "[stimulus-format.md](stimulus-format.md) has the formulas. The pictures last two "
             "strides of the average",
-            "walker, 2.42 s, and are as fast as the walk. All begin so:",
+            "walker, 2.38 s, and are as fast as the walk. All begin so:",
             "",
             "```python",
             SETTING.rstrip(),

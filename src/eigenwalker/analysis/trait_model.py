@@ -144,9 +144,9 @@ def trait_model(
     --------
     >>> people = ew.load_population()
     >>> model = trait_model(people, "sex")
-    >>> model.predict(people.X[:1])["prediction"].tolist()
+    >>> model.predict(people.X[7:8])["prediction"].tolist()
     ['female']
-    >>> model.predict(people.average + 6 * (people.X[:1] - people.average))["far"].tolist()
+    >>> model.predict(people.average + 6 * (people.X[7:8] - people.average))["far"].tolist()
     [True]
     """
     if has_several_classes(population, trait):
