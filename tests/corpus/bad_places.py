@@ -158,13 +158,13 @@ def wrong_tables() -> list[BadFile]:
         ("that goes in and out again", _listed("a.c3d", "x/../../outside.c3d"), out),
         ("with an absolute path", _listed("a.c3d", "{folder}/outside.c3d"), out),
         ("of a secret", _listed("a.c3d", "/etc/passwd"), out),
-        ("of a file that is not there", _listed("a.c3d", "b.c3d"), "nothing of that name"),
+        ("of a file that is not there", _listed("a.c3d", "nobody.c3d"), "nothing of that name"),
         ("of the folder itself", _listed("a.c3d", "."), "expected a file, but got a folder"),
         ("with a skeleton outside", _listed("a.c3d", "07_01.amc", asf=True), "beside the motion"),
         ("with a file twice", _listed("a.c3d", "a.c3d"), "lists .* more than once"),
-        ("with an empty name", _listed("a.c3d", ""), "Row 2 of the traits table names no file"),
-        ("without a column of files", _table_of(b"name,sex\na,f\n"), "needs a column 'file'"),
-        ("that is empty", _table_of(b""), "could not be read: "),
+        ("with an empty name", _listed("a.c3d", ""), "Line 3 of the traits table names no file"),
+        ("without a column of files", _table_of(b"shoe,sex\n7,f\n"), "needs a column 'file'"),
+        ("that is empty", _table_of(b""), "has no line below its headings"),
         ("that is a picture", _table_of(OTHER_FILES["a picture"]), "could not be read: "),
             ]  # fmt: skip
     if sys.platform != "win32":

@@ -256,7 +256,7 @@ def test_a_capture_of_two_people_is_refused():
         ({"widths_mm": {"nose": 30}}, "nose"),
         ({"widths_mm": {"knee": -1}}, "knee"),
         ({"mapping": {"head": "NOSE"}}, "NOSE"),
-        ({"mapping": {"head": []}}, "none for"),
+        ({"mapping": {"head": []}}, "names no marker"),
     ],
 )
 def test_wrong_arguments_are_told(wrong, told):

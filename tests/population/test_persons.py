@@ -5,8 +5,8 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from eigenwalker.population import Population, person_column
-from eigenwalker.population.persons import columns_like_persons
+from eigenwalker.population import Population
+from eigenwalker.population.persons import columns_like_persons, person_column
 from eigenwalker.simulation import simulate_population
 
 
