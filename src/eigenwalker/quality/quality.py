@@ -273,8 +273,8 @@ _OF_BODY |= {"not_level", "backwards", "speed", "no_double_support"}
 _FOLLOW = {
     "flat": _OF_BODY,
     "impossible_height": _OF_BODY,
-    "head_below_feet": _OF_BODY - {"not_level"},
-    "leaning": _OF_BODY - {"not_level"},
+    "head_below_feet": _OF_BODY - {"not_level", "elastic_limbs"},
+    "leaning": _OF_BODY - {"not_level", "elastic_limbs"},
     "sides_swapped": {"wrong_joints", "tilted", "sloping"},
     "wrong_joints": {"sides_swapped", "tilted", "sloping"},
 }
