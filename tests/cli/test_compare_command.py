@@ -303,6 +303,15 @@ def test_a_unit_is_for_files_that_name_none(run, folder, tmp_path):
     assert told[1] == plain[1]
 
 
+def test_two_captures_have_a_mapping_too(run, folder, tmp_path):
+    names = tmp_path / "names.toml"
+    names.write_text('[joints]\nleft_wrist = "LWRA"\nright_wrist = "RWRA"\n')
+    first, second = folder / "person1_first.c3d", folder / "person2_first.c3d"
+    code, printed, _ = run(first, second, "--mapping", names)
+    assert code == 0
+    assert printed != run(first, second)[1]
+
+
 def test_a_report_is_a_folder(run, folder, tmp_path):
     two = folder / "person1_first.c3d", folder / "person2_first.c3d"
     code, _, complaint = run(*two, "-o", tmp_path / "picture.png")

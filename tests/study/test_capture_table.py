@@ -78,6 +78,14 @@ def test_names_that_differ_in_case_only_are_not_guessed(folder) -> None:
         capture_table(folder, pd.DataFrame({"file": ["c.c3d", "./c.c3d"]}))
 
 
+def test_only_captures_that_no_line_names_are_what_was_meant(folder) -> None:
+    for number in (4, 14):
+        (folder / f"walk_{number:04d}.c3d").touch()
+    table = pd.DataFrame({"file": ["walk_004.c3d", "walk_0014.c3d"]})
+    with pytest.warns(UserWarning, match=r"walk_004.c3d .* did you mean walk_0004.c3d"):
+        capture_table(folder, table)
+
+
 @pytest.mark.parametrize("head", ["Datei", "File name", "Trial"])
 @pytest.mark.parametrize("name", ["c", "C.C3D", "S:\\\\x\\\\c.c3d", "/data/c.c3d"])
 def test_captures_are_found_without_suffix_and_folder(folder, head, name) -> None:

@@ -65,3 +65,21 @@ def test_parameters_of_a_folder_have_units_means_and_reasons(folder, tmp_path, r
     book = pd.read_csv(tmp_path / "gait-codebook.csv")
     assert book["column"].tolist() == list(pd.read_csv(output, nrows=0))
     assert len(json.loads((tmp_path / "gait.json").read_text())["files"]) == 4
+
+
+def test_captures_of_which_none_can_be_read_end_with_2(folder, tmp_path, run_command) -> None:
+    people = simulate_population(4, 4, seed=4)
+    traits = people.traits.rename(columns={"sex": "Sex"})
+    path = ew.Population(people.walkers, traits).save(tmp_path / "people.nc")
+    code, printed, errors = run_command("predict", path, folder / "none.c3d", "--jobs", 1)
+    assert code == 2
+    assert "refused" in printed
+    assert "Sex is told" in errors
+    assert "Traceback" not in errors
+
+
+def test_files_of_several_folders_are_called_as_they_were_named(folder, tmp_path) -> None:
+    (tmp_path / "none.c3d").write_text("nothing")
+    files = [folder / "none.c3d", tmp_path / "none.c3d"]
+    told = ew.study.predict_captures(simulate_population(4, 4, seed=4), "sex", files, n_jobs=1)
+    assert told.table["file"].tolist() == [path.as_posix() for path in files]

@@ -60,3 +60,11 @@ def test_words_for_the_sexes_are_two_classes():
     assert any("'F' (1), 'f' (1), 'female' (1), 'w' (1), 'woman' (1)" in each for each in warned)
     assert _values("f", "m", "f") == (["f", "m", "f"], [])
     assert _values("w", "b", "W")[0] == ["w", "b", "w"]
+
+
+def test_feet_and_inches_are_unknown_and_say_nothing_of_the_unit():
+    values, warned = _values("175", "5'9\"", "180", "1.7 m", "171 cm", "172 cm", "173")
+    assert np.isnan(values[1])
+    assert values[3] == 170
+    assert "no number" in warned[0]
+    assert "cell B6 ('171 cm')" in warned[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 import zipfile
 from pathlib import Path
 
@@ -72,3 +73,21 @@ def test_headings_that_repeat_or_lack_are_refused(tmp_path):
     path.write_text("file,sex,\na,f,m\n")
     with pytest.raises(ValueError, match=r"Column C .* no heading"):
         read_traits_file(path)
+
+
+def test_the_sheet_of_files_is_read_below_a_title_and_formulas_without_values_are_said(tmp_path):
+    book = openpyxl.Workbook()
+    book.active.append(["A study"])
+    sheet = book.create_sheet("people")
+    for row in (["Study 12"], [], ["File name", "sex", "bmi"], ["a", "f", "=20+1"], ["b", "m", 3]):
+        sheet.append(row)
+    book.save(tmp_path / "t.xlsx")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        table = read_traits_file(tmp_path / "t.xlsx")
+    assert table.to_numpy().tolist() == [["a", "f", ""], ["b", "m", "3"]]
+    assert table.attrs["line"] == [4, 5]
+    words = " ".join(str(each.message) for each in said)
+    assert "sheet 'people'" in words
+    assert "stand in line 3" in words
+    assert "1 cells of the traits table, first C4, hold formulas" in words

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,6 +18,7 @@ from eigenwalker.cli.options import (
     open_in_browser,
     option,
     progress_bar,
+    trait_or_usual,
 )
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def classify(
     from eigenwalker.study.messages import persons_in_words
 
     population = load_people(people, with_flagged, person)
-    trait = trait or _usual_trait(population)
+    trait = trait or trait_or_usual(population)
     page = None
     with progress_bar("Classifying") as progress:
         if has_several_classes(population, trait):
@@ -109,7 +109,7 @@ def demo(
     from eigenwalker.report.classification_report import write_classification_report
 
     population = load_people(people, with_flagged)
-    trait = trait or _usual_trait(population)
+    trait = trait or trait_or_usual(population)
     index, report = output / INDEX, ""
     n_walkers = len(trait_contrast(population, trait).rows)
     if n_walkers >= FEWEST_WALKERS:
@@ -141,15 +141,6 @@ def model_names(people: Path | None) -> dict[str, str]:
     if people is None:
         return {"title": BUILT_IN_TITLE, "source": ""}
     return {"title": people.stem, "source": people.name}
-
-
-def _usual_trait(population: Population) -> str:
-    from eigenwalker.analysis.contrast import usual_trait
-
-    trait = usual_trait(population)
-    if trait != "sex":
-        print(f"No trait 'sex' tells these walkers apart: {trait} is told.", file=sys.stderr)
-    return trait
 
 
 def _classify(population: Population, trait: str, **settings: Any) -> Classification | Regression:

@@ -119,7 +119,7 @@ def compare(
         raise typer.Exit(EXIT_PARTIAL)
 
 
-_OF_CAPTURES = {"--unit", "--rate"}
+_OF_CAPTURES = {"--unit", "--rate", "--mapping"}
 _OF_MANY = {"--with-flagged", *_OF_CAPTURES}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from typing import Any
 
 from eigenwalker.core.wording import reworded
@@ -68,5 +69,5 @@ def in_options(sentence: str) -> str:
             sentence = sentence.replace(place, option)
         sentence = _TRANSFORM.sub(lambda found: f"--{found[1].replace('_', '-')} ", sentence)
     sentence = sentence.replace("take population.without_flags()", "give --with-flagged")
-    sentence = _PERSONS.sub(r"give --person \1", sentence)
+    sentence = _PERSONS.sub(lambda found: f"give --person {shlex.quote(found[1])}", sentence)
     return reworded(sentence, _of_this_command)

@@ -93,6 +93,16 @@ def load_people(path: Path | None, with_flagged: bool, person: str | None = None
     return population.without_flags() if with_flagged else population
 
 
+def trait_or_usual(population: Population) -> str:
+    """Return the sex, or the first trait that tells walkers apart, which is then said."""
+    from eigenwalker.analysis.contrast import usual_trait
+
+    trait = usual_trait(population)
+    if trait != "sex":
+        print(f"No trait 'sex' tells these walkers apart: {trait} is told.", file=sys.stderr)
+    return trait
+
+
 def sized_people(path: Path | None, with_flagged: bool, keep_size: bool) -> Population:
     """Return the population that walkers are made of; without their size, unless it is kept."""
     population = load_people(path, with_flagged)

@@ -21,6 +21,7 @@ from eigenwalker.cli.options import (
     load_people,
     option,
     progress_bar,
+    trait_or_usual,
 )
 from eigenwalker.io.errors import printable
 
@@ -28,12 +29,29 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+MEANINGS = {
+    "sum": (
+        "sum: below 0 it speaks for one class, above for the other; walkers learnt from have about "
+        "-1 and +1."
+    ),
+    "probability": "probability: of this class among the classes, if the walk is of one of them.",
+    "distance": (
+        "distance: to the nearest walker learnt from, in standard deviations (RMS of all features)."
+    ),
+}
+"""Columns of the table that is printed, in words."""
+
+
 def predict(
     people: Annotated[Path, typer.Argument(help="Population file to learn from (.nc).")],
     files: Annotated[list[Path], typer.Argument(help="New captures, or folders of them.")],
     trait: Annotated[
-        str, option("Trait to tell: sex, weight_kg, style, style=feminine:masculine.")
-    ] = "sex",
+        str | None,
+        option(
+            "Trait to tell: sex, weight_kg, style, style=feminine:masculine; left out, the sex, or "
+            "the first."
+        ),
+    ] = None,
     output: Annotated[
         Path | None, option("Table to write (.csv); a .json beside it.", "-o", "--output")
     ] = None,
@@ -64,6 +82,7 @@ def predict(
     if output is not None and not output.parent.is_dir():
         raise ValueError(f"{output}: there is no folder {output.parent} to write into; make it.")
     population = load_people(people, with_flagged, person)
+    trait = trait or trait_or_usual(population)
     with progress_bar("Predicting") as progress:
         found = predict_captures(
             population,
@@ -84,7 +103,8 @@ def predict(
     shown = shown.rename(columns={"person_known": "learnt from"})
     shown["far"] = ["far" if far is True else "" for far in table.get("far", [""] * len(table))]
     text = shown.to_string(index=False, na_rep="-", float_format=lambda number: f"{number:.3g}")
-    print(f"{printable(text)}\n\n{sentence}")
+    legend = [meaning for column, meaning in MEANINGS.items() if shown.get(column) is not None]
+    print("\n".join([printable(text), "", *legend, sentence]))
     _warn(table)
     if output is not None:
         write_table(table, output, index=False)
@@ -100,12 +120,12 @@ def _warn(table: pd.DataFrame) -> None:
     """Say what speaks against predictions: walks far from all known, flags, persons known."""
     for row in table.itertuples():
         if row.reason:
-            reason = str(row.reason).removeprefix(f"{row.file}: ")
+            reason = str(row.reason).removeprefix(f"{Path(row.file).name}: ")
             line = printable(in_options(f"{row.file}: {reason}"))
             print(f"{row.status}: {line}", file=sys.stderr)
-    far = table[table.get("far", False) == True]  # noqa: E712 - empty of refused ones
-    if len(far):
-        names = printable(", ".join(far["file"]))
+    far = [row.file for row in table.itertuples() if getattr(row, "far", False) is True]
+    if far:
+        names = printable(", ".join(far))
         print(
             f"eigenwalker: far from all walkers learnt from, so that neither prediction nor error "
             f"can be relied on: {names}.",

@@ -24,7 +24,7 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     """Return the spatio-temporal parameters of a walk.
 
     Events are those of `gait_events`, with its bias: from ankles alone, stance and double support
-    are some 3 and 5 % of the stride too long (simulated walks).
+    are some 3 and 5 % of the stride too long, with toes some 7 and 14 % (simulated walks).
 
     Parameters
     ----------

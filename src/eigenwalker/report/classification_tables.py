@@ -16,7 +16,7 @@ from eigenwalker.core.walker import Walker
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.report.blocks import Table
 from eigenwalker.report.words import TABLES, WORDS
-from eigenwalker.study.messages import persons_in_words
+from eigenwalker.study.messages import persons_in_report
 
 _POSSIBLE = {
     "double_support_share": (0, 1),
@@ -118,7 +118,7 @@ def permutation_sentence(result: Classification | Regression) -> str:
 
 def person_sentences(contrast: Contrast, traits: pd.DataFrame) -> list[str]:
     """Return how it is known who walked, or what to do where it is not; nothing of simulations."""
-    return [*persons_in_words(traits.iloc[contrast.rows]), *_both_sexes(contrast)]
+    return [*persons_in_report(traits.iloc[contrast.rows]), *_both_sexes(contrast)]
 
 
 def _both_sexes(contrast: Contrast) -> list[str]:

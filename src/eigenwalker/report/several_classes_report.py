@@ -13,7 +13,7 @@ from eigenwalker.population.population import Population
 from eigenwalker.report.blocks import Block, Figure, Items, Report, Section, Table
 from eigenwalker.report.html_report import write_report
 from eigenwalker.report.result_files import made_with, write_figures, write_json, write_tables
-from eigenwalker.study.messages import persons_in_words
+from eigenwalker.study.messages import persons_in_report
 
 
 def several_classes_sentences(found: SeveralClasses) -> list[str]:
@@ -31,13 +31,17 @@ def several_classes_sentences(found: SeveralClasses) -> list[str]:
     confused = found.confused[found.confused["walkers"] > 0].head(3)
     if len(confused):
         pairs = "; ".join(
-            f"{one} and {other} ({n} walkers, {100 * share:.0f} %)"
+            f"{one} and {other} ({_walkers(n)}, {100 * share:.0f} % of both)"
             for one, other, n, share in confused.to_numpy().tolist()
         )
         sentences.append(f"Confused most are {pairs}.")
     else:
         sentences.append("No class is taken for another.")
     return sentences
+
+
+def _walkers(number: int) -> str:
+    return f"{number} walker" + "s" * (number != 1)
 
 
 def several_classes_text(found: SeveralClasses) -> str:
@@ -88,23 +92,26 @@ def write_several_classes_report(
             "those told right. Dark: a large share of the class.",
             f"Table of {len(found.classes)} by {len(found.classes)} classes.",
         ),
-        Table(
-            "Pairs of classes, those confused most first: walkers of one taken for the other",
-            ["one class", "other class", "walkers", "of both"],
-            [
-                [one, other, n, f"{100 * share:.0f} %"]
-                for one, other, n, share in confused.head(12).to_numpy().tolist()
-                if n
-            ],
-        ),
     ]
+    if confused["walkers"].any():
+        blocks.append(
+            Table(
+                "Pairs of classes, those confused most first: walkers of one taken for the other",
+                ["one class", "other class", "walkers", "of both"],
+                [
+                    [one, other, n, f"{100 * share:.0f} %"]
+                    for one, other, n, share in confused.head(12).to_numpy().tolist()
+                    if n
+                ],
+            )
+        )
     method = [
         "A walker is predicted by a linear discriminant analysis of scores on the first "
         "eigenwalkers, with one covariance matrix for all classes, each of which counts the same.",
         f"Walkers are left out in {found.n_folds} groups. Standardisation, eigenwalkers and their "
         f"number ({found.chosen_n.min()} to {found.chosen_n.max()}, by five-fold cross-validation) "
         "are found again without them.",
-        *persons_in_words(population.traits.iloc[found.rows]),
+        *persons_in_report(population.traits.iloc[found.rows]),
     ]
     report = Report(
         f"{found.trait[:1].upper()}{found.trait[1:]} from gait: {len(found.classes)} classes",

@@ -19,20 +19,8 @@ from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import FLAG
 from eigenwalker.population.trait_table import check_traits
 from eigenwalker.study.trait_cells import in_one_spelling, trait_values
-from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, read_traits_file
+from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, names_files, read_traits_file
 
-_FILES = (
-    "file",
-    "files",
-    "filename",
-    "filenames",
-    "path",
-    "filepath",
-    "datei",
-    "dateiname",
-    "capture",
-)
-"""Headings, in small letters alone, that name the captures."""
 MAX_NAMED = 5
 FILE = "file"
 """Column of a traits table that names the capture, relative to the folder."""
@@ -142,8 +130,7 @@ def _with_file(names: Sequence[str], cells: pd.DataFrame, folder: Path) -> list[
     """Return the headings with ``file`` for the one that names the captures."""
     if FILE in names:
         return list(names)
-    plain = [re.sub(r"[\W_]", "", name.casefold()) for name in names]
-    at = next((at for at, name in enumerate(plain) if name in _FILES), None)
+    at = next((at for at, name in enumerate(names) if names_files(name)), None)
     if at is None:  # the column whose cells are captures of the folder
         known = {_stem(name) for name in captures_in(folder)}
         if not known.isdisjoint(map(_stem, names)):
@@ -220,8 +207,9 @@ def _as_on_disk(names: Iterable[str], folder: Path) -> list[str]:
 
     names_found = [found(name) for name in written]
     missing = [name for name in names_found if not os.path.lexists(folder / name)]
+    free = sorted(set(captures_in(folder)) - set(names_found)) if missing else []
     for name in missing[:MAX_NAMED]:
-        if near := get_close_matches(name, captures_in(folder), n=1):
+        if near := get_close_matches(name, free, n=1):
             warnings.warn(
                 f"{name} of the traits table is not in the folder; did you mean {near[0]}?",
                 stacklevel=2,

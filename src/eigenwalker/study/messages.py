@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 import tomllib
 from collections.abc import Mapping
 from functools import cache
@@ -175,6 +177,17 @@ def persons_in_words(traits: pd.DataFrame) -> list[str]:
         way = f"take population.with_persons({like[0]!r})"
         sentences.append(f"The values of {names} repeat as persons do. If they are, {way}.")
     return sentences
+
+
+def persons_in_report(traits: pd.DataFrame) -> list[str]:
+    """Return what `persons_in_words` does, for readers of whom it is not known what they ran."""
+    take = re.compile(r"take (population\.with_persons\('(.*?)'\))")
+    return [
+        take.sub(
+            lambda found: f"give --person {shlex.quote(found[2])} ({found[1]} in Python)", each
+        )
+        for each in persons_in_words(traits)
+    ]
 
 
 def error_to_expect(model: TraitModel) -> str:
@@ -409,6 +422,8 @@ def _marker_set(facts: Mapping[str, object]) -> str:
         return "unknown"
     share, next_best = facts.get("marker_set_share"), facts.get("marker_set_runner_up")
     line = str(facts["marker_set"])
+    if line.endswith("own mapping"):
+        return line
     if isinstance(share, float):
         line += f", {share:.0%} of its points found"
     return line + (f" (next is {next_best})" if next_best else "")

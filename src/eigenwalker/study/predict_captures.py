@@ -37,7 +37,8 @@ class Predictions:
     model : TraitModel
         What predicted it.
     table : DataFrame
-        One row a capture: ``file``; ``status`` ("used", "flagged" or "refused"); ``prediction`` and
+        One row a capture: ``file``, in its folder, or as it was named if there are several folders;
+        ``status`` ("used", "flagged" or "refused"); ``prediction`` and
         the other columns of `TraitModel.predict`; ``error``, that of the model on walkers left out:
         a share, or of a number the RMSE in its unit; ``person_known``, a person of the walkers
         learnt from who walks here too, if that can be seen from the name; ``reason``, why it is
@@ -108,7 +109,8 @@ def predict_captures(
     >>> new.table["status"].tolist(), 0 < new.model.error < 0.5
     (['used'], True)
     """
-    paths = _paths(files)
+    named = _paths(files)
+    paths = list(named)
     model = trait_model(population, trait)
     first = population.walkers[0]
     form = {"form": first.form, "n_harmonics": len(first.harmonics) // 2}
@@ -123,7 +125,10 @@ def predict_captures(
         rows.append(row)
         if progress:
             progress(len(rows), len(names))
-    table = pd.DataFrame({FILE: [Path(name).as_posix() for name in names]})
+    inside = pd.Series([Path(name).as_posix() for name in names])
+    one_folder = len({name.parent for name in named.values()}) == 1 or isinstance(files, str | Path)
+    written = [path.as_posix() for path in named.values()]
+    table = pd.DataFrame({FILE: inside if one_folder else written})
     table = table.join(pd.DataFrame(rows).reindex(columns=["status", "reason"]))
     reason = table.pop("reason")
     placed = [number for number, vector in enumerate(vectors) if vector is not None]
@@ -131,7 +136,8 @@ def predict_captures(
         predicted = model.predict(np.stack([vectors[number] for number in placed]))
         table = table.join(predicted.set_axis(placed))
         table["error"] = np.where(table["status"] == "refused", np.nan, model.error)
-    table["person_known"] = _persons_known(model, table[FILE], trait_from_name)
+    table["person_known"] = _persons_known(model, inside, trait_from_name)
+    table.loc[table["status"] == "refused", "person_known"] = ""
     return Predictions(model, table.assign(reason=reason))
 
 
@@ -158,17 +164,18 @@ def prediction_lines(population: Population, vector: np.ndarray) -> list[str]:
     return lines
 
 
-def _paths(files: Sequence[str | Path] | str | Path) -> list[Path]:
+def _paths(files: Sequence[str | Path] | str | Path) -> dict[Path, Path]:
+    """Return where captures are, and how they were named."""
     given = [files] if isinstance(files, str | Path) else list(files)
-    paths: list[Path] = []
+    paths: dict[Path, Path] = {}
     for each in map(Path, given):
         if not each.exists():
             raise ValueError(f"{each} does not exist; name captures, or folders of them.")
         inside = [each / name for name in sorted(captures_in(each))] if each.is_dir() else [each]
-        paths += [Path(os.path.abspath(path)) for path in inside]
+        paths |= {Path(os.path.abspath(path)): path for path in inside}
     if not paths:
         raise ValueError("There are no captures to predict of; name files, or folders of them.")
-    return list(dict.fromkeys(paths))
+    return paths
 
 
 def _placed(

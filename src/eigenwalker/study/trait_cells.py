@@ -74,6 +74,8 @@ _POINT = re.compile(
     r"|[+-]?inf(inity)?"
 )
 _COMMA = re.compile(r"[+-]?\d{1,3}([.'\u2019 ]\d{3})*(,\d+)?|[+-]?\d*,?\d+")
+_FEET = re.compile(r"\d+\s*['\u2019\u2032]\s*\d{1,2}(?!\d)")
+"""Feet and inches, such as 5'9", which are two numbers."""
 _EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 
 
@@ -88,7 +90,7 @@ def trait_values(
     unknown = [text.casefold() in UNKNOWN for text in texts]
     _say_unknown([text for text, out in zip(texts, unknown, strict=True) if out and text], name)
     parts = [
-        None if out else _NUMBER.fullmatch(text[:MAX_LETTERS])
+        None if out or _FEET.match(text) else _NUMBER.fullmatch(text[:MAX_LETTERS])
         for text, out in zip(texts, unknown, strict=True)
     ]
     n_known, n_numbers = unknown.count(False), sum(part is not None for part in parts)
@@ -185,12 +187,14 @@ def _in_one_unit(
     if not counts:
         return values
     most = counts.most_common(1)[0][0]
-    at = next(at for at, unit in enumerate(units) if unit)
+    at = next(
+        (at for at, unit in enumerate(units) if (unit or "").casefold().rstrip(".") == most), 0
+    )
     _say(name, f"numbers of {most!r}, as in {where(at)} ({texts[at]!r}); the unit is left out")
     known = unit_named(most)
     for at, unit in enumerate(units):
         word = (unit or most).casefold().rstrip(".")
-        if word == most or word.removesuffix("s") == most.removesuffix("s"):
+        if np.isnan(values[at]) or word == most or word.removesuffix("s") == most.removesuffix("s"):
             continue
         other = unit_named(word)
         if known is None or other is None:

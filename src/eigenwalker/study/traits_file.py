@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
+import re
+import warnings
 import zipfile
 from collections import Counter
 from collections.abc import Sequence
@@ -21,6 +23,20 @@ LINE = "line"
 """Attribute of the table: the line of the file in which each row stands."""
 DECIMAL_COMMA = "decimal_comma"
 """Attribute: whether the separator says that commas stand before decimals."""
+FILE_WORDS = (
+    "file",
+    "files",
+    "filename",
+    "filenames",
+    "path",
+    "filepath",
+    "datei",
+    "dateiname",
+    "capture",
+)
+"""Headings, in small letters alone, that name the captures."""
+MOST_ABOVE = 10
+"""Lines among which headings are looked for, below a title."""
 _SEPARATORS = "\t;,|"
 _OTHER = {
     ".xls": "an old Excel file",
@@ -50,6 +66,14 @@ def read_traits_file(path: Path) -> pd.DataFrame:
     filled = [(at, row) for at, row in enumerate(rows, start=1) if any(row)]
     if len(filled) < 2:
         raise ValueError(f"The traits table {path} has no line below its headings.")
+    above = next((at for at, (_, row) in enumerate(filled[:MOST_ABOVE]) if _is_headings(row)), 0)
+    if above and len(filled) > above + 1:
+        warnings.warn(
+            f"The headings of the traits table are taken to stand in line {filled[above][0]}; what "
+            "is above is passed over.",
+            stacklevel=2,
+        )
+        filled = filled[above:]
     (_, header), *body = filled
     width = max(len(row) for _, row in filled)
     if len(header) == width - 1 and _counts([row[0] for _, row in body]):
@@ -62,7 +86,10 @@ def read_traits_file(path: Path) -> pd.DataFrame:
         if header[at] or (any(columns[at]) and not (at == 0 and _counts(columns[at])))
     ]
     if unnamed := [at for at in keep if not header[at]]:
-        raise ValueError(f"Column {letters_of(unnamed[0])} of the traits table has no heading.")
+        raise ValueError(
+            f"Column {letters_of(unnamed[0])} of the traits table has no heading in line "
+            f"{filled[0][0]}, where headings such as file and sex are looked for."
+        )
     if twice := sorted(name for name, n in Counter(header[at] for at in keep).items() if n > 1):
         where = [letters_of(at) for at in keep if header[at] in twice]
         raise ValueError(
@@ -74,6 +101,15 @@ def read_traits_file(path: Path) -> pd.DataFrame:
     table.attrs.update({LINE: [at for at, _ in body], "letters": letters})
     table.attrs[DECIMAL_COMMA] = separator == ";"
     return table
+
+
+def names_files(heading: str) -> bool:
+    """Return whether a heading is a word for the names of captures."""
+    return re.sub(r"[\W_]", "", heading.casefold()) in FILE_WORDS
+
+
+def _is_headings(row: Sequence[str]) -> bool:
+    return sum(map(bool, row)) > 1 and any(map(names_files, row))
 
 
 def letters_of(column: int) -> str:
@@ -118,8 +154,11 @@ def _of_text(content: bytes) -> tuple[list[list[str]], str]:
 
 
 def _of_workbook(content: bytes) -> list[list[str]]:
-    """Return the cells of the first sheet that has any, as texts."""
+    """Return the cells of the first sheet with a column of files, else of any cells, as texts."""
     from openpyxl import load_workbook
+
+    sheets: list[tuple[str, list[list[str]]]] = []
+    n_cells = 0
 
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         if sum(entry.file_size for entry in archive.infolist()) > MAX_BYTES:
@@ -130,19 +169,53 @@ def _of_workbook(content: bytes) -> list[list[str]]:
         book: Any = load_workbook(io.BytesIO(content), read_only=True, data_only=True)
         for sheet in book.worksheets:
             rows: list[list[str]] = []
-            n_cells = 0
             for row in sheet.iter_rows(values_only=True):
                 n_cells += len(row)
                 if n_cells > MAX_CELLS:
                     raise ValueError(f"it has more than {MAX_CELLS} cells")
                 rows.append(_without_empty_end([_as_text(cell) for cell in row]))
             if any(map(any, rows)):
-                return rows
+                sheets.append((sheet.title, rows))
     except (ValueError, OSError):
         raise
     except Exception as error:  # a damaged workbook fails anywhere in the library, in many ways
         raise ValueError(f"a damaged XLSX file ({type(error).__name__})") from error
-    return []
+    if not sheets:
+        return []
+    with_files = [sheet for sheet in sheets if any(map(_is_headings, sheet[1][:MOST_ABOVE]))]
+    title, rows = (with_files or sheets)[0]
+    if len(sheets) > 1:
+        others = [name for name, _ in sheets if name != title][:MOST_ABOVE]
+        warnings.warn(
+            f"The traits are read from the sheet {title!r} of the workbook, not from {others}.",
+            stacklevel=2,
+        )
+    _say_unsaved(content, title, rows)
+    return rows
+
+
+def _say_unsaved(content: bytes, title: str, rows: Sequence[Sequence[str]]) -> None:
+    """Say which cells hold formulas without the values that spreadsheet programs save with them."""
+    from openpyxl import load_workbook
+
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        inside = [name for name in archive.namelist() if name.startswith("xl/worksheets/")]
+        if not any(b"<f" in archive.read(name) for name in inside):
+            return
+    sheet: Any = load_workbook(io.BytesIO(content), read_only=True)[title]
+    unsaved = [
+        f"{letters_of(column)}{line + 1}"
+        for line, cells in enumerate(sheet.iter_rows(values_only=True))
+        for column, cell in enumerate(cells)
+        if str(cell).startswith("=") and not "".join(rows[line][column : column + 1])
+    ]
+    if unsaved:
+        warnings.warn(
+            f"{len(unsaved)} cells of the traits table, first {unsaved[0]}, hold formulas whose "
+            "values are not in the file, and are taken as unknown: open it in a spreadsheet "
+            "program and save it.",
+            stacklevel=2,
+        )
 
 
 def _as_text(value: object) -> str:
