@@ -75,6 +75,50 @@ def test_a_folder_that_holds_other_files_is_not_written_into(source):
     assert Path("new/notes.txt").read_text() == "mine"
 
 
+@pytest.mark.parametrize(
+    ("name", "output", "beside"),
+    [
+        ("parameters", "a.csv", ["a-persons.csv", "a-codebook.csv", "a.json"]),
+        ("predict", "a.csv", ["a.json"]),
+        ("stimulus", "a.py", ["a.npz"]),
+        ("synthesize", "a.PY", ["a.npz"]),
+    ],
+)
+def test_files_beside_an_output_are_guarded_as_it_is(source, name, output, beside):
+    def write(capture: Path | None = None, output: Path | None = None) -> None:
+        for each in (output, *beside):
+            Path(each).write_text("made")
+
+    command = guarded(write, name)
+    for each in beside:
+        Path(each).write_text("mine")
+        with pytest.raises(ValueError, match=rf"{each} is there, and was not made by"):
+            command(output=Path(output))
+        assert Path(each).read_text() == "mine"
+        Path(each).unlink()
+    command(output=Path(output))
+    command(output=Path(output))
+    with pytest.raises(ValueError, match="is read by this command"):
+        command(capture=Path(beside[0]), output=Path(output))
+
+
+def test_pictures_of_an_earlier_call_do_not_stay_among_the_new(source):
+    def write(number: int = 3, output: Path = Path("out"), name: str = "frame") -> None:
+        output.mkdir(exist_ok=True)
+        for index in range(number):
+            (output / f"{name}_{index}.png").write_text(f"{number}")
+
+    stimulus = guarded(write, "stimulus")
+    Path("new").mkdir()
+    stimulus(number=3, output=Path("new"), name="set")
+    stimulus(number=12, output=Path("new"))
+    Path("new/frame_99.png").write_text("mine")
+    stimulus(number=2, output=Path("new"), force=True)
+    names = {path.name for path in Path("new").glob("*.png")}
+    assert names == {"set_0.png", "set_1.png", "set_2.png", "frame_0.png", "frame_1.png",
+                     "frame_99.png"}  # fmt: skip
+
+
 def test_a_record_that_is_damaged_makes_nothing_ones_own(source, copy):
     copy(capture=Path("a.c3d"), output=Path("b.trc"))
     for content in ("{", "[]", '{"b.trc": 3}', "[" * 100_000):

@@ -227,6 +227,16 @@ def test_a_crowd_is_people_who_differ_and_come_again_with_the_seed(run):
     (["--skeleton", "biped", "-o", "a.bvh"], "choose from"),
     (["--in-place", "-o", "a.json"], "holds no rig"),
     (["--strides", "1", "--duration", "2"], "in place of --duration"),
+    (["--mask", "signal_to_noise=0,seed=1"], "signal_to_noise=0 must be above 0"),
+    (["--mask", "dots_per_m2=-1,seed=1"], "dots_per_m2=-1 must be above 0"),
+    (["--height-deg", "0"], "--height-deg: expected a number above 0 and below 180, got 0"),
+    (["--height-deg", "nan"], "--height-deg: expected a number above 0"),
+    (["--dot-px", "-1"], "--dot-px: expected a number above 0, got -1"),
+    (["--dot-px", "1e6"], "size of dots (px): expected a number up to 1000"),
+    (["--px-per-cm", "0", "--height-deg", "5"], "eigenwalker: --px-per-cm: expected"),
+    (["--arm-swing", "nan"], "--arm-swing: expected a number up to 100, got nan"),
+    (["--from", ""], "--from : expected 'average'"),
+    (["--crowd", "2", "--seed", "-1", "-o", "crowd.glb"], "--seed -1: expected a whole number"),
 ])  # fmt: skip
 def test_what_is_typed_wrong_is_said_in_a_sentence(run, words, complaint):
     code, _, said = run(*words)

@@ -88,6 +88,7 @@ def test_a_workbook_is_a_table_and_rows_without_names_are_numbered(run):
         (2, 1, "sax=-3", "line 3 .woman.json.: There is no trait 'sax'"),
         (2, 3, "maybe", "line 3: --invert is yes or no, got 'maybe'"),
         (2, 0, "man", "line 3: another row is called 'man.json' too"),
+        (2, 0, "stimuli.csv", "line 3: stimuli.csv says which stimulus is which"),
         (2, 0, "../man", "line 3: '../man' is no name for a file"),
     ],
 )

@@ -46,6 +46,8 @@ PLACES = {
     "stimulus.display.width_px": "--size (width)",
     "stimulus.display.height_px": "--size (height)",
     "stimulus.display.style": "--style",
+    "stimulus.display.dot_px": "size of dots (px)",
+    "stimulus.display.px_per_mm": "size of the walker (px per mm)",
     "stimulus.display.viewing_distance_mm": "--distance",
     "stimulus.display.px_per_cm": "--px-per-cm",
 }

@@ -160,7 +160,7 @@ def start_capture(
     joints: Literal["walker", "full"] = "walker",
 ) -> CaptureResult:
     """Return what the capture that ``--from`` names gave, decomposed as the population is."""
-    if start.isdecimal() or not Path(start).exists():
+    if start.isdecimal() or not start or not Path(start).exists():
         raise ValueError(
             f"--from {start}: expected 'average', a walker from 0 to {len(population) - 1}, or a "
             "capture file."

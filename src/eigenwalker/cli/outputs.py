@@ -10,6 +10,7 @@ import functools
 import inspect
 import json
 import os
+import re
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -29,8 +30,12 @@ MORE_OUTPUTS = {"fit": "table", "simulate": "captures", "info": "write_mapping"}
 """Other such parameters, by the command."""
 FOLDERS = ("classify", "compare", "demo", "captures")
 """Commands whose output is a folder, and parameters that name one."""
-BESIDE = {"predict": (".csv", ".json"), "stimulus": (".py", ".npz"), "synthesize": (".py", ".npz")}
-"""Suffixes of outputs, and of what is written beside them."""
+BESIDE = {
+    "parameters": (".csv", ("-persons.csv", "-codebook.csv", ".json")),
+    "predict": (".csv", (".json",)),
+    "stimulus": (".py", (".npz",)),
+}
+"""Suffixes of outputs, and ends of the names of what is written beside them."""
 DEFAULTS = {"stimulus": "stim.json", "synthesize": "walker.mp4"}
 """Outputs of commands that decide them by how they are called."""
 SAME = {"synthesize": "stimulus"}
@@ -75,7 +80,7 @@ def guarded(command: Any, name: str) -> Any:
         named = {each: Path(values[each]) for each in written if values.get(each) is not None}
         for parameter, output in named.items():
             _check_name(output, name, is_folder=_is_folder(output, name, parameter, values))
-        outputs = [*named.values(), *_beside(named.get(OUTPUT), name)]
+        outputs = [*named.values(), *files_beside(named.get(OUTPUT), name)]
         given = (value for key, value in values.items() if key not in written)
         inputs = [path for value in given for path in _paths(value)]
         made_by = SAME.get(name, name)
@@ -85,7 +90,10 @@ def guarded(command: Any, name: str) -> Any:
             _check_free(output, inputs, made_by)
         before = {output: _state(output) for output in outputs}
         try:
-            return command(*args, **values)
+            result = command(*args, **values)
+            if made_by == "stimulus" and not values.get("conditions"):
+                _remove_older(outputs[0], before[outputs[0]], made_by)
+            return result
         finally:
             for output in outputs:
                 with suppress(OSError):  # a folder where nothing else can be written either
@@ -125,10 +133,24 @@ def _is_folder(output: Path, name: str, parameter: str, values: Mapping[str, Any
     return values.get("conditions") is not None or (is_crowd and not output.suffix)
 
 
-def _beside(output: Path | None, name: str) -> list[Path]:
-    """Return the file that is written beside an output, if any."""
-    suffix, other = BESIDE.get(name, ("", ""))
-    return [output.with_suffix(other)] if output and output.suffix.lower() == suffix != "" else []
+def files_beside(output: Path | None, name: str) -> list[Path]:
+    """Return the files that are written beside an output."""
+    suffix, ends = BESIDE.get(SAME.get(name, name), ("", ()))
+    if output is None or output.suffix.lower() != suffix:
+        return []
+    return [output.with_name(f"{output.stem}{end}") for end in ends]
+
+
+def _remove_older(output: Path, before: Mapping[str, list[int]], made_by: str) -> None:
+    """Remove numbered files of an earlier call: its last pictures are no part of this film."""
+    if not output.is_dir():
+        return
+    made, now = _made(output), _state(output)
+    written = {re.sub(r"\d+", "#", name) for name in now if now[name] != before.get(name)}
+    for name, state in before.items():
+        is_left = now.get(name) == state and re.sub(r"\d+", "#", name) in written
+        if is_left and made.get(name) == [made_by, *state]:
+            (output / name).unlink()
 
 
 def _check_name(output: Path, name: str, *, is_folder: bool) -> None:

@@ -13,6 +13,7 @@ Options may be typed in any order. They are applied in this one: who walks (``--
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -271,6 +272,12 @@ def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
 
     from eigenwalker.stimulus.dot_size import with_dots
 
+    for name, most in {"height_deg": 180, "dot_deg": 180, "dot_px": None, "dot_mm": None,
+                       "distance": None, "px_per_cm": None}.items():  # fmt: skip
+        size, limit = options[name], "" if most is None else f" and below {most}"
+        if size is not None and not 0 < size < (most or math.inf):
+            typed = f"--{name.replace('_', '-')}"
+            raise ValueError(f"{typed}: expected a number above 0{limit}, got {size:g}.")
     screen = {"viewing_distance_mm": options["distance"], "px_per_cm": options["px_per_cm"]}
     sizes = {name: options[f"dot_{name}"] for name in ("px", "deg", "mm")}
     if options["height_deg"] is not None:
@@ -283,6 +290,8 @@ def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
 def _check_crowd(options: dict[str, Any], output: Path) -> None:
     """Refuse options that make no crowd, before any work."""
     number = options["crowd"]
+    if options["seed"] < 0:
+        raise ValueError(f"--seed {options['seed']}: expected a whole number from 0.")
     if not 1 <= number <= MAX_PEOPLE:
         raise ValueError(f"--crowd {number}: expected 1 to {MAX_PEOPLE} people.")
     if output.suffix.lower() not in (".glb", ""):
@@ -454,6 +463,8 @@ def transforms_typed(
             yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}
         elif name == "blur":
             yield name, _blob(value)
+        elif name == "arm_swing" and not abs(value) <= MOST_SWING:
+            raise ValueError(f"--arm-swing: expected a number up to {MOST_SWING}, got {value:g}.")
         elif name == "start":
             yield name, {"phase_deg": _phase_deg(value)}
         elif parameter is not None:
@@ -474,6 +485,8 @@ ORDER: tuple[tuple[str, str | None], ...] = (
     *(("blur", None), ("mask", None)),
 )
 """Options in the order in which they act, and the parameter of those that take one number."""
+MOST_SWING = 100
+"""As much as `gain` takes."""
 OF_THE_DISPLAY = ("blur", "mask")
 """Transforms that go by the size in which the walker is shown."""
 SPECIAL_PARAMETERS = ("parts", "signal_to_noise", "dots_per_m2")

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from eigenwalker.cli.options import progress_bar, sized_people
+from eigenwalker.cli.outputs import files_beside
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,9 +89,16 @@ def _rows(context: typer.Context, cells: pd.DataFrame, table: Path, folder: Path
     for number, (line, row) in enumerate(zip(lines, cells.to_dict("records"), strict=True)):
         where = f"{table.name}, line {line}"
         file = _file(row[named] if named else f"stimulus_{number + 1:03d}", folder, where)
-        if file.name.lower() in files:
+        if file.name.lower() == MANIFEST:
+            raise ValueError(
+                f"{where}: {MANIFEST} says which stimulus is which; name it otherwise."
+            )
+        written = {file.name.lower()} | {
+            beside.name.lower() for beside in files_beside(file, "stimulus")
+        }
+        if files & written:
             raise ValueError(f"{where}: another row is called {file.name!r} too; name each once.")
-        files.add(file.name.lower())
+        files |= written
         words = [
             word for name, option in columns.items() for word in _words(row[name], option, where)
         ]

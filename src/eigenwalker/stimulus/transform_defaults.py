@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.walker import Walker
 from eigenwalker.stimulus.dot_size import USUAL_HEIGHT_MM, degrees_in_px
@@ -156,6 +157,9 @@ def _mask(situation: Situation, given: Parameters) -> Parameters:
         "centre_mm": moving.middle.round(3).tolist(),
         **given,
     }
+    for name in {"signal_to_noise", "dots_per_m2"} & given.keys():
+        if not 0 < float(check_numbers(given[name], name)) < np.inf:
+            raise ValueError(f"{name}={given[name]!r} must be above 0.")
     if "signal_to_noise" in given:
         given["number"] = max(round(len(moving.dots) / given.pop("signal_to_noise")), 1)
     elif "dots_per_m2" in given:
