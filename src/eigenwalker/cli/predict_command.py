@@ -120,10 +120,10 @@ def _warn(table: pd.DataFrame) -> None:
     """Say what speaks against predictions: walks far from all known, flags, persons known."""
     for row in table.itertuples():
         if row.reason:
-            reason = str(row.reason).removeprefix(f"{Path(row.file).name}: ")
+            reason = str(row.reason).removeprefix(f"{Path(str(row.file)).name}: ")
             line = printable(in_options(f"{row.file}: {reason}"))
             print(f"{row.status}: {line}", file=sys.stderr)
-    far = [row.file for row in table.itertuples() if getattr(row, "far", False) is True]
+    far = [str(row.file) for row in table.itertuples() if getattr(row, "far", False) is True]
     if far:
         names = printable(", ".join(far))
         print(
