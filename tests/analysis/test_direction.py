@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import eigenwalker as ew
 from eigenwalker.analysis import (
     DiscriminantClassifier,
     DiscriminantRegressor,
@@ -184,3 +185,19 @@ def test_caricatures_grow_less_plausible_with_alpha():
 def test_a_vector_of_another_length_is_refused():
     with pytest.raises(ValueError, match="a vector of 50 features"):
         position_in_space(SPACE, np.zeros(49))
+
+
+def test_other_things_are_refused_by_what_they_are():
+    population = ew.load_population()
+    space = ew.WalkerSpace().fit(population.X)
+    for call, words in (
+        (lambda: ew.direction(3, 4), "Expected a fitted WalkerSpace, got"),
+        (
+            lambda: ew.direction(space, ew.DiscriminantClassifier()),
+            "Expected a fitted Disc",
+        ),
+        (lambda: ew.classify(population, 3), "Expected the name of a trait, got"),
+        (lambda: ew.analysis.study_trait(population, "sex"), "Expected what classify or regress"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            call()

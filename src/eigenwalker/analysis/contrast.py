@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.population.persons import PERSON
 from eigenwalker.population.population import FLAG, Population, check_population
 
@@ -106,7 +107,7 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     'heavy'
     """
     check_population(population)
-    name, _, pair = trait.partition("=")
+    name, pair = _parts(trait)
     column = trait_column(population.traits, name)
     values = population.traits[column]
     if population.flagged.all():
@@ -148,7 +149,7 @@ def class_labels(
     ``style=active:normal:elderly`` names some of its classes.
     """
     check_population(population)
-    name, _, some = trait.partition("=")
+    name, some = _parts(trait)
     column = trait_column(population.traits, name)
     values = _as_text(population.traits[column])
     known = (values != "") & ~population.flagged
@@ -169,10 +170,17 @@ def class_labels(
     return column, rows, labels, _persons(population, rows)
 
 
+def _parts(trait: object) -> tuple[str, str]:
+    """Return the name of a trait, and the classes that are named of it."""
+    check_kind(trait, str, "the name of a trait")
+    name, _, classes = str(trait).partition("=")
+    return name, classes
+
+
 def has_several_classes(population: Population, trait: str) -> bool:
     """Return whether a trait, or what is named of its values, is three classes or more of text."""
     check_population(population)
-    name, _, some = trait.partition("=")
+    name, some = _parts(trait)
     values = population.traits[trait_column(population.traits, name)]
     known = set(_as_text(values[~population.flagged])) - {""}
     if some:

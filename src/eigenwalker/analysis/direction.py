@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from eigenwalker.core.arguments import described
+
 if TYPE_CHECKING:
     from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
     from eigenwalker.analysis.walker_space import WalkerSpace
@@ -75,6 +77,12 @@ def direction(
     >>> (space.average_walker_ + step).round(6).tolist()
     [6.5, 4.5]
     """
+    for given, attribute, expected in (
+        (space, "eigenwalkers_", "a fitted WalkerSpace"),
+        (discriminant, "coef_", "a fitted DiscriminantClassifier or DiscriminantRegressor"),
+    ):
+        if not hasattr(given, attribute):
+            raise TypeError(f"Expected {expected}, got {described(given)}.")
     c = discriminant.coef_
     if len(c) != len(space.eigenwalkers_):
         raise ValueError(

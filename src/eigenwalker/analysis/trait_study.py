@@ -15,6 +15,7 @@ from eigenwalker.analysis.direction import Kind
 from eigenwalker.analysis.plausibility import Plausibility, plausibility
 from eigenwalker.analysis.trait_axis import trait_axis
 from eigenwalker.analysis.walker_space import WalkerSpace
+from eigenwalker.core.arguments import check_kind
 from eigenwalker.core.walker import Walker
 from eigenwalker.population.population import Population, check_population
 
@@ -106,6 +107,7 @@ def study_trait(
     ['female 6 SD', 'female 3 SD', 'average', 'male 3 SD', 'male 6 SD']
     """
     check_population(population)
+    check_kind(result, (Classification, Regression), "what classify or regress returns")
     contrast = result.contrast
     trait = contrast.trait
     if contrast.two_classes:
