@@ -7,6 +7,7 @@ Without their file the built-in people are simulated each time they are needed.
 
 from __future__ import annotations
 
+import json
 import os
 import runpy
 import shutil
@@ -48,7 +49,8 @@ class PageHook(BuildHookInterface):
         return node if _people_file().exists() else [*node, *self._simulators()]
 
     def _simulators(self) -> list[str]:
-        return [need for need in self.metadata.core.dependencies if need.startswith(SIMULATORS)]
+        needs = self.metadata.core.dependencies
+        return [need for need in needs if need.replace("-", "_").startswith(SIMULATORS)]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build the pages, and simulate the built-in people."""
@@ -71,9 +73,13 @@ def _people_file() -> Path:
 
 
 def _simulate() -> None:
-    path = os.pathsep.join([str(ROOT / "src"), *filter(None, sys.path)])
-    command = [sys.executable, "-m", "eigenwalker.datasets.built_in_file"]
-    _run(command, {**os.environ, "PYTHONPATH": path})
+    # Without site: that of a build takes the places of an earlier installation off the path.
+    code = (
+        "import json, runpy, sys; sys.path[:0] = json.loads(sys.argv.pop()); "
+        "runpy.run_module('eigenwalker.datasets.built_in_file', run_name='__main__')"
+    )
+    path = [str(ROOT / "src"), *filter(None, sys.path)]
+    _run([sys.executable, "-S", "-c", code, json.dumps(path)], dict(os.environ))
 
 
 def _sources() -> Iterator[Path]:
