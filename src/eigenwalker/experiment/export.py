@@ -95,7 +95,7 @@ def _write_table(path: Path, rows: Iterator[dict[str, Any]], names: list[str]) -
             writer.writerow(values)
             parquet.add(values)
     parquet.close()
-    return [str(path), *([str(parquet.path)] if parquet.available else [])]
+    return [str(path), str(parquet.path)]
 
 
 def _no_formula(value: Any) -> Any:
@@ -114,25 +114,18 @@ class _ParquetTable:
     def __init__(self, path: Path, names: list[str]) -> None:
         self.path, self._names = path, names
         self._rows: list[Sequence[Any]] = []
-        self._writer: Any = None
-        try:
-            import pyarrow as pa  # type: ignore[import]
-            import pyarrow.parquet  # type: ignore[import]
-        except ImportError:
-            self.available = False
-            return
-        self.available = True
+        import pyarrow as pa  # type: ignore[import]
+        import pyarrow.parquet  # type: ignore[import]
+
         kinds = {
             **dict.fromkeys(self.NUMBERS, pa.float64()),
             **dict.fromkeys(self.WHOLE, pa.int64()),
         }
         self._pa = pa
         self._schema = pa.schema([(name, kinds.get(name, pa.string())) for name in names])
-        self._writer = pyarrow.parquet.ParquetWriter(path, self._schema)
+        self._writer: Any = pyarrow.parquet.ParquetWriter(path, self._schema)
 
     def add(self, values: Sequence[Any]) -> None:
-        if not self.available:
-            return
         self._rows.append(values)
         if len(self._rows) >= BATCH:
             self._flush()
@@ -153,9 +146,8 @@ class _ParquetTable:
         self._rows = []
 
     def close(self) -> None:
-        if self.available:
-            self._flush()
-            self._writer.close()
+        self._flush()
+        self._writer.close()
 
 
 def _write_questions(database: sqlite3.Connection, folder: Path, name: str) -> str:
@@ -175,13 +167,9 @@ def _write_questions(database: sqlite3.Connection, folder: Path, name: str) -> s
 
 def _write_frames(database: Any, folder: Path, name: str) -> str:
     """Write the times of all frames, one list an answer."""
-    try:
-        import pyarrow as pa  # type: ignore[import]
-        import pyarrow.parquet as pq  # type: ignore[import]
-    except ImportError:
-        raise ImportError(
-            "Frame times are written as Parquet, which needs pyarrow; install it."
-        ) from None
+    import pyarrow as pa  # type: ignore[import]
+    import pyarrow.parquet as pq  # type: ignore[import]
+
     path = folder / f"study-{name}_frames.parquet"
     schema = pa.schema([("answer", pa.string()), ("frame_times_ms", pa.list_(pa.float64()))])
     with pq.ParquetWriter(path, schema) as writer:
