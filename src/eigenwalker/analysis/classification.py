@@ -35,6 +35,15 @@ class Input(NamedTuple):
     """What a classifier is given: a part of the features, with or without size.
 
     See `Population.part` for the names of parts.
+
+    See Also
+    --------
+    eigenwalker.Population.part : Names of the parts.
+    classify : Studies every input.
+
+    References
+    ----------
+    Troje (2002), fig. 4.
     """
 
     title: str
@@ -79,6 +88,10 @@ class InputResult(Generic[_Curves]):
     See Also
     --------
     classify, regress : make them.
+
+    References
+    ----------
+    Troje (2002), fig. 4.
     """
 
     input: Input
@@ -110,6 +123,10 @@ class Classification:
     See Also
     --------
     classify : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 11 and fig. 4.
     """
 
     contrast: Contrast
@@ -186,6 +203,10 @@ class Regression:
     See Also
     --------
     regress : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 11, for a number in place of two classes.
     """
 
     contrast: Contrast

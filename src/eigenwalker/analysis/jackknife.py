@@ -114,6 +114,10 @@ class RegressionCurves(_Curves):
     See Also
     --------
     regression_curves : makes them.
+
+    References
+    ----------
+    Troje (2002), fig. 4, for a number in place of two classes.
     """
 
     @property

@@ -36,6 +36,10 @@ class Plausibility:
     See Also
     --------
     plausibility : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 4 to 8.
     """
 
     position: SpacePosition
@@ -123,6 +127,10 @@ class SpacePosition:
     See Also
     --------
     position_in_space : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 4 to 8.
     """
 
     distance: float

@@ -49,6 +49,10 @@ class SeveralClasses:
     See Also
     --------
     classify_several : Makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 11, for each pair of classes.
     """
 
     trait: str

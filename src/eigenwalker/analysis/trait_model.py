@@ -53,6 +53,10 @@ class TraitModel:
     See Also
     --------
     trait_model : Makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 11.
     """
 
     trait: str

@@ -25,7 +25,16 @@ ALPHAS = (-6, -3, 0, 3, 6)
 
 @dataclass(frozen=True, eq=False)
 class TraitView:
-    """Walkers from one pole of a trait to the other, by title, and how plausible each is."""
+    """Walkers from one pole of a trait to the other, by title, and how plausible each is.
+
+    See Also
+    --------
+    study_trait : Makes them.
+
+    References
+    ----------
+    Troje (2002), eq. 13.
+    """
 
     walkers: Mapping[str, Walker]
     plausibility: Mapping[str, Plausibility]
@@ -53,6 +62,15 @@ class TraitStudy:
         The walkers that have the trait (walker, feature), and the space fitted to them.
     contrast_walkers : tuple of Walker
         The same as walkers.
+
+    See Also
+    --------
+    study_trait : Makes it.
+    eigenwalker.report.write_classification_report : Writes it as a page.
+
+    References
+    ----------
+    Troje (2002), eq. 9 to 13 and fig. 4.
     """
 
     result: Classification | Regression

@@ -117,6 +117,10 @@ def share_explained(movement: np.ndarray, cycles: np.ndarray, n_harmonics: int =
     --------
     harmonic_basis
 
+    References
+    ----------
+    Troje (2002), fig. 3: coefficients of determination of the sine fits.
+
     Examples
     --------
     >>> cycles = np.linspace(0, 3, 300, endpoint=False)
@@ -155,6 +159,10 @@ def shift_origin(coefficients: np.ndarray, angle: float) -> np.ndarray:
     See Also
     --------
     eigenwalker.core.fourier_coefficients : Of a walker.
+
+    References
+    ----------
+    Troje (2002), eq. 2: the phase of the first component is set to 0.
 
     Examples
     --------

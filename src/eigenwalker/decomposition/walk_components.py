@@ -56,6 +56,10 @@ class Eigenpostures:
     See Also
     --------
     eigenpostures_of : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 1 and fig. 2.
     """
 
     mean: np.ndarray

@@ -208,7 +208,12 @@ class Recruiting(Part):
 
 
 class Design(Part):
-    """An experiment, as the file ``design.toml`` describes it."""
+    """An experiment, as the file ``design.toml`` describes it.
+
+    See Also
+    --------
+    read_design : Reads one from a file.
+    """
 
     format: Literal["eigenwalker experiment"]
     version: Annotated[int, Field(ge=VERSION, le=VERSION)]

@@ -127,6 +127,10 @@ class WalkerWidget(anywidget.AnyWidget):
         Phase of the stride while it does not play, from 0 to 1.
     height_px : int
         Height of the picture.
+
+    See Also
+    --------
+    eigenwalker.show : Makes one of a walker, a population or a walk.
     """
 
     _model = traitlets.Dict(default_value=None, allow_none=True).tag(sync=True)

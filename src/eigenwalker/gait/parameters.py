@@ -63,6 +63,10 @@ def gait_parameters(walk: xr.DataArray | Walker, *, speed_mm_s: float | None = N
     --------
     gait_events, walker_measures
 
+    References
+    ----------
+    Perry & Burnfield (2010), Gait analysis, chapter 1: stride, step, stance, double support.
+
     Examples
     --------
     >>> walker = ew.Walker(

@@ -35,6 +35,10 @@ class RateAssumed(UserWarning):
 
     Silence it with ``warnings.simplefilter("ignore", RateAssumed)``, or name the rate:
     ``read_mocap(path, rate_hz=120)``.
+
+    See Also
+    --------
+    read_mocap : Gives it; ``default_rate_hz`` answers it.
     """
 
 

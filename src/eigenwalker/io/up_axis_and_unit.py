@@ -32,6 +32,10 @@ class UnitGuessed(UserWarning):
 
     Silence it with ``warnings.simplefilter("ignore", UnitGuessed)``, or name the unit:
     ``read_mocap(path, unit="cm")``.
+
+    See Also
+    --------
+    read_mocap : Gives it; ``default_unit`` answers it.
     """
 
 
@@ -39,6 +43,10 @@ class UpAxisAssumed(UserWarning):
     """The body stands along another axis than the one that its file names as upward.
 
     Silence it with ``warnings.simplefilter("ignore", UpAxisAssumed)``.
+
+    See Also
+    --------
+    read_mocap : Gives it.
     """
 
 

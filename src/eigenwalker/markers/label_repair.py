@@ -53,6 +53,10 @@ class Rebuilt(NamedTuple):
         The midpoint of ``sources`` alone; their mirror image; a place above the neck.
     sources, lacking : tuple of str
         Markers from which it was made, and those that are absent.
+
+    See Also
+    --------
+    eigenwalker.virtual_markers : Rebuilds them.
     """
 
     point: str

@@ -27,6 +27,10 @@ class Alignment(NamedTuple):
     See Also
     --------
     Registration : holds it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 3: registration curves.
     """
 
     angles: np.ndarray

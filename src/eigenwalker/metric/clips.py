@@ -49,6 +49,10 @@ class Loop:
     See Also
     --------
     eigenwalker.metric.loop : Makes it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 3 and fig. 1.
     """
 
     cycle: xr.DataArray

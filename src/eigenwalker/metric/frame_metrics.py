@@ -200,7 +200,12 @@ def shape_parameter(metric: Metric) -> float:
 
 
 def shaped(metric: Metric, distances: np.ndarray) -> np.ndarray:
-    """Return F(d) of a metric, elementwise."""
+    """Return F(d) of a metric, elementwise.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5: functions F.
+    """
     distances = check_numbers(distances, "distances", missing=True)
     if not distances.size or np.nanmin(distances) < 0:
         raise ValueError(f"distances must be 0 or more; got {distances.ravel()[:5].tolist()}.")

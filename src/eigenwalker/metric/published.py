@@ -28,6 +28,10 @@ class PublishedFit(NamedTuple):
     See Also
     --------
     PUBLISHED : Metrics with such weights.
+
+    References
+    ----------
+    Pražák et al. (2010), fig. 5.
     """
 
     difference: float

@@ -26,7 +26,12 @@ from eigenwalker.plotting.style import (
 
 
 class Curves(Protocol):
-    """Misclassified walkers for 1, 2, ... components, as `jackknife_curves` returns them."""
+    """Misclassified walkers for 1, 2, ... components, as `jackknife_curves` returns them.
+
+    See Also
+    --------
+    figure_curves : Draws them.
+    """
 
     @property
     def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells
@@ -37,7 +42,12 @@ class Curves(Protocol):
 
 
 class TraitCurves(Protocol):
-    """Share of a trait's variance explained by 1, 2, ... components, as of `regression_curves`."""
+    """Share of a trait's variance explained by 1, 2, ... components, as of `regression_curves`.
+
+    See Also
+    --------
+    figure_regression_curves : Draws them.
+    """
 
     @property
     def n_components(self) -> np.ndarray: ...  # noqa: D102 - the class tells

@@ -54,6 +54,10 @@ class MapPicture:
         Moments of a and b to mark by a ring.
     names : tuple of str
         What a and b are called.
+
+    See Also
+    --------
+    figure_maps : Draws them.
     """
 
     values: np.ndarray

@@ -14,7 +14,12 @@ from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, note, 
 
 
 class Space(Protocol):
-    """What scores and a direction are found with: a fitted `WalkerSpace`."""
+    """What scores and a direction are found with: a fitted `WalkerSpace`.
+
+    See Also
+    --------
+    figure_space : Draws it.
+    """
 
     average_walker_: np.ndarray
     explained_variance_ratio_: np.ndarray

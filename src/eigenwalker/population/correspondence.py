@@ -69,6 +69,10 @@ class Correspondence:
     See Also
     --------
     correspond : makes it.
+
+    References
+    ----------
+    Troje (2002), eq. 3: postures and phases that are the same in every walker.
     """
 
     reference: ReferenceWalker

@@ -54,6 +54,10 @@ class MetricFit:
     See Also
     --------
     fit_to_answers : makes it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5 and fig. 5.
     """
 
     name: str

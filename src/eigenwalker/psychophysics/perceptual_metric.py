@@ -141,6 +141,10 @@ class Weights(NamedTuple):
     See Also
     --------
     non_negative_fit : makes it.
+
+    References
+    ----------
+    Pražák et al. (2010), eqs. 1 to 3 and fig. 5.
     """
 
     weights: np.ndarray

@@ -189,6 +189,10 @@ def split_half(
     --------
     bootstrap_weights : Intervals of the weights.
 
+    References
+    ----------
+    Spearman (1910), Brown (1910), British Journal of Psychology 3, 271-322.
+
     Examples
     --------
     Four observers who answer alike:

@@ -29,6 +29,10 @@ class ShapeFit(NamedTuple):
     See Also
     --------
     search_shape : makes it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 5: powers as F.
     """
 
     parameter: float

@@ -38,6 +38,10 @@ class PairCounts:
     See Also
     --------
     count_pairs : makes it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4.
     """
 
     pairs: pd.MultiIndex
@@ -79,6 +83,10 @@ class Trials:
     --------
     read_trials : Makes it of a table of answers.
     fit_choices : Fits weights to it.
+
+    References
+    ----------
+    Pražák et al. (2010), section 4 and fig. 2.
     """
 
     pairs: pd.MultiIndex

@@ -118,6 +118,10 @@ class WrongJoint(NamedTuple):
         The joints or markers.
     value : float
         A ratio, without a unit; NaN where the kind has none.
+
+    See Also
+    --------
+    assess : Looks for them.
     """
 
     kind: Literal[

@@ -160,6 +160,10 @@ class Quality:
         Frames that the file declares and lacks (``read_mocap(..., partial="keep")``).
     problem : str
         Why there are no steady strides; else empty.
+
+    See Also
+    --------
+    assess : Makes it.
     """
 
     rate_hz: float

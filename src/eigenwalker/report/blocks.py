@@ -11,21 +11,36 @@ import matplotlib.figure
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph of plain text."""
+    """A paragraph of plain text.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     text: str
 
 
 @dataclass(frozen=True)
 class Items:
-    """A list of plain text, one point each."""
+    """A list of plain text, one point each.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     items: Sequence[str]
 
 
 @dataclass(frozen=True)
 class Code:
-    """Lines to copy as they stand: a command, a reference."""
+    """Lines to copy as they stand: a command, a reference.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     lines: str
 
@@ -38,6 +53,10 @@ class Table:
     """A table whose first column names the rows.
 
     Numbers are set at the right, fractions with three figures; None and NaN are dashes.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
     """
 
     caption: str
@@ -55,7 +74,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A matplotlib figure, a caption that says what to see in it, and text for screen readers."""
+    """A matplotlib figure, a caption that says what to see in it, and text for screen readers.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     figure: matplotlib.figure.Figure
     caption: str
@@ -64,7 +88,12 @@ class Figure:
 
 @dataclass(frozen=True)
 class Film:
-    """A film in a file (MP4, WebM or GIF), its caption, and text for screen readers."""
+    """A film in a file (MP4, WebM or GIF), its caption, and text for screen readers.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     path: Path
     caption: str
@@ -76,7 +105,12 @@ Block = Text | Items | Code | Table | Figure | Film
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and the blocks under it."""
+    """A heading and the blocks under it.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     title: str
     blocks: Sequence[Block]
@@ -84,7 +118,12 @@ class Section:
 
 @dataclass(frozen=True)
 class Link:
-    """The text of a link, and the name of the file in the report's folder to which it leads."""
+    """The text of a link, and the name of the file in the report's folder to which it leads.
+
+    See Also
+    --------
+    write_report : Lays blocks out.
+    """
 
     text: str
     file: str

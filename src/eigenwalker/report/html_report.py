@@ -55,6 +55,10 @@ def write_report(report: Report, folder: str | Path) -> Path:
     FileNotFoundError, ValueError
         If a film does not exist or is none.
 
+    See Also
+    --------
+    write_classification_report : The page of a classifier.
+
     Examples
     --------
     >>> from tempfile import TemporaryDirectory

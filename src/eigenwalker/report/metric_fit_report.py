@@ -105,6 +105,11 @@ def write_metric_fit_report(fit: MetricFit, folder: str | Path) -> Path:
     Returns
     -------
     Path
+
+    See Also
+    --------
+    eigenwalker.psychophysics.fit_to_answers : Makes what the page shows.
+    write_pair_report : Of two walks.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

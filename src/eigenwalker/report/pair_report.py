@@ -51,6 +51,11 @@ def write_pair_report(
     Returns
     -------
     Path
+
+    See Also
+    --------
+    eigenwalker.metric.compare_walks : Makes what the page shows.
+    write_metric_fit_report : Of answers of observers.
     """
     comparison = result.comparison
     maps = [loop_and_pair_maps(comparison, names), component_maps(comparison, names)]

@@ -227,6 +227,10 @@ def write_captures(
     ValueError
         If the format is unknown.
 
+    See Also
+    --------
+    simulate_captures : Makes them.
+
     Examples
     --------
     >>> import tempfile

@@ -139,6 +139,15 @@ def true_direction(population: Population, trait: str, *, n_people: int = 100) -
     ValueError
         If the trait is unknown, or the population was not simulated.
 
+    See Also
+    --------
+    simulate_population : Plants the effects.
+    truth_of : What is true of each person.
+
+    References
+    ----------
+    Troje (2002), eq. 10: what the direction of a discriminant estimates.
+
     Examples
     --------
     >>> people = ew.simulate_population(2, 2, seed=1)

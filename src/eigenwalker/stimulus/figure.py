@@ -204,6 +204,10 @@ class Figure:
         By how much it is turned to its left.
     repeat : bool
         Whether trajectories begin anew after their last frame, or hold still.
+
+    See Also
+    --------
+    eigenwalker.Stimulus : Has one or more.
     """
 
     motion: Walker | xr.DataArray

@@ -25,6 +25,10 @@ class Moments(NamedTuple):
     positions : array of shape (time, dot, 3)
         Millimetres in the figure's own frame: x forward, y left, z up. NaN where not known.
     visible : array of bool of shape (time, dot)
+
+    See Also
+    --------
+    eigenwalker.Stimulus.play : Dots of a whole stimulus.
     """
 
     positions: np.ndarray
@@ -45,6 +49,10 @@ class MovingDots:
         Seconds after which it repeats; of sampled trajectories, how long they last.
     blur_mm, blur_px : float
         Standard deviation of each dot's blob, at the walker's scale or in the picture; 0 for discs.
+
+    See Also
+    --------
+    Moments : Its dots, played.
     """
 
     skeleton: Skeleton

@@ -36,6 +36,10 @@ class Played(NamedTuple):
         observer.
     picture : array of shape (time, dot, 2)
         Millimetres to the right of and above the middle of the picture, at the walker's scale.
+
+    See Also
+    --------
+    eigenwalker.Stimulus.play : Makes it.
     """
 
     time: np.ndarray

@@ -20,6 +20,10 @@ class RigChoices(NamedTuple):
         Of lengths; left out, cm in BVH and m in GLB.
     up : {"y", "z"}
         Axis that points up, in BVH.
+
+    See Also
+    --------
+    eigenwalker.write_stimulus : Takes them.
     """
 
     skeleton: str = "plain"
