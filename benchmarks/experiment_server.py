@@ -89,7 +89,7 @@ class Observer:
             "kind": "answer",
             "trial": random.randint(1, 8),
             "attempt": 1,
-            "content": {"response": "male", "rt": random.random(), "frame_times": frames},
+            "content": {"response": "male", "rt_ms": random.random(), "frame_times": frames},
         }
         while True:
             try:

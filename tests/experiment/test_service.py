@@ -182,9 +182,9 @@ def test_the_export_has_a_row_a_showing_and_the_same_bytes(
     items = [
         {**begun, "content": {"time_utc": "2026-01-01T00:00:00Z"}},
         item(1, outcome="none", response=None, time_utc="2026-01-02"),
-        {**item(1, rt=500.5, time_utc="2026-01-03"), "attempt": 2},
+        {**item(1, rt_ms=500.5, time_utc="2026-01-03"), "attempt": 2},
         {**begun, "answer": new_key(), "trial": 2, "content": {"time_utc": "2026-01-04"}},
-        {**item(2, hidden=True, response="=1+1", time_utc="2026-01-05"), "attempt": 2},
+        {**item(2, page_hidden=1, response="=1+1", time_utc="2026-01-05"), "attempt": 2},
     ]
     service.answers(key, session, items)
     rows = exported(service, tmp_path / "one")
@@ -250,7 +250,7 @@ def test_simulated_observers_answer_all_and_count_in_no_group(
 def test_the_lab_page_needs_its_own_key(service: Service) -> None:
     [lab], [key] = service.invite(1, kind="lab"), service.invite(1)
     session = begin(service, key)["session"]
-    service.answers(key, session, [item(frames_dropped=90, n_frames=10)])
+    service.answers(key, session, [item(frames_dropped=90, frames_shown=10)])
     page = service.lab_page(lab)
     assert "Answers are being kept" in page
     assert "<td>frontal</td><td>1</td><td>8</td>" in page

@@ -52,7 +52,7 @@ def writer(tmp_path: Path) -> Iterator[AnswerWriter]:
 
 def test_an_answer_sent_again_is_confirmed_again_and_kept_once(writer: AnswerWriter) -> None:
     for _ in range(3):
-        received = writer.do(lambda db: store.add_answers(db, 1, [item(rt=1.0)]))
+        received = writer.do(lambda db: store.add_answers(db, 1, [item(rt_ms=1.0)]))
         assert received == [store.Received("a" * 20, "confirmed")]
     assert writer.do(lambda db: store.n_confirmed(db, 1)) == 1
 
@@ -60,13 +60,13 @@ def test_an_answer_sent_again_is_confirmed_again_and_kept_once(writer: AnswerWri
 def test_another_content_of_the_same_name_is_refused_and_both_are_kept(
     writer: AnswerWriter,
 ) -> None:
-    first = item(rt=1.0, frame_times=[0, 16.7])
+    first = item(rt_ms=1.0, frame_times=[0, 16.7])
     writer.do(lambda db: store.add_answers(db, 1, [first]))
-    other = item(rt=1.0, frame_times=[0, 16.8])
+    other = item(rt_ms=1.0, frame_times=[0, 16.8])
     received = writer.do(lambda db: store.add_answers(db, 1, [other, other]))
     assert {each.outcome for each in received} == {"other content"}
     assert writer.do(store.counts)["refused"] == 1
-    assert writer.do(lambda db: store.answers_of(db, 1))[0]["content"] == {"rt": 1.0}
+    assert writer.do(lambda db: store.answers_of(db, 1))[0]["content"] == {"rt_ms": 1.0}
 
 
 def test_a_failed_part_undoes_nothing_of_the_works_beside_it(writer: AnswerWriter) -> None:

@@ -1,9 +1,10 @@
 /** A jsPsych trial that shows a stimulus file and waits for a key or a button. */
 
 import type { JsPsych, JsPsychPlugin, TrialType } from "jspsych";
-import { everyFrame, frameTiming, RefreshClock } from "../../src/canvas/frameClock";
+import { everyFrame } from "../../src/canvas/frameClock";
 import { mannequinInPage, type MannequinPainter } from "../../src/canvas/mannequinLoader";
 import { painterOn, type Painter } from "../../src/canvas/painter";
+import { deviceOf, isRefreshKnown, notShown, refreshMeasured, rounded, ShowingLog, timeOf, type Showing } from "../../src/canvas/showingLog";
 import { readStimulus } from "../../src/core/readStimulus";
 import { make } from "../../src/page/elements";
 import { info } from "./info";
@@ -12,50 +13,12 @@ type Info = typeof info;
 type Trial = TrialType<Info>;
 type Simulation = Parameters<NonNullable<JsPsychPlugin<Info>["simulate"]>>;
 
-export interface WalkerData {
+export interface WalkerData extends Showing {
   readonly response: string | number | null;
   readonly response_by: "key" | "button" | null;
   readonly rt: number | null;
   /** What it was given with: "keyboard", "mouse", "touch" or "pen". */
   readonly response_device: string | null;
-  readonly first_frame: number | null;
-  readonly frame_times: readonly number[];
-  readonly frames_shown: number;
-  readonly frames_planned: number | null;
-  readonly frame_interval: number | null;
-  readonly frame_interval_min: number | null;
-  readonly frame_interval_max: number | null;
-  readonly frames_dropped: number;
-  readonly shown_for: number | null;
-  readonly refresh_rate: number;
-  readonly page_hidden: number;
-  readonly focus_lost: number;
-  readonly clock_isolated: boolean;
-}
-
-/** The refresh of the screen is measured once, while the page is read, and by each trial. */
-const refresh = new RefreshClock();
-let measured: Promise<void> | undefined;
-let isMeasured = false;
-if (typeof requestAnimationFrame === "function") measured = refresh.measure().then(() => void (isMeasured = true));
-
-/** To microseconds, the resolution of browsers. */
-const rounded = (milliseconds: number): number => Math.round(milliseconds * 1000) / 1000;
-const roundedOrNull = (milliseconds: number | null): number | null =>
-  milliseconds === null ? null : rounded(milliseconds);
-
-/** Count how often the page is hidden, or the window left, until `stop`. */
-function watchPage(): { stop(): { page_hidden: number; focus_lost: number } } {
-  const ending = new AbortController();
-  let [page_hidden, focus_lost] = [document.hidden ? 1 : 0, 0];
-  document.addEventListener("visibilitychange", () => document.hidden && page_hidden++, { signal: ending.signal });
-  window.addEventListener("blur", () => focus_lost++, { signal: ending.signal });
-  return {
-    stop() {
-      ending.abort();
-      return { page_hidden, focus_lost };
-    },
-  };
 }
 
 class WalkerPlugin implements JsPsychPlugin<Info> {
@@ -82,11 +45,11 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       begun();
     };
     const solid = stimulus.display.style === "mannequin";
-    if (!solid && isMeasured) {
+    if (!solid && isRefreshKnown()) {
       start();
       return undefined;
     }
-    const ready = Promise.all([solid ? mannequinPainter() : undefined, measured]);
+    const ready = Promise.all([solid ? mannequinPainter() : undefined, refreshMeasured]);
     return new Promise((_, fail) => ready.then(([mannequin]) => start(mannequin)).catch(fail));
   }
 
@@ -97,15 +60,12 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     durationMs: number,
     buttons: readonly HTMLButtonElement[],
   ): void {
-    const times: number[] = [];
-    const refreshMs = refresh.intervalMs;
+    const log = new ShowingLog();
+    const { refreshMs } = log;
     const half = refreshMs / 2;
     const planned = Math.max(Math.round(durationMs / refreshMs), 1);
     const shownMs = planned * refreshMs; // a duration is a whole number of frames
-    const watch = watchPage();
-    let first: number | undefined;
-    let cleared: number | undefined;
-    let last = 0;
+    let isCleared = false;
     let answer: (Answer & { readonly rt: number }) | undefined;
     let stopListening = (): void => {};
     painter.paint(0); // the first drawing is the slowest, so it is done before the first frame
@@ -114,27 +74,13 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
     const end = (): void => {
       stop();
       stopListening();
-      const timing = frameTiming(times, refreshMs, cleared);
-      const lost = watch.stop();
-      refresh.add(times);
       display.replaceChildren();
       this.jsPsych.finishTrial({
         response: answer?.response ?? null,
         response_by: answer?.by ?? null,
         rt: answer?.rt ?? null,
         response_device: answer?.device ?? null,
-        first_frame: first === undefined ? null : rounded(first),
-        frame_times: times.map(rounded),
-        frames_shown: times.length,
-        frames_planned: trial.repeat ? null : planned,
-        frame_interval: roundedOrNull(timing.interval),
-        frame_interval_min: roundedOrNull(timing.shortest),
-        frame_interval_max: roundedOrNull(timing.longest),
-        frames_dropped: timing.dropped,
-        shown_for: roundedOrNull(cleared ?? (first === undefined ? null : last + refreshMs)),
-        refresh_rate: rounded(1000 / refreshMs),
-        ...lost,
-        clock_isolated: globalThis.crossOriginIsolated ?? false,
+        ...log.end(trial.repeat ? null : planned),
       } satisfies WalkerData);
     };
     const onAnswer = (firstMs: number) => (given: Answer) => {
@@ -143,19 +89,19 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       if (trial.response_ends_trial) end();
     };
     const stop = everyFrame((elapsedMs, firstMs) => {
-      first ??= firstMs;
       if (trial.trial_duration !== null && elapsedMs > trial.trial_duration! - half) {
-        if (cleared === undefined) cleared = elapsedMs;
+        log.cleared(elapsedMs);
         end();
         return false;
       }
       if (trial.repeat || elapsedMs < shownMs - half) {
         const moment = ((elapsedMs + half) % shownMs) - half;
         painter.paint(Math.max(moment, 0) / 1000);
-        times.push((last = elapsedMs));
-      } else if (cleared === undefined) {
+        log.frame(elapsedMs, firstMs);
+      } else if (!isCleared) {
+        isCleared = true;
         painter.clear();
-        cleared = elapsedMs;
+        log.cleared(elapsedMs);
       }
       if (elapsedMs === 0) stopListening = listen(this.jsPsych, trial.choices!, buttons, onAnswer(firstMs));
       return true;
@@ -197,19 +143,7 @@ class WalkerPlugin implements JsPsychPlugin<Info> {
       response_by: byKey ? "key" : "button",
       response_device: byKey ? "keyboard" : "mouse",
       rt: randomization.sampleExGaussian(500, 50, 1 / 150, true),
-      first_frame: null,
-      frame_times: [],
-      frames_shown: 0,
-      frames_planned: null,
-      frame_interval: null,
-      frame_interval_min: null,
-      frame_interval_max: null,
-      frames_dropped: 0,
-      shown_for: null,
-      refresh_rate: rounded(1000 / refresh.intervalMs),
-      page_hidden: 0,
-      focus_lost: 0,
-      clock_isolated: globalThis.crossOriginIsolated ?? false,
+      ...notShown(),
     };
     return pluginAPI.mergeSimulationData(initial, options) as WalkerData;
   }
@@ -253,15 +187,6 @@ interface Answer {
 }
 
 type Keys = readonly string[] | "ALL_KEYS" | "NO_KEYS";
-
-/** The time of an event; now, if its timestamp is of another clock. */
-function timeOf(event: Event): number {
-  const now = performance.now();
-  return event.timeStamp > 0 && event.timeStamp <= now ? event.timeStamp : now;
-}
-
-/** A click without a pointer comes from the keyboard. */
-const deviceOf = (event: MouseEvent): string => ("pointerType" in event && String(event.pointerType)) || "keyboard";
 
 /** Report each answer until the returned function is called. */
 function listen(

@@ -1,5 +1,6 @@
 /** The page of an observer: welcome, consent, instructions, trials, and the end. */
 
+import { refreshMeasured, screenRefresh } from "../canvas/showingLog";
 import { button, find, make, messageOf } from "../page/elements";
 import { checksum, itemOf, randomName, type Item } from "./answers";
 import { Outbox } from "./outbox";
@@ -151,6 +152,7 @@ class Visit {
     this.offerStop();
     const { screen: wanted } = this.session;
     const size = wanted.measure ? await this.measured() : assumedOf(wanted);
+    await refreshMeasured;
     await this.keep(itemOf("screen", { ...screenFacts(this.outbox.durable), ...size }));
     if (!this.outbox.durable) await pages.ask([pages.title(), pages.paragraph("not_stored")], [["go", "continue"]]);
     await this.ask("before", reported);
@@ -306,7 +308,8 @@ const screenFacts = (durable: boolean): Record<string, unknown> => ({
   window_px: [window.innerWidth, window.innerHeight],
   pixel_ratio: window.devicePixelRatio,
   touch: matchMedia("(pointer: coarse)").matches,
-  clocks: window.crossOriginIsolated ? "fine" : "coarse",
+  clock_isolated: window.crossOriginIsolated,
+  refresh_hz: Math.round(1e6 / screenRefresh.intervalMs) / 1000,
   stored: durable,
   language: navigator.language,
   browser: navigator.userAgent,

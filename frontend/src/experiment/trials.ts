@@ -6,8 +6,8 @@ import WalkerPlugin from "../../plugin-walker/src/index";
 import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
 import { make } from "../page/elements";
 import { itemOf, type Content, type Item } from "./answers";
+import FiguresPlugin from "./figuresPlugin";
 import type { Pages } from "./pages";
-import PairPlugin from "./pairPlugin";
 import type { TrialProgress } from "./progressOfTrials";
 import type { Block, SessionContent, StimulusFile, Trial } from "./session";
 import StepPlugin from "./stepPlugin";
@@ -29,7 +29,7 @@ export interface TrialsOptions {
 
 /** What plugins report, as far as this page reads it. */
 interface Shown {
-  readonly response: string | number | readonly [number, number] | null;
+  readonly response: string | number | readonly number[] | null;
   readonly response_by: string | null;
   readonly rt: number | null;
 }
@@ -82,7 +82,7 @@ function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPain
   const attempt = progress.state(trial.trial).attempts + 1;
   const place = trial.levels ? progress.level(trial) : null;
   const level = place === null ? {} : { level: trial.levels![place], stimulus: trial.stimuli[place] };
-  let watched: Watch;
+  let watched: ReturnType<typeof watch>;
   return {
     ...shown(place === null ? trial : { ...trial, stimuli: [trial.stimuli[place]!] }, block, options, mannequin),
     on_start: () => {
@@ -94,9 +94,8 @@ function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPain
     // jsPsych waits for this before the next trial begins
     on_finish: async (data: Shown & Content) => {
       const outcome = data.response !== null ? "answered" : block.task === "similar_pair" ? "timeout" : "none";
-      const n_frames = (data["frame_times"] as readonly number[] | undefined)?.length ?? 0;
       const response = meaning(data, block, options.pages);
-      const content = { ...picked(data), n_frames, ...watched.end(), ...level, response, outcome, scale: options.scale };
+      const content = { ...factsOf(data, watched.end()), ...level, response, outcome, scale: options.scale };
       await keep(itemOf("answer", content, trial.trial, attempt));
       progress.note({ kind: "answer", trial: trial.trial, attempt, outcome, response });
     },
@@ -114,8 +113,9 @@ function shown(
   const fileS = (files[0] as { timing: { duration_s: number } }).timing.duration_s;
   const durationMs = 1000 * Math.max(session.picture.duration_s, fileS);
   if (block.task === "similar_pair") {
-    const labels = [1, 2, 3, 4].map((number) => pages.text("figure", { number }));
-    return { type: PairPlugin, stimuli: files, labels, trial_duration: 1000 * block.limit_s!, mannequin, scale };
+    const keys = files.map((_, i) => String(i + 1));
+    const labels = keys.map((number) => pages.text("figure", { number }));
+    return { type: FiguresPlugin, stimuli: files, choose: 2, keys, labels, trial_duration: 1000 * block.limit_s!, mannequin, scale };
   }
   const single = { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale };
   if (block.task === "choice" || block.task === "detection") {
@@ -142,33 +142,52 @@ function meaning({ response, response_by }: Shown, block: Block, pages: Pages): 
   return byKey ? names.find((name) => pages.text(`key_${name}`).toLowerCase() === response) : names[Number(response)];
 }
 
-/** The data of the plugin, without what jsPsych adds. */
-function picked(data: Content): Content {
-  const added = ["trial_type", "trial_index", "plugin_version", "time_elapsed", "response", "stimulus"];
-  return Object.fromEntries(Object.entries(data).filter(([name]) => !added.includes(name)));
+/** Names of what a plugin measured, with their units. */
+const WITH_UNITS: Readonly<Record<string, string>> = {
+  rt: "rt_ms",
+  frame_interval: "frame_interval_ms",
+  frame_interval_min: "frame_interval_min_ms",
+  frame_interval_max: "frame_interval_max_ms",
+  shown_for: "shown_ms",
+  refresh_rate: "refresh_hz",
+};
+const NOT_KEPT = ["trial_type", "trial_index", "plugin_version", "time_elapsed", "response", "stimulus", "first_frame"];
+
+/** What the plugin measured and what was noted around it, without what jsPsych adds. */
+function factsOf(data: Content, { started_ms, unfocused, ...around }: Noted): Content {
+  const facts = Object.entries(data).filter(([name]) => !NOT_KEPT.includes(name));
+  const first = data["first_frame"] as number | null;
+  return {
+    ...Object.fromEntries(facts.map(([name, value]) => [WITH_UNITS[name] ?? name, value])),
+    first_frame_ms: first === null ? null : Math.round(1000 * (first - started_ms)) / 1000,
+    focus_lost: Number(data["focus_lost"]) + Number(unfocused),
+    ...around,
+  };
 }
 
-interface Watch {
-  readonly end: () => Content;
+interface Noted {
+  readonly started_utc: string;
+  /** On the clock of `performance.now()`. */
+  readonly started_ms: number;
+  /** Whether the window had no focus when the trial began. */
+  readonly unfocused: boolean;
+  readonly resized: boolean;
+  readonly full_screen: boolean;
+  readonly pixel_ratio: number;
 }
 
-/** Notes what happens around a trial: hidden page, lost focus, another window size. */
-function watch(): Watch {
-  const started = new Date().toISOString();
-  const startedMs = performance.now();
-  const seen = { hidden: document.hidden, blurred: !document.hasFocus(), resized: false, full_screen: !!document.fullscreenElement };
-  const onHidden = (): void => void (seen.hidden ||= document.hidden);
-  const onBlur = (): void => void (seen.blurred = true);
-  const onResize = (): void => void (seen.resized = true);
-  document.addEventListener("visibilitychange", onHidden);
-  window.addEventListener("blur", onBlur);
+/** Notes what happens around a trial, until it is asked. */
+function watch(): { readonly end: () => Noted } {
+  const started = { started_utc: new Date().toISOString(), started_ms: performance.now() };
+  const unfocused = !document.hasFocus();
+  let resized = false;
+  const onResize = (): void => void (resized = true);
   window.addEventListener("resize", onResize);
   return {
     end: () => {
-      document.removeEventListener("visibilitychange", onHidden);
-      window.removeEventListener("blur", onBlur);
       window.removeEventListener("resize", onResize);
-      return { ...seen, started_utc: started, started_ms: startedMs, pixel_ratio: window.devicePixelRatio };
+      const full_screen = document.fullscreenElement !== null;
+      return { ...started, unfocused, resized, full_screen, pixel_ratio: window.devicePixelRatio };
     },
   };
 }

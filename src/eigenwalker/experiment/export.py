@@ -105,10 +105,11 @@ def _no_formula(value: Any) -> Any:
 class _ParquetTable:
     """A Parquet file that grows by batches of rows."""
 
-    NUMBERS = ("view_deg", "level", "rt_ms", "first_frame_ms", "frame_interval_ms")
+    MEASURED = ("_ms", "_deg")
     WHOLE = (
         *("observer", "session", "block", "trial", "attempt", "repeated", "interrupted"),
-        *("practice", "test", "simulated", "frames_dropped", "rating"),
+        *("practice", "test", "simulated", "rating", "page_hidden", "focus_lost"),
+        *("frames_shown", "frames_planned", "frames_dropped"),
     )
 
     def __init__(self, path: Path, names: list[str]) -> None:
@@ -118,7 +119,8 @@ class _ParquetTable:
         import pyarrow.parquet  # type: ignore[import]
 
         kinds = {
-            **dict.fromkeys(self.NUMBERS, pa.float64()),
+            **{name: pa.float64() for name in names if name.endswith(self.MEASURED)},
+            "level": pa.float64(),
             **dict.fromkeys(self.WHOLE, pa.int64()),
         }
         self._pa = pa

@@ -9,6 +9,19 @@ from typing import Any
 from eigenwalker.experiment.design import Design
 
 Row = dict[str, Any]
+TIMING = (
+    "first_frame_ms",
+    "frames_shown",
+    "frames_planned",
+    "frames_dropped",
+    "frame_interval_ms",
+    "frame_interval_min_ms",
+    "frame_interval_max_ms",
+    "shown_ms",
+    "page_hidden",
+    "focus_lost",
+)
+"""What pages measure in each trial, as they report it."""
 
 
 def session_rows(
@@ -83,14 +96,13 @@ def _row(
         "walker": names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None,
         "response": " ".join(map(str, response)) if isinstance(response, list) else response,
         "response_by": content.get("response_by"),
-        "rt_ms": content.get("rt"),
+        "response_device": content.get("response_device"),
+        "rt_ms": content.get("rt_ms"),
         "outcome": "interrupted" if interrupted else content.get("outcome"),
         "interrupted": int(interrupted),
         "practice": int(trial["practice"]),
         "flag": None if interrupted else _flags(content, design),
-        "first_frame_ms": _since_start(content),
-        "frames_dropped": content.get("frames_dropped"),
-        "frame_interval_ms": content.get("frame_interval"),
+        **{name: content.get(name) for name in TIMING},
         "started_utc": started,
         "answer": answer["answer"] if answer else None,
     }
@@ -104,23 +116,15 @@ def _row(
     return row
 
 
-def _since_start(content: Row) -> float | None:
-    """Return the milliseconds from the beginning of a trial to its first frame."""
-    first, start = content.get("first_frame"), content.get("started_ms")
-    if isinstance(first, int | float) and isinstance(start, int | float):
-        return round(first - start, 3)
-    return None
-
-
 def _places(response: Any) -> list[int]:
     two = isinstance(response, list) and len(response) == 2
     return response if two and all(place in (0, 1, 2, 3) for place in response) else []
 
 
 def _flags(content: Row, design: Design) -> str:
-    names = {"hidden": "hidden", "blurred": "unfocused", "resized": "resized"}
+    names = {"page_hidden": "hidden", "focus_lost": "unfocused", "resized": "resized"}
     flags = [flag for name, flag in names.items() if content.get(name)]
-    dropped, shown = content.get("frames_dropped") or 0, content.get("n_frames") or 0
+    dropped, shown = content.get("frames_dropped") or 0, content.get("frames_shown") or 0
     if shown and dropped / (shown + dropped) > design.screen.flag_dropped_share:
         flags.append("dropped_frames")
     return " ".join(flags) or "none"

@@ -193,7 +193,7 @@ class _Answering:
                 self._right.append(response == trial["correct"])
         if response is not None:
             rt = float(np.exp(self.rng.normal(7.2, 0.35)))
-            content |= {"response_by": "key", "rt": round(rt, 3)}
+            content |= {"response_by": "key", "rt_ms": round(rt, 3)}
         return [
             {
                 "answer": f"simulated-{self.truth.observer}-{self.rng.bytes(8).hex()}",

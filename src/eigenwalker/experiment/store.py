@@ -449,7 +449,7 @@ def n_dropping(connection: sqlite3.Connection, share: float) -> int:
     """Return how many trials dropped more than that share of their frames."""
     sql = (
         "SELECT count(*) FROM answer WHERE kind = 'answer' AND"
-        " json_extract(content, '$.frames_dropped') > ? * (json_extract(content, '$.n_frames')"
+        " json_extract(content, '$.frames_dropped') > ? * (json_extract(content, '$.frames_shown')"
         " + json_extract(content, '$.frames_dropped'))"
     )
     return connection.execute(sql, (share,)).fetchone()[0]
