@@ -52,7 +52,11 @@ from .metric import (
     register as register,
 )
 from .population import Population as Population
-from .psychophysics import PerceptualMetric as PerceptualMetric
+from .psychophysics import (
+    PerceptualMetric as PerceptualMetric,
+    mixed_anova as mixed_anova,
+    scheffe as scheffe,
+)
 from .quality import assess as assess
 from .simulation import simulate_population as simulate_population, simulate_walk as simulate_walk
 from .stimulus import (

@@ -18,6 +18,7 @@ from .dissimilarity_structure import (
     order_of_walks as order_of_walks,
 )
 from .fit_to_answers import MetricFit as MetricFit, fit_to_answers as fit_to_answers
+from .mixed_anova import mixed_anova as mixed_anova
 from .perceptual_metric import (
     PerceptualMetric as PerceptualMetric,
     Weights as Weights,
@@ -29,6 +30,7 @@ from .reliability import (
     bootstrap_weights as bootstrap_weights,
     split_half as split_half,
 )
+from .scheffe import scheffe as scheffe
 from .shape_search import (
     RandomStarts as RandomStarts,
     ShapeFit as ShapeFit,
