@@ -72,3 +72,19 @@ def test_walks_of_one_person_are_known_to_be(people) -> None:
 def test_what_cannot_be_told_is_refused_with_what_can(people, trait, said) -> None:
     with pytest.raises(ValueError, match=said):
         trait_contrast(people, trait)
+
+
+def test_traits_and_classes_are_found_in_another_case_and_without_their_unit(people) -> None:
+    traits = people.traits.rename(columns={"sex": "Sex", "weight_kg": "Weight [kg]"})
+    traits["Step (cm)"], traits["Step (s)"] = range(8), range(8)
+    people = Population(people.walkers, traits, people.correspondence)
+    with pytest.warns(UserWarning, match="'sex' is taken to be 'Sex'"):
+        assert trait_contrast(people, "sex=MALE:female").positive == "female"
+    with pytest.warns(UserWarning, match="is taken"):
+        weight = trait_contrast(people, "weight")
+    assert (weight.trait, weight.positive) == ("Weight [kg]", "heavy")
+    assert trait_contrast(people, "Step (s)").trait == "Step (s)"
+    with pytest.raises(ValueError, match=r"may be one of .*'Step \(cm\)', 'Step \(s\)'"):
+        trait_contrast(people, "step")
+    with pytest.raises(ValueError, match="Did you mean 'Weight"):
+        trait_contrast(people, "wieght [kg]")

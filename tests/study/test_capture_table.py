@@ -135,3 +135,10 @@ def test_names_are_found_where_the_system_speaks_ascii(tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, env=ascii_system, capture_output=True, text=True
     )
     assert done.stdout == "True\n", done.stderr
+
+
+def test_units_of_cells_are_kept_for_the_codebook(folder) -> None:
+    listed = folder / "people.csv"
+    listed.write_text("file,age\nc,42 years\nd,43 years\n")
+    with pytest.warns(UserWarning, match="'years', as in cell B2"):
+        assert capture_table(folder, listed).attrs["units"] == {"age": "years"}

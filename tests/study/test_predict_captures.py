@@ -47,9 +47,12 @@ def test_predictions_name_refused_files_and_people_who_were_learnt_from(
 def test_parameters_of_a_folder_have_units_means_and_reasons(folder, tmp_path, run_command) -> None:
     output = tmp_path / "gait.csv"
     pattern = "(?P<subject>S[0-9])_"
-    code, _, errors = run_command(
-        "parameters", folder, "-o", output, "--trait-from-name", pattern, "--jobs", 1
-    )
+    named = ["S1_a.c3d", "S1_b.c3d", "S7_a.c3d", "none.c3d"]
+    about = {"file": named, "Height (cm)": 175, "age_years": 42}
+    traits = tmp_path / "traits.csv"
+    pd.DataFrame(about).to_csv(traits, index=False)
+    options = ["--trait-from-name", pattern, "--traits", traits, "--jobs", 1]
+    code, _, errors = run_command("parameters", folder, "-o", output, *options)
     assert code == 1
     assert "refused: none.c3d: expected a C3D file" in errors
     table = pd.read_csv(output).set_index("file")
@@ -64,6 +67,8 @@ def test_parameters_of_a_folder_have_units_means_and_reasons(folder, tmp_path, r
     assert first["unit"] == "mm"
     book = pd.read_csv(tmp_path / "gait-codebook.csv")
     assert book["column"].tolist() == list(pd.read_csv(output, nrows=0))
+    units = book.set_index("column")["unit"]
+    assert (units["Height (cm)"], units["age_years"]) == ("cm", "years")
     assert len(json.loads((tmp_path / "gait.json").read_text())["files"]) == 4
 
 

@@ -62,9 +62,32 @@ def test_words_for_the_sexes_are_two_classes():
     assert _values("w", "b", "W")[0] == ["w", "b", "w"]
 
 
-def test_feet_and_inches_are_unknown_and_say_nothing_of_the_unit():
-    values, warned = _values("175", "5'9\"", "180", "1.7 m", "171 cm", "172 cm", "173")
-    assert np.isnan(values[1])
-    assert values[3] == 170
-    assert "no number" in warned[0]
-    assert "cell B6 ('171 cm')" in warned[1]
+def test_feet_and_inches_are_centimetres():
+    values, warned = _values("175", "5'9\"", "6 ft", "1.7 m", "171 cm", "172 cm", "173")
+    np.testing.assert_allclose(values, [175, 175.26, 182.88, 170, 171, 172, 173])
+    assert "in cell B3 as 175.26 cm" in warned[0]
+    assert "cell B6 ('171 cm')" in warned[1] or "numbers of 'cm'" in warned[1]
+
+
+@pytest.mark.parametrize("date", ["2024-03-05", "05.03.2024", "3/5/24", "5. Mrz", "Mar-05", "8:30"])
+def test_dates_are_no_numbers_and_no_silent_classes(date):
+    values, warned = _values(date, "", date)
+    assert values == [date, None, date]
+    assert f"dates or times, such as {date!r} in cell B2" in warned[0]
+    with pytest.raises(ValueError, match=r"has numbers, but 1 dates .* in cell B4"):
+        _values("5.2", "5.4", date)
+    assert _values("a", "b", date)[0] == ["a", "b", date]
+
+
+def test_numbers_of_two_sizes_are_two_units():
+    for cells in (("1.75", "1750", "1.68"), ("175", "168", "1.8"), ("60.5", "61", "62500")):
+        with pytest.raises(ValueError, match=r"numbers of two units, .* in cell B\d and"):
+            trait_values(cells, "Height (cm)", lambda at: f"cell B{at + 2}", decimal_comma=False)
+    values, warned = _values("1.5", "1.6", "15", "16")  # may be doses
+    assert values == [1.5, 1.6, 15, 16]
+    assert "about 10 times as large" in warned[0]
+    assert _values("1", "10", "100", "1")[1] == _values("150", "210", "165")[1] == []
+
+
+def test_words_for_yes_and_no_are_two_classes():
+    assert _values("yes", "Y", "n", "No")[0] == ["yes", "yes", "no", "no"]

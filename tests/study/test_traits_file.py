@@ -91,3 +91,40 @@ def test_the_sheet_of_files_is_read_below_a_title_and_formulas_without_values_ar
     assert "sheet 'people'" in words
     assert "stand in line 3" in words
     assert "1 cells of the traits table, first C4, hold formulas" in words
+
+
+def test_a_workbook_is_read_as_it_is_seen(tmp_path):
+    book = openpyxl.Workbook()
+    book.active.title, book.active.sheet_state = "old", "hidden"
+    for row in (["file", "sex"], ["x", "f"]):
+        book.active.append(row)
+    sheet = book.create_sheet("now")
+    rows = [["file", "group", "Score\n(right)"], [None, None, "percent"], ["a", "ill", 0.25]]
+    for row in [*rows, ["b", None, 0.5]]:
+        sheet.append(row)
+    sheet.merge_cells("B3:B4")
+    sheet.column_dimensions["C"].hidden = True
+    for row in (3, 4):
+        sheet.cell(row, 3).number_format = "0%"
+    book.active = 1
+    book.save(tmp_path / "t.xlsx")
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        table = read_traits_file(tmp_path / "t.xlsx")
+    assert list(table) == ["file", "group", "Score (right)"]
+    assert table.to_numpy().tolist() == [["a", "ill", "25%"], ["b", "ill", "50%"]]
+    words = " ".join(str(each.message) for each in said)
+    for part in ("sheet 'now'", "column C", "B3:B4 ('ill')", "units: {'Score (right)': 'percent'}"):
+        assert part in words
+
+
+def test_of_headings_in_two_lines_the_lower_one_counts(tmp_path):
+    book = openpyxl.Workbook()
+    for row in (["file", "body", None], [None, "height", "weight"], ["a", 175, 70]):
+        book.active.append(row)
+    book.active.merge_cells("A1:A2")
+    book.save(tmp_path / "t.xlsx")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        table = read_traits_file(tmp_path / "t.xlsx")
+    assert table.to_dict("records") == [{"file": "a", "height": "175", "weight": "70"}]

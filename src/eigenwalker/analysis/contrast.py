@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +12,7 @@ import pandas as pd
 from eigenwalker.core.arguments import check_kind
 from eigenwalker.population.persons import PERSON
 from eigenwalker.population.population import FLAG, Population, check_population
+from eigenwalker.population.trait_table import heading_parts, trait_column
 
 _POLES = {
     "age": ("young", "old"),
@@ -18,6 +21,8 @@ _POLES = {
     "happy": ("sad", "happy"),
     "nervous": ("relaxed", "nervous"),
 }
+SEX = ("sex", "gender", "geschlecht", "sexe", "sexo")
+"""Headings, in small letters, of the trait that is told where none is named."""
 _NO_TRAITS = (FLAG, PERSON, "file")
 
 
@@ -108,7 +113,7 @@ def trait_contrast(population: Population, trait: str) -> Contrast:
     """
     check_population(population)
     name, pair = _parts(trait)
-    column = trait_column(population.traits, name)
+    column = _column(population, name)
     values = population.traits[column]
     if population.flagged.all():
         raise ValueError(
@@ -138,7 +143,7 @@ def usual_trait(population: Population) -> str:
             problem = error
     if not found:
         raise problem
-    return min(found, key=lambda name: (name.lower() != "sex", not found[name]))
+    return min(found, key=lambda name: (name.casefold() not in SEX, not found[name]))
 
 
 def class_labels(
@@ -150,11 +155,11 @@ def class_labels(
     """
     check_population(population)
     name, some = _parts(trait)
-    column = trait_column(population.traits, name)
+    column = _column(population, name)
     values = _as_text(population.traits[column])
     known = (values != "") & ~population.flagged
     if some:
-        wanted = some.split(":")
+        wanted = _spelled(some, values[known]).split(":")
         if missing := sorted(set(wanted) - set(values[known])):
             raise ValueError(
                 f"{column} has no value {missing[0]!r}; it has {sorted(set(values[known]))}."
@@ -177,14 +182,22 @@ def _parts(trait: object) -> tuple[str, str]:
     return name, classes
 
 
+def _spelled(classes: str, known: Iterable[str]) -> str:
+    """Return classes joined by colons as they are spelled, where another case means one alone."""
+    words = Counter(word.casefold() for word in set(known))
+    spelled = {word.casefold(): word for word in known if words[word.casefold()] == 1}
+    return ":".join(spelled.get(word.casefold(), word) for word in classes.split(":"))
+
+
 def has_several_classes(population: Population, trait: str) -> bool:
     """Return whether a trait, or what is named of its values, is three classes or more of text."""
     check_population(population)
     name, some = _parts(trait)
-    values = population.traits[trait_column(population.traits, name)]
+    values = population.traits[_column(population, name)]
     known = set(_as_text(values[~population.flagged])) - {""}
     if some:
-        return len(some.split(":")) > 2 and set(some.split(":")) <= known
+        named = _spelled(some, known).split(":")
+        return len(named) > 2 and set(named) <= known
     is_text = not pd.api.types.is_numeric_dtype(values) or pd.api.types.is_bool_dtype(values)
     return is_text and 2 < len(known) <= len(values) / 2
 
@@ -196,22 +209,16 @@ def _as_text(values: pd.Series) -> pd.Series:
     return values.map(lambda value: "" if pd.isna(value) else f"{value:.15g}")
 
 
-def trait_column(traits: pd.DataFrame, name: str) -> str:
-    """Return the column of a trait, given in full or without its unit; raise if there is none."""
-    columns = [str(column) for column in traits if column not in _NO_TRAITS]
-    if name in columns:
-        return name
-    with_unit = [column for column in columns if column.startswith(f"{name}_")]
-    if len(with_unit) == 1:
-        return with_unit[0]
-    raise ValueError(f"There is no trait {name!r}; the population has {columns}.")
+def _column(population: Population, name: str) -> str:
+    traits = population.traits
+    return trait_column(traits.drop(columns=[c for c in _NO_TRAITS if c in traits]), name)
 
 
 def _poles(column: str, pair: str, values: pd.Series) -> tuple[str, str]:
     """The negative and the positive value: those of ``negative:positive``, or the only two."""
     known = _as_text(values.drop_duplicates().sort_values()).tolist()
     if pair:
-        parts = pair.split(":")  # values may themselves hold a colon
+        parts = _spelled(pair, known).split(":")  # values may themselves hold a colon
         splits = [(":".join(parts[:i]), ":".join(parts[i:])) for i in range(1, len(parts))]
         poles = next((each for each in splits if set(each) <= set(known)), ("", ""))
         if poles[0] == poles[1]:
@@ -237,7 +244,7 @@ def _continuous(population: Population, column: str, rows: np.ndarray) -> Contra
     y = population.traits[column].to_numpy(dtype=float)[rows]
     if np.isinf(y).any():
         raise ValueError(f"The trait {column} is infinite for some walkers; leave it empty there.")
-    stem = column.split("_")[0]
+    stem = heading_parts(column)[0].casefold().split("_")[0]
     negative, positive = _POLES.get(stem, (f"low {column}", f"high {column}"))
     return Contrast(column, rows, y, negative, positive, False, _persons(population, rows))
 

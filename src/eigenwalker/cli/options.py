@@ -95,11 +95,12 @@ def load_people(path: Path | None, with_flagged: bool, person: str | None = None
 
 def trait_or_usual(population: Population) -> str:
     """Return the sex, or the first trait that tells walkers apart, which is then said."""
-    from eigenwalker.analysis.contrast import usual_trait
+    from eigenwalker.analysis.contrast import SEX, usual_trait
 
     trait = usual_trait(population)
     if trait != "sex":
-        print(f"No trait 'sex' tells these walkers apart: {trait} is told.", file=sys.stderr)
+        why = "" if trait.casefold() in SEX else "No trait 'sex' tells these walkers apart: "
+        print(f"{why}{trait} is told.", file=sys.stderr)
     return trait
 
 

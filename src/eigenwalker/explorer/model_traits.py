@@ -15,9 +15,9 @@ from eigenwalker.analysis.trait_axis import TraitAxis, axis_within, strongest_sp
 from eigenwalker.population.features import FeatureLayout
 from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import Population
+from eigenwalker.population.trait_table import heading_parts
 
 MAX_TRAITS = 12
-_UNITS = ("years", "kg", "mm", "cm", "m", "Hz", "s")
 _DECIMALS = 7
 """Of millimetres: the features of a walker add up to within a millionth."""
 _TIMING_DECIMALS = 3
@@ -97,10 +97,8 @@ def _pole(population: Population, contrast: Contrast, pole: str) -> str:
 
 def _label_and_unit(trait: str) -> tuple[str, str]:
     """Return ``weight`` and ``kg`` of ``weight_kg``."""
-    stem, _, unit = trait.rpartition("_")
-    if stem and unit in _UNITS:
-        return stem, unit
-    return trait.replace("_", " ").strip() or trait, ""
+    stem, unit = heading_parts(trait)
+    return stem.replace("_", " ").strip() or trait, unit
 
 
 def _steps(axes: _Axes, contrast: Contrast) -> dict[str, dict[str, list]]:

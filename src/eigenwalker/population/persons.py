@@ -65,6 +65,9 @@ def name_persons(traits: pd.DataFrame, column: str | None) -> pd.DataFrame:
     if column is None or (column not in traits and column.lower() == "none"):
         return traits.assign(**{PERSON: ""})
     if column not in traits:
+        same = [str(name) for name in traits if str(name).casefold() == column.casefold()]
+        if len(same) == 1:
+            return name_persons(traits, same[0])
         names = [str(name) for name in traits if name not in ("file", "flag")]
         raise ValueError(f"There is no column {column!r} to name persons; there are {names}.")
     if column == PERSON:

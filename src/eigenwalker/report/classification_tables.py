@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from eigenwalker.analysis.classification import Classification, Regression, results_of_panels
-from eigenwalker.analysis.contrast import Contrast
+from eigenwalker.analysis.contrast import SEX, Contrast
 from eigenwalker.analysis.plausibility import Plausibility
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
@@ -123,7 +123,7 @@ def person_sentences(contrast: Contrast, traits: pd.DataFrame) -> list[str]:
 
 def _both_sexes(contrast: Contrast) -> list[str]:
     """Return a warning if persons have several values of a trait that people do not change."""
-    if not contrast.varies_within_persons or contrast.trait.lower() not in ("sex", "gender"):
+    if not contrast.varies_within_persons or contrast.trait.casefold() not in SEX:
         return []
     values = contrast.values_of_persons()
     return [

@@ -18,8 +18,8 @@ from eigenwalker.io.read import SUFFIXES, is_capture
 from eigenwalker.population.persons import person_column
 from eigenwalker.population.population import FLAG
 from eigenwalker.population.trait_table import check_traits
-from eigenwalker.study.trait_cells import in_one_spelling, trait_values
-from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, names_files, read_traits_file
+from eigenwalker.study.trait_cells import UNIT, in_one_spelling, trait_values
+from eigenwalker.study.traits_file import DECIMAL_COMMA, LINE, UNITS, names_files, read_traits_file
 
 MAX_NAMED = 5
 FILE = "file"
@@ -103,7 +103,7 @@ def _traits_table(traits: pd.DataFrame | str | Path, folder: Path) -> pd.DataFra
     if (twice := table[FILE][table[FILE].duplicated()]).any():
         raise ValueError(f"The traits table lists {sorted(set(twice))[:5]} more than once.")
     persons = person_column(table)
-    letters = cells.attrs.get("letters", {})
+    letters, units = cells.attrs.get("letters", {}), dict(cells.attrs.get(UNITS, {}))
     for given, name in zip(cells, names, strict=True):
         if name in (FILE, FLAG):
             continue
@@ -117,9 +117,12 @@ def _traits_table(traits: pd.DataFrame | str | Path, folder: Path) -> pd.DataFra
                 lambda at, column=column: f"cell {column}{lines[at]}",
                 decimal_comma=cells.attrs[DECIMAL_COMMA],
             )
+            units[name] = table[name].attrs.get(UNIT) or units.get(given, "")
         elif _holds_text(table[name]):
             table[name] = in_one_spelling(_numbers_where_all_are(table[name]))
-    return pd.DataFrame({name: table[name] for name in table})
+    found = pd.DataFrame({name: table[name] for name in table})
+    found.attrs[UNITS] = units
+    return found
 
 
 def _persons(cells: pd.Series) -> pd.Series:

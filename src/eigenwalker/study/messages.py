@@ -146,6 +146,8 @@ def _trait_in_words(name: str, values: pd.Series) -> str:
         ends = f"{known.min():g}" if known.nunique() == 1 else f"{known.min():g} to {known.max():g}"
         return f"{name}: numbers, {ends}, {len(known)} values{missing}"
     counts = known.astype(str).value_counts()
+    if len(counts) == len(known) > 2:
+        return f"{name}: text, each another, {len(known)} values{missing}"
     shown = ", ".join(f"{value} {count}" for value, count in counts.head(8).items())
     more = f" and {len(counts) - 8} more" if len(counts) > 8 else ""
     return f"{name}: classes, {shown}{more}, {len(known)} values{missing}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,10 +14,12 @@ from eigenwalker.core.progress import Progress
 from eigenwalker.gait.events import gait_events
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.population.persons import PERSON, name_persons, persons_of
+from eigenwalker.population.trait_table import heading_parts
 from eigenwalker.study.capture_table import FILE, capture_table
 from eigenwalker.study.fit_folder import outcomes_in_processes
 from eigenwalker.study.messages import flag_of, parameter_codebook
 from eigenwalker.study.process_capture import CaptureResult
+from eigenwalker.study.traits_file import UNITS
 
 PERCENT = 100.0
 
@@ -121,7 +123,7 @@ def parameter_table(
     return ParameterTable(
         files,
         _by_person(files[counted], None if who is None else who[counted]),
-        _codebook(files),
+        _codebook(files, table.attrs.get(UNITS, {})),
     )
 
 
@@ -164,10 +166,18 @@ def _by_person(files: pd.DataFrame, persons: Sequence[str] | np.ndarray | None) 
     return tidy
 
 
-def _codebook(files: pd.DataFrame) -> pd.DataFrame:
+def _codebook(files: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     book = parameter_codebook()
     rows = [
-        (str(name), *(book[str(name)][1:] if name in book else ("", "trait, as it was given")))
-        for name in files
+        (
+            name,
+            *(book[name][1:] if name in book else (_unit(name, units), "trait, as it was given")),
+        )
+        for name in map(str, files)
     ]
     return pd.DataFrame(rows, columns=["column", "unit", "meaning"])
+
+
+def _unit(trait: str, units: Mapping[str, str]) -> str:
+    """Return the unit of a trait by its cells, else by its heading."""
+    return units.get(trait) or heading_parts(trait)[1]

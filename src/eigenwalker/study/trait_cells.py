@@ -10,11 +10,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.text_cells import MISSING
-from eigenwalker.io.to_trajectories import unit_named
+from eigenwalker.study.cell_dates import is_of_dates
+from eigenwalker.study.cell_units import check_one_size, in_centimetres, in_one_unit
 
 INFINITE = frozenset(("inf", "+inf", "-inf", "infinity", "-infinity"))
+UNIT = "unit"
+"""Attribute of a trait of numbers: the unit that its cells name."""
 MAX_LETTERS = 60
 """A longer cell is no number."""
 UNKNOWN = (MISSING - INFINITE) | frozenset(
@@ -45,6 +47,11 @@ UNKNOWN = (MISSING - INFINITE) | frozenset(
 """What people write for a value that they do not know, in small letters."""
 CODES = frozenset(sign * float("9" * n) for n in (2, 3, 4, 5) for sign in (-1, 1))
 """Numbers of nines, which stand for unknown where no other number is like them."""
+ANSWERS = {
+    "yes": ("y", "yes", "j", "ja", "oui", "si", "s\u00ed"),
+    "no": ("n", "no", "nein", "non"),
+}
+"""Words for yes and no."""
 SEXES = {
     "female": ("f", "female", "w", "woman", "women", "girl", "weiblich", "frau", "femme", "mujer"),
     "male": (
@@ -61,6 +68,7 @@ SEXES = {
     ),
 }
 """Words for the sexes, which are one class where a trait has several of them."""
+WORDS = (SEXES, ANSWERS)
 LEAST_NUMBERS = 2 / 3
 """A trait of which this share are numbers is one of numbers."""
 MAX_NAMED = 5
@@ -74,8 +82,6 @@ _POINT = re.compile(
     r"|[+-]?inf(inity)?"
 )
 _COMMA = re.compile(r"[+-]?\d{1,3}([.'\u2019 ]\d{3})*(,\d+)?|[+-]?\d*,?\d+")
-_FEET = re.compile(r"\d+\s*['\u2019\u2032]\s*\d{1,2}(?!\d)")
-"""Feet and inches, such as 5'9", which are two numbers."""
 _EITHER = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 
 
@@ -87,49 +93,58 @@ def trait_values(
     What is guessed is said in warnings, with the first cell (`where`) that it is about.
     """
     texts = [cell.strip() for cell in cells]
+    read = in_centimetres(texts, name, where)
     unknown = [text.casefold() in UNKNOWN for text in texts]
     _say_unknown([text for text, out in zip(texts, unknown, strict=True) if out and text], name)
+    known = [None if out else text for text, out in zip(texts, unknown, strict=True)]
+    of_dates = is_of_dates([text or "" for text in known], name, where)
     parts = [
-        None if out or _FEET.match(text) else _NUMBER.fullmatch(text[:MAX_LETTERS])
-        for text, out in zip(texts, unknown, strict=True)
+        None if out else _NUMBER.fullmatch(text[:MAX_LETTERS])
+        for text, out in zip(read, unknown, strict=True)
     ]
     n_known, n_numbers = unknown.count(False), sum(part is not None for part in parts)
     plain = sum(part is not None and not part["unit"] for part in parts)
     units = {part["unit"] for part in parts if part and part["unit"]}
-    if not n_numbers or n_numbers < LEAST_NUMBERS * n_known or (not plain and len(units) > 3):
-        known = [None if out else text for text, out in zip(texts, unknown, strict=True)]
+    few = n_numbers < LEAST_NUMBERS * n_known
+    if of_dates or not n_numbers or few or (not plain and len(units) > 3):
         return in_one_spelling(pd.Series(known, dtype=object, name=name))
     for at, (part, out) in enumerate(zip(parts, unknown, strict=True)):
         if part is None and not out:
             _say(name, f"{texts[at]!r} in {where(at)} is no number, and is taken as unknown")
     numbers = [part["number"].strip() if part else "" for part in parts]
     values = _numbers(numbers, name, where, decimal_comma)
-    values = _in_one_unit(values, [part and part["unit"] for part in parts], texts, name, where)
-    return pd.Series(_without_codes(values, name), name=name)
+    named = [part and part["unit"] for part in parts]
+    values, unit = in_one_unit(values, named, texts, name, where)
+    values = _without_codes(values, name)
+    check_one_size(values, texts, name, where)
+    found = pd.Series(values, name=name)
+    found.attrs[UNIT] = unit
+    return found
 
 
 def in_one_spelling(values: pd.Series) -> pd.Series:
-    """Return texts in which those that differ in case only, or are words for a sex, are the same.
+    """Return texts in which those that differ in case only are the same, and words for a sex too.
 
-    The spelling in small letters is taken where there is one, else the most frequent one.
+    So are words for yes and for no. The spelling in small letters is taken where there is one, else
+    the most frequent one.
     """
     counts = Counter(value for value in values if isinstance(value, str))
     if not counts:
         return values
-    sexes = {word: sex for sex, words in SEXES.items() for word in words}
-    of_sex = {sexes.get(text.casefold()) for text in counts}
+    families = ({word: one for one, words in each.items() for word in words} for each in WORDS)
+    words = next((each for each in families if all(t.casefold() in each for t in counts)), {})
     groups: dict[str, list[str]] = {}
     for text, _ in counts.most_common():
-        key = text.casefold() if None in of_sex else str(sexes[text.casefold()])
+        key = words.get(text.casefold(), text.casefold())
         groups.setdefault(key, []).append(text)
     chosen: dict[str, str] = {}
     for key, several in groups.items():
         if len(several) > 1:
-            best = key if key in several or None not in of_sex else several[0]
+            best = key if key in several or words else several[0]
             chosen |= dict.fromkeys(several, best)
             named = ", ".join(f"{text!r} ({counts[text]})" for text in sorted(several))
             _say(str(values.name), f"{named} are taken as one, {best!r}")
-    if None not in of_sex and chosen:  # the other sex is called by its word too
+    if words and chosen:  # the other class is called by its word too
         chosen |= {text: key for key, several in groups.items() for text in several}
     spelled = [chosen.get(value, value) if isinstance(value, str) else value for value in values]
     return pd.Series(spelled, index=values.index, dtype=object, name=values.name)
@@ -172,38 +187,6 @@ def _numbers(
         if text and (not ways or ways[0] != comma):
             read = f"taken as {values[at]:g}" if ways else "no number, and is taken as unknown"
             _say(name, f"{text!r} in {where(at)} is {read}")
-    return values
-
-
-def _in_one_unit(
-    values: np.ndarray,
-    units: Sequence[str | None],
-    texts: Sequence[str],
-    name: str,
-    where: Callable[[int], str],
-) -> np.ndarray:
-    """Return numbers in the unit of most cells; lengths are converted, others must be of one."""
-    counts = Counter(unit.casefold().rstrip(".") for unit in units if unit)
-    if not counts:
-        return values
-    most = counts.most_common(1)[0][0]
-    at = next(
-        (at for at, unit in enumerate(units) if (unit or "").casefold().rstrip(".") == most), 0
-    )
-    _say(name, f"numbers of {most!r}, as in {where(at)} ({texts[at]!r}); the unit is left out")
-    known = unit_named(most)
-    for at, unit in enumerate(units):
-        word = (unit or most).casefold().rstrip(".")
-        if np.isnan(values[at]) or word == most or word.removesuffix("s") == most.removesuffix("s"):
-            continue
-        other = unit_named(word)
-        if known is None or other is None:
-            raise ValueError(
-                f"The trait {name!r} is in {most!r}, but has {texts[at]!r} in {where(at)}; write "
-                "all its numbers in one unit."
-            )
-        values[at] *= MILLIMETRES[other.name] / MILLIMETRES[known.name]
-        _say(name, f"{texts[at]!r} in {where(at)} is taken as {values[at]:.6g} {most}")
     return values
 
 

@@ -10,19 +10,18 @@ import zipfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
 from eigenwalker.io.capture_file import as_utf8
+from eigenwalker.study.workbook import MAX_BYTES, MOST_ABOVE, workbook_rows
 
-MAX_BYTES = 50_000_000
-"""More, packed or unpacked, is no table of traits."""
-MAX_CELLS = 2_000_000
 LINE = "line"
 """Attribute of the table: the line of the file in which each row stands."""
 DECIMAL_COMMA = "decimal_comma"
 """Attribute: whether the separator says that commas stand before decimals."""
+UNITS = "units"
+"""Attribute: the units in a line of their own below the headings, by heading."""
 FILE_WORDS = (
     "file",
     "files",
@@ -35,8 +34,6 @@ FILE_WORDS = (
     "capture",
 )
 """Headings, in small letters alone, that name the captures."""
-MOST_ABOVE = 10
-"""Lines among which headings are looked for, below a title."""
 _SEPARATORS = "\t;,|"
 _OTHER = {
     ".xls": "an old Excel file",
@@ -66,7 +63,10 @@ def read_traits_file(path: Path) -> pd.DataFrame:
     filled = [(at, row) for at, row in enumerate(rows, start=1) if any(row)]
     if len(filled) < 2:
         raise ValueError(f"The traits table {path} has no line below its headings.")
-    above = next((at for at, (_, row) in enumerate(filled[:MOST_ABOVE]) if _is_headings(row)), 0)
+    top = [_is_headings(row) for _, row in filled[:MOST_ABOVE]]
+    above = top.index(True) if True in top else 0
+    while above + 1 < len(top) and top[above + 1]:  # of headings in two lines, the lower one
+        above += 1
     if above and len(filled) > above + 1:
         warnings.warn(
             f"The headings of the traits table are taken to stand in line {filled[above][0]}; what "
@@ -75,6 +75,9 @@ def read_traits_file(path: Path) -> pd.DataFrame:
         )
         filled = filled[above:]
     (_, header), *body = filled
+    header = [" ".join(heading.split()) for heading in header]
+    units = _units_below(header, body)
+    body = body[1:] if units else body
     width = max(len(row) for _, row in filled)
     if len(header) == width - 1 and _counts([row[0] for _, row in body]):
         header = ["", *header]  # of R's write.table, which has no heading above its row names
@@ -100,6 +103,7 @@ def read_traits_file(path: Path) -> pd.DataFrame:
     letters = {header[at]: letters_of(at) for at in keep}
     table.attrs.update({LINE: [at for at, _ in body], "letters": letters})
     table.attrs[DECIMAL_COMMA] = separator == ";"
+    table.attrs[UNITS] = units
     return table
 
 
@@ -110,6 +114,19 @@ def names_files(heading: str) -> bool:
 
 def _is_headings(row: Sequence[str]) -> bool:
     return sum(map(bool, row)) > 1 and any(map(names_files, row))
+
+
+def _units_below(header: Sequence[str], body: Sequence[tuple[int, list[str]]]) -> dict[str, str]:
+    """Return the units that stand in a line of their own, below headings and without a file."""
+    at = next((at for at, heading in enumerate(header) if names_files(heading)), None)
+    if at is None or len(body) < 2 or any(row[at : at + 1] in ([], [""]) for _, row in body[1:]):
+        return {}
+    line, row = body[0]
+    named = {head: cell for head, cell in zip(header, row, strict=False) if cell}
+    if "".join(row[at : at + 1]) or any(map(str.isdecimal, "".join(row))):
+        return {}
+    warnings.warn(f"Line {line} of the traits table is taken to hold units: {named}.", stacklevel=3)
+    return named
 
 
 def letters_of(column: int) -> str:
@@ -129,7 +146,7 @@ def _rows(path: Path) -> tuple[list[list[str]], str]:
         raise ValueError(f"it has more than {MAX_BYTES // 1_000_000} MB")
     content = path.read_bytes()
     if content.startswith(b"PK"):
-        return _of_workbook(content), ""
+        return workbook_rows(content, _is_headings), ""
     return _of_text(content)
 
 
@@ -153,87 +170,8 @@ def _of_text(content: bytes) -> tuple[list[list[str]], str]:
     return [[_tidy(cell) for cell in row] for row in reader], separator
 
 
-def _of_workbook(content: bytes) -> list[list[str]]:
-    """Return the cells of the first sheet with a column of files, else of any cells, as texts."""
-    from openpyxl import load_workbook
-
-    sheets: list[tuple[str, list[list[str]]]] = []
-    n_cells = 0
-
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        if sum(entry.file_size for entry in archive.infolist()) > MAX_BYTES:
-            raise ValueError(f"it unpacks to more than {MAX_BYTES // 1_000_000} MB")
-        if "xl/workbook.xml" not in archive.namelist():
-            raise ValueError("it is no XLSX file")
-    try:
-        book: Any = load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-        for sheet in book.worksheets:
-            rows: list[list[str]] = []
-            for row in sheet.iter_rows(values_only=True):
-                n_cells += len(row)
-                if n_cells > MAX_CELLS:
-                    raise ValueError(f"it has more than {MAX_CELLS} cells")
-                rows.append(_without_empty_end([_as_text(cell) for cell in row]))
-            if any(map(any, rows)):
-                sheets.append((sheet.title, rows))
-    except (ValueError, OSError):
-        raise
-    except Exception as error:  # a damaged workbook fails anywhere in the library, in many ways
-        raise ValueError(f"a damaged XLSX file ({type(error).__name__})") from error
-    if not sheets:
-        return []
-    with_files = [sheet for sheet in sheets if any(map(_is_headings, sheet[1][:MOST_ABOVE]))]
-    title, rows = (with_files or sheets)[0]
-    if len(sheets) > 1:
-        others = [name for name, _ in sheets if name != title][:MOST_ABOVE]
-        warnings.warn(
-            f"The traits are read from the sheet {title!r} of the workbook, not from {others}.",
-            stacklevel=2,
-        )
-    _say_unsaved(content, title, rows)
-    return rows
-
-
-def _say_unsaved(content: bytes, title: str, rows: Sequence[Sequence[str]]) -> None:
-    """Say which cells hold formulas without the values that spreadsheet programs save with them."""
-    from openpyxl import load_workbook
-
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        inside = [name for name in archive.namelist() if name.startswith("xl/worksheets/")]
-        if not any(b"<f" in archive.read(name) for name in inside):
-            return
-    sheet: Any = load_workbook(io.BytesIO(content), read_only=True)[title]
-    unsaved = [
-        f"{letters_of(column)}{line + 1}"
-        for line, cells in enumerate(sheet.iter_rows(values_only=True))
-        for column, cell in enumerate(cells)
-        if str(cell).startswith("=") and not "".join(rows[line][column : column + 1])
-    ]
-    if unsaved:
-        warnings.warn(
-            f"{len(unsaved)} cells of the traits table, first {unsaved[0]}, hold formulas whose "
-            "values are not in the file, and are taken as unknown: open it in a spreadsheet "
-            "program and save it.",
-            stacklevel=2,
-        )
-
-
-def _as_text(value: object) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        return str(int(value))
-    return _tidy(str(value)).removesuffix(" 00:00:00")
-
-
 def _tidy(text: str) -> str:
     return text.replace("\u00a0", " ").strip()
-
-
-def _without_empty_end(row: list[str]) -> list[str]:
-    while row and not row[-1]:
-        row.pop()
-    return row
 
 
 def _counts(cells: Sequence[str]) -> bool:
