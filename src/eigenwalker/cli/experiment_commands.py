@@ -247,10 +247,12 @@ class _Pages:
         self.welcome, self.start = service.welcome, service.start
         self.stimuli, self.end = service.stimuli, service.end
         self.lab_page = service.lab_page
-        self._answers, self._received = service.answers, received
+        self._submit, self._received = service.submit_answers, received
 
-    def answers(self, key: str, session: int, items: Any) -> Any:
-        return self._received(self._answers(key, session, items))
+    async def answers(self, key: str, session: int, items: Any) -> Any:
+        import asyncio
+
+        return self._received(await asyncio.wrap_future(self._submit(key, session, items)))
 
 
 @contextmanager

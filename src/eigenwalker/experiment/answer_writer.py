@@ -46,9 +46,15 @@ class AnswerWriter:
 
     def do(self, work: Callable[[sqlite3.Connection], Result], *, alone: bool = False) -> Result:
         """Return the result of a work, when it is on disk; `alone` runs it in no transaction."""
+        return self.submit(work, alone=alone).result()
+
+    def submit(
+        self, work: Callable[[sqlite3.Connection], Result], *, alone: bool = False
+    ) -> Future[Result]:
+        """Have a work done, and return its result to come."""
         future: Future[Result] = Future()
         self._waiting.put((work, future, alone))
-        return future.result()
+        return future
 
     def _run(self) -> None:
         while (first := self._waiting.get()) is not None:

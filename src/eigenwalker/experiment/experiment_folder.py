@@ -6,7 +6,7 @@ import hashlib
 import json
 import re
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
@@ -22,12 +22,20 @@ from eigenwalker.experiment.manipulations import (
     manipulation_design,
 )
 from eigenwalker.experiment.order import shown_walkers, stimulus_name
+from eigenwalker.experiment.stimulus_bundle import (
+    Bundle,
+    Piece,
+    stimulus_bundle,
+    stimulus_piece,
+)
 
 if TYPE_CHECKING:
     from eigenwalker.population.population import Population
 
 DESIGN, TEXTS, STIMULI, PEOPLE = "design.toml", "texts", "stimuli", "walkers.json"
 ANSWERS, VERSIONS, BACKUPS = "answers.sqlite", "versions", "backups"
+MAX_KEPT = 2000
+"""Stimuli of a version that a server has in memory, some 10 kB each."""
 _NUMBER = re.compile(r"(?m)^(# )?number = \d+")
 DESIGNS = ("troje2002", "wdp2002", "prazak2010", "detection")
 """Ready to run, beside `MANIPULATIONS` and `CARICATURE`."""
@@ -80,15 +88,17 @@ class Material:
         """Return the file of a stimulus."""
         return self.folder / STIMULI / f"{name}.json"
 
-    def stimulus_text(self, name: str) -> str:
-        """Return the content of the file of a stimulus, which is read once."""
-        if name not in self._texts_of_stimuli:
+    def stimuli(self, names: Collection[str]) -> Bundle:
+        """Return stimuli as one JSON; each file is read once."""
+        for name in set(names) - set(self._pieces):
+            if len(self._pieces) >= MAX_KEPT:
+                self._pieces.clear()
             text = self.stimulus_path(name).read_text(encoding="utf-8")
-            self._texts_of_stimuli[name] = text
-        return self._texts_of_stimuli[name]
+            self._pieces[name] = stimulus_piece(name, text)
+        return stimulus_bundle(self._pieces[name] for name in names)
 
     @cached_property
-    def _texts_of_stimuli(self) -> dict[str, str]:
+    def _pieces(self) -> dict[str, Piece]:
         return {}
 
     def stimulus_names(self) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -19,8 +20,11 @@ from eigenwalker.experiment.link_keys import hash_of, keyed_hash, new_key, same,
 from eigenwalker.experiment.order import session_trials
 from eigenwalker.experiment.rescue import take_items
 from eigenwalker.experiment.status import experiment_status
+from eigenwalker.experiment.stimulus_bundle import Bundle
 
 Content = dict[str, Any]
+OBSERVERS = ("personal", "open", "preview")
+"""Kinds of links that lead to the page of observers."""
 FINAL = ("answered", "timeout")
 """Outcomes after which a trial is not shown again."""
 
@@ -49,6 +53,8 @@ class Service:
     writer: AnswerWriter
     _materials: dict[str, Material] = field(default_factory=dict)
     _current: tuple[Any, str] = (None, "")
+    _n_trials: dict[tuple[str, int], int] = field(default_factory=dict)
+    """Of sessions, under the hash of the key that reached them; for the writer's thread alone."""
 
     @property
     def material(self) -> Material:
@@ -111,8 +117,13 @@ class Service:
         return self._withdraw(self.writer.do(find))
 
     def _withdraw(self, observer: int) -> int:
-        sessions = [each["session"] for each in self._sessions(observer)]
-        n_answers = self.writer.do(lambda db: store.withdraw_observer(db, observer))
+
+        def delete(db: sqlite3.Connection) -> tuple[list[int], int]:
+            self._n_trials.clear()
+            sessions = [each["session"] for each in store.sessions_of(db, observer)]
+            return sessions, store.withdraw_observer(db, observer)
+
+        sessions, n_answers = self.writer.do(delete)
         self.writer.do(store.remove_bytes, alone=True)
         forget_in_copies(self.folder, sessions)
         return n_answers
@@ -121,8 +132,7 @@ class Service:
 
     def lab_page(self, key: str) -> str:
         """Return the page of the lab, for the key of the lab."""
-        if self._link(key)["kind"] != "lab":
-            raise NotAllowed
+        self.writer.do(lambda db: self._link(db, key, ["lab"]))
         return lab_page(experiment_status(self.folder), self.writer.trouble)
 
     def rescue(self, content: dict[str, Any]) -> list[str]:
@@ -139,14 +149,15 @@ class Service:
 
     def welcome(self, key: str, site: Mapping[str, str] | None = None) -> Content:
         """Return what the first page shows; nothing is used up and nothing begins."""
-        link = self._link(key)
-        if link["kind"] == "lab":
-            raise NotAllowed
-        observer = link["observer"] or self._known_observer(link, site)
-        begun = [] if observer is None else self._sessions(observer)
-        under_way = [each for each in begun if each["outcome"] is None]
-        version = under_way[-1]["version"] if under_way else None
-        material = self.version_material(version or self.keep_version())
+
+        def find(db: sqlite3.Connection) -> tuple[Content, list[Content]]:
+            link = self._link(db, key)
+            observer = link["observer"] or self._known_observer(db, link, site)
+            return link, [] if observer is None else store.sessions_of(db, observer)
+
+        link, begun = self.writer.do(find)
+        version = begun[-1]["version"] if self._under_way(begun) else self.keep_version()
+        material = self.version_material(version)
         design = material.design
         texts = {name: material.texts(name) for name in design.languages}
         return {
@@ -174,25 +185,35 @@ class Service:
         An open link gives each observer a key of their own, which the page makes, so that a
         request sent twice begins one session.
         """
-        link = self._link(key)
-        if link["kind"] == "lab":
-            raise NotAllowed
-        begun = self._sessions(link["observer"]) if link["observer"] else []
-        if begun and begun[-1]["outcome"] is None:
-            self.writer.do(lambda db: store.note_seen(db, begun[-1]["session"]))
-            return self._session_content(begun[-1], hash_of(key))
+
+        def go_on(db: sqlite3.Connection, observer: int | None, proof: str) -> Content | None:
+            begun = store.sessions_of(db, observer) if observer else []
+            if not self._under_way(begun):
+                return None
+            store.note_seen(db, begun[-1]["session"])
+            return self._session_content(db, begun[-1], proof)
+
+        found = self.writer.do(lambda db: go_on(db, self._link(db, key)["observer"], hash_of(key)))
+        if found is not None:
+            return found
         version = self.keep_version()
         material = self.version_material(version)
 
         def begin(db: sqlite3.Connection) -> Content:
+            link, proof = self._link(db, key), hash_of(own_key or key)
             observer = link["observer"] or self._arriving(db, link, own_key, site, material)
             begun = store.sessions_of(db, observer)
-            if begun and begun[-1]["outcome"] is None:
-                store.note_seen(db, begun[-1]["session"])
-                return begun[-1]
-            return self._new_session(db, observer, begun, version, material, consent, language)
+            return go_on(db, observer, proof) or self._session_content(
+                db,
+                self._new_session(db, observer, begun, version, material, consent, language),
+                proof,
+            )
 
-        return self._session_content(self.writer.do(begin), hash_of(own_key or key))
+        return self.writer.do(begin)
+
+    @staticmethod
+    def _under_way(begun: Sequence[Content]) -> bool:
+        return bool(begun) and begun[-1]["outcome"] is None
 
     def _new_session(
         self,
@@ -234,52 +255,68 @@ class Service:
         store.add_session(db, values)
         return store.sessions_of(db, observer)[-1]
 
-    def stimuli(self, key: str, session: int) -> str:
+    def stimuli(self, key: str, session: int) -> Bundle:
         """Return all stimuli of a session by their names, as JSON."""
-        row = self._session(key, session)
-        material = self.version_material(row["version"])
+        row = self.writer.do(lambda db: self._session(db, key, session))
         names = {name for trial in json.loads(row["trials"]) for name in trial["stimuli"]}
-        parts = [f"{json.dumps(name)}:{material.stimulus_text(name)}" for name in sorted(names)]
-        return "{" + ",".join(parts) + "}"
+        return self.version_material(row["version"]).stimuli(sorted(names))
 
     def answers(self, key: str, session: int, items: Sequence[Content]) -> list[store.Received]:
         """Keep answers, and return for each what became of it, once that is on disk."""
+        return self.submit_answers(key, session, items).result()
+
+    def submit_answers(
+        self, key: str, session: int, items: Sequence[Content]
+    ) -> Future[list[store.Received]]:
+        """Have answers kept; the result comes once they are on disk."""
+        who = (hash_of(key), session)
 
         def add(db: sqlite3.Connection) -> list[store.Received]:
-            owner = store.session_of_link(db, hash_of(key), session)
-            if owner is None:
-                raise NotAllowed
-            if owner["withdrawn_utc"]:
-                raise Gone
+            if who not in self._n_trials:
+                self._n_trials[who] = self._n_trials_of(db, *who)
             store.note_seen(db, session)
-            return store.add_answers(db, session, items)
+            return store.add_answers(db, session, items, n_trials=self._n_trials[who])
 
-        return self.writer.do(add)
+        return self.writer.submit(add)
+
+    @staticmethod
+    def _n_trials_of(db: sqlite3.Connection, key_hash: str, session: int) -> int:
+        """Return the number of trials of a session, if the key is that of its observer."""
+        owner = store.session_of_link(db, key_hash, session)
+        if owner is None:
+            raise NotAllowed
+        if owner["withdrawn_utc"]:
+            raise Gone
+        return owner["n_trials"]
 
     def end(self, key: str, session: int, how: str) -> Content:
         """End a session: finished, stopped with its answers, or deleted with all of them."""
-        row = self._session(key, session)
-        if how == "deleted":
-            return {"deleted": self._withdraw(row["observer"])}
-        if how == "finished" and not self._all_answered(row):
-            raise Closed("not all answers have arrived")
-        self.writer.do(lambda db: store.end_session(db, session, how))
-        recruiting = self.version_material(row["version"]).design.recruiting
-        code = self.writer.do(lambda db: withdrawal_code(store.secret(db), row["observer"]))
-        shown = {"completion_code": recruiting.completion_code, "return_url": recruiting.return_url}
-        n_answers = self.writer.do(lambda db: store.n_confirmed(db, session))
-        return {
-            "withdrawal_code": code,
-            "n_answers": n_answers,
-            **(shown if how == "finished" else {}),
-        }
 
-    def _all_answered(self, row: Content) -> bool:
+        def finish(db: sqlite3.Connection) -> Content:
+            row = self._session(db, key, session)
+            if how == "deleted":
+                return row
+            if how == "finished" and not self._all_answered(db, row):
+                raise Closed("not all answers have arrived")
+            store.end_session(db, session, how)
+            recruiting = self.version_material(row["version"]).design.recruiting
+            shown = recruiting.model_dump(include={"completion_code", "return_url"})
+            return {
+                "withdrawal_code": withdrawal_code(store.secret(db), row["observer"]),
+                "n_answers": store.n_confirmed(db, session),
+                **(shown if how == "finished" else {}),
+            }
+
+        found = self.writer.do(finish)
+        return {"deleted": self._withdraw(found["observer"])} if how == "deleted" else found
+
+    @staticmethod
+    def _all_answered(db: sqlite3.Connection, row: Content) -> bool:
         """Whether each trial, and a spare one for each timeout, has an answer that counts.
 
         An answer that was refused for good counts: its observer can do nothing about it.
         """
-        answers = self.writer.do(lambda db: store.answers_of(db, row["session"]))
+        answers = store.answers_of(db, row["session"])
         outcomes = {
             each["trial"]: each["content"].get("outcome")
             for each in answers
@@ -290,24 +327,28 @@ class Service:
         spare = [trial["trial"] for trial in trials if trial.get("spare")]
         needed = {trial["trial"] for trial in trials if not trial.get("spare")}
         missing = (needed | set(spare[:n_timeouts])) - set(outcomes)
-        refused = self.writer.do(lambda db: store.n_refused(db, row["session"]))
+        refused = store.n_refused(db, row["session"])
         refused += sum(each["content"].get("event") == "refused" for each in answers)
         return len(missing) <= refused
 
     # ----------------------------------------------------------------------------------- its parts
 
-    def _link(self, key: str) -> Content:
-        link = self.writer.do(lambda db: store.find_link(db, hash_of(key)))
-        if link is None or not same(link["hash"], hash_of(key)):
+    def _link(
+        self, db: sqlite3.Connection, key: str, kinds: Collection[str] = OBSERVERS
+    ) -> Content:
+        link = store.find_link(db, hash_of(key))
+        if link is None or not same(link["hash"], hash_of(key)) or link["kind"] not in kinds:
             raise NotAllowed
         if link["withdrawn_utc"]:
             raise Gone
         return link
 
-    def _known_observer(self, link: Content, site: Mapping[str, str] | None) -> int | None:
+    def _known_observer(
+        self, db: sqlite3.Connection, link: Content, site: Mapping[str, str] | None
+    ) -> int | None:
         if link["kind"] != "open" or not site:
             return None
-        return self.writer.do(lambda db: store.observer_of_site(db, self._site_hash(db, site)))
+        return store.observer_of_site(db, self._site_hash(db, site))
 
     def _site_hash(self, db: sqlite3.Connection, site: Mapping[str, str]) -> str:
         return keyed_hash(store.secret(db), _identifier(site))
@@ -336,13 +377,10 @@ class Service:
         store.add_link(db, hash_of(own_key), "personal", observer)
         return observer
 
-    def _sessions(self, observer: int) -> list[Content]:
-        return self.writer.do(lambda db: store.sessions_of(db, observer))
-
-    def _session(self, key: str, session: int) -> Content:
+    def _session(self, db: sqlite3.Connection, key: str, session: int) -> Content:
         """Return a session, if the key is that of its observer."""
-        link = self._link(key)
-        begun = self._sessions(link["observer"]) if link["observer"] else []
+        link = self._link(db, key)
+        begun = store.sessions_of(db, link["observer"]) if link["observer"] else []
         found = [each for each in begun if each["session"] == session]
         if not found:
             raise NotAllowed
@@ -365,11 +403,11 @@ class Service:
         name = "not_due" if now < due else "closed" if now > latest else "new"
         return {"name": name, "session": len(begun) + 1, "due_utc": due.isoformat()}
 
-    def _session_content(self, row: Content, proof: str) -> Content:
+    def _session_content(self, db: sqlite3.Connection, row: Content, proof: str) -> Content:
         """Return what a page needs to run a session, or to go on with it."""
         design = self.version_material(row["version"]).design
-        answers = self.writer.do(lambda db: store.answers_of(db, row["session"]))
-        group = self.writer.do(lambda db: store.find_observer(db, row["observer"])["group"])
+        answers = store.answers_of(db, row["session"])
+        group = store.find_observer(db, row["observer"])["group"]
         return {
             "session": row["session"],
             "proof": proof,

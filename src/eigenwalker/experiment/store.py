@@ -14,6 +14,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from pydantic_core import to_json
+
 APPLICATION_ID = 0x65776578
 VERSION = 1
 MIGRATIONS: dict[int, str] = {}
@@ -264,11 +266,14 @@ def sessions_of(connection: sqlite3.Connection, observer: int) -> list[Row]:
 
 
 def session_of_link(connection: sqlite3.Connection, hash: str, session: int) -> Row | None:
-    """Return observer and withdrawal of a link, if the session is its observer's."""
+    """Return observer, withdrawal and number of trials, if the session is of the link's observer.
+
+    Of an observer who withdrew, whatever the session.
+    """
     return _one(
         connection,
-        "SELECT observer, withdrawn_utc, session FROM link JOIN observer USING (observer)"
-        " LEFT JOIN session USING (observer)"
+        "SELECT observer, withdrawn_utc, json_array_length(trials) AS n_trials"
+        " FROM link JOIN observer USING (observer) LEFT JOIN session USING (observer)"
         " WHERE hash = ? AND (session = ? OR withdrawn_utc IS NOT NULL)",
         hash,
         session,
@@ -310,11 +315,16 @@ class Received:
 
 
 def add_answers(
-    connection: sqlite3.Connection, session: int, items: Sequence[Row], via: str = "page"
+    connection: sqlite3.Connection,
+    session: int,
+    items: Sequence[Row],
+    via: str = "page",
+    *,
+    n_trials: int | None = None,
 ) -> list[Received]:
     """Add answers of a session, each once; another content under a known name is kept apart."""
-    n_trials, now = _n_trials(connection, session), utc_now()
-    return [_add_answer(connection, session, item, n_trials, now, via) for item in items]
+    known, now = n_trials or _n_trials(connection, session), utc_now()
+    return [_add_answer(connection, session, item, known, now, via) for item in items]
 
 
 def _n_trials(connection: sqlite3.Connection, session: int) -> int:
@@ -325,13 +335,15 @@ def _n_trials(connection: sqlite3.Connection, session: int) -> int:
 def _add_answer(
     connection: sqlite3.Connection, session: int, item: Row, n_trials: int, now: str, via: str
 ) -> Received:
-    content, frames = _as_text(item["content"])
+    rest = dict(item["content"])
+    frames = rest.pop("frame_times", None)
+    content, times = as_text(rest), None if frames is None else as_text(frames)
     name, trial, showing, kind = (item[each] for each in ("answer", "trial", "attempt", "kind"))
     if trial is not None and not 1 <= trial <= n_trials:
-        return _refuse(connection, session, name, "unknown trial", content, now)
+        return _refuse(connection, session, name, "unknown trial", as_text(item), now)
     added = connection.execute(
         "INSERT INTO answer VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
-        (name, session, kind, trial, showing, content, now, via, frames),
+        (name, session, kind, trial, showing, content, now, via, times),
     )
     if added.rowcount:
         return Received(name, "confirmed")
@@ -339,18 +351,25 @@ def _add_answer(
         "SELECT session, kind, trial, attempt, content, frame_times FROM answer WHERE answer = ?",
         (name,),
     ).fetchone()
-    if tuple(known) == (session, kind, trial, showing, content, frames):
+    same = tuple(known)[:4] == (session, kind, trial, showing) and all(
+        one == other or (one and other and json.loads(one) == json.loads(other))
+        for one, other in ((known[4], content), (known[5], times))
+    )
+    if same:
         return Received(name, "confirmed")
-    return _refuse(connection, session, name, "other content", json.dumps(item), now)
+    return _refuse(connection, session, name, "other content", as_text(item), now)
 
 
-def _as_text(content: Row) -> tuple[str, str | None]:
-    """Return what an item says as JSON, and the times of its frames apart."""
-    frames = content.get("frame_times")
-    rest = {name: value for name, value in content.items() if name != "frame_times"}
+def as_text(value: Any) -> str:
+    """Return what a page reported as JSON; raise `ValueError` for what JSON does not have."""
     try:
-        text = json.dumps(rest, sort_keys=True, separators=(",", ":"), allow_nan=False)
-        return text, None if frames is None else json.dumps(frames, separators=(",", ":"))
+        text = to_json(value, inf_nan_mode="constants").decode()
+    except ValueError:  # half a character of a pair, which only escapes can say
+        text = ""
+    if text and "NaN" not in text and "Infinity" not in text:
+        return text
+    try:
+        return json.dumps(value, separators=(",", ":"), allow_nan=False)
     except RecursionError:
         raise ValueError("An answer is not nested that deeply.") from None
 

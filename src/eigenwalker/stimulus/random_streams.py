@@ -36,6 +36,8 @@ def random_words(
     Index and life are broadcast against each other and taken modulo 2^32.
     """
     index, life = np.broadcast_arrays(np.atleast_1d(index), np.atleast_1d(life))
+    if index.shape == (1,):
+        return _words_of_one(purpose, seed, int(index[0]), int(life[0]), count)
     a = np.full(index.shape, seed, dtype=np.uint32)
     b = np.mod(index, 2**32).astype(np.uint32)
     c = np.mod(life, 2**32).astype(np.uint32)
@@ -49,7 +51,20 @@ def random_words(
         c = ((c << np.uint32(21)) | (c >> np.uint32(11))) + word
         if turn >= 0:
             words[..., turn] = word
-    return words[0] if index.shape == (1,) else words
+    return words
+
+
+def _words_of_one(purpose: int, seed: int, index: int, life: int, count: int) -> np.ndarray:
+    """Return the words of one stream, with Python's numbers: ten times as fast as with arrays."""
+    mask = 2**32 - 1
+    a, b, c, words = seed & mask, index & mask, life & mask, []
+    for counter in range(purpose, purpose + WARM_UP + count):
+        word = (a + b + counter) & mask
+        a = b ^ (b >> 9)
+        b = (c + (c << 3)) & mask
+        c = (((c << 21) | (c >> 11)) + word) & mask
+        words.append(word)
+    return np.array(words[WARM_UP:], dtype=np.uint32)
 
 
 def uniforms(
@@ -74,9 +89,9 @@ def normals(
 
 def permutation(purpose: int, seed: int, index: int, *, size: int) -> np.ndarray:
     """Return 0, 1, ... size - 1 in random order (Fisher and Yates, from the end)."""
-    order = np.arange(size)
+    order = list(range(size))
     drawn = uniforms(purpose, seed, index, count=max(size - 1, 1))
     for last, uniform in zip(range(size - 1, 0, -1), drawn.tolist(), strict=False):
         other = int(uniform * (last + 1))
-        order[[last, other]] = order[[other, last]]
-    return order
+        order[last], order[other] = order[other], order[last]
+    return np.array(order)

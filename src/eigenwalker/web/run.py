@@ -138,6 +138,7 @@ def run(
         app,
         log_level="warning",
         server_header=False,
+        proxy_headers=False,
         timeout_graceful_shutdown=1,
         limit_concurrency=max_concurrent,
         ws="none",

@@ -5,15 +5,21 @@ What answers is handed in (`Sessions`): this room knows no experiment.
 
 from __future__ import annotations
 
+import gzip
+import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from typing import Annotated, Any, Literal, Protocol
 
 from fastapi import Depends, FastAPI, HTTPException, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.middleware.exceptions import ExceptionMiddleware
+from starlette.routing import request_response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from eigenwalker.web.host_check import HostCheck
 from eigenwalker.web.request_rate import RequestRate, TooMany
 from eigenwalker.web.run import NO_ROOM, new_app
 from eigenwalker.web.upload import TooLarge
@@ -25,7 +31,7 @@ AT_ONCE, PER_S = 100, 20
 NOT_ALLOWED = "This link or key does not open this."
 ISOLATED = {"cross-origin-embedder-policy": "require-corp"}
 """With the opener policy of all pages: clocks are fine, to 5 microseconds."""
-PAGE = "/s/{key}"
+PAGE, ANSWERS = "/s/{key}", "/api/answers"
 
 Text = Annotated[str, Field(max_length=200)]
 Key = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{22}$")]
@@ -46,7 +52,7 @@ class Sessions(Protocol):
         site: Mapping[str, str] | None = None,
     ) -> Any: ...
     def stimuli(self, key: str, session: int) -> Any: ...  # noqa: D102
-    def answers(self, key: str, session: int, items: Sequence[Any]) -> Any: ...  # noqa: D102
+    async def answers(self, key: str, session: int, items: Sequence[Any]) -> Any: ...  # noqa: D102
     def end(self, key: str, session: int, how: str) -> Any: ...  # noqa: D102
     def lab_page(self, key: str) -> str: ...  # noqa: D102
 
@@ -84,6 +90,16 @@ class Item(_Body):
     trial: Annotated[int, Field(ge=1, le=100_000)] | None = None
     showing: Annotated[int | None, Field(ge=1, le=100_000, alias="attempt")] = None
     content: Annotated[dict[Text, Any], Field(max_length=100)]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the item under the names that pages use."""
+        return {
+            "answer": self.answer,
+            "kind": self.kind,
+            "trial": self.trial,
+            "attempt": self.showing,
+            "content": self.content,
+        }
 
 
 class AnswersBody(SessionBody):
@@ -133,10 +149,12 @@ def session_app(
     for error, status in {**refusals, TooMany: 429}.items():
         app.add_exception_handler(error, _refuse_with(status))
 
+    pages = page.encode(), gzip.compress(page.encode(), mtime=0)
+
     @app.api_route("/s/{key}", methods=["GET", "HEAD"])
     @app.api_route("/", methods=["GET", "HEAD"])
-    def show_page() -> HTMLResponse:
-        return HTMLResponse(page, headers=ISOLATED)
+    def show_page(request: Request) -> Response:
+        return _compressed(request, *pages, "text/html", ISOLATED)
 
     @app.get("/lab/{key}")
     def show_lab_page(key: str) -> HTMLResponse:
@@ -145,26 +163,32 @@ def session_app(
 
     @app.post("/api/welcome")
     def welcome(key: KeyOf, body: WelcomeBody) -> Any:
-        return sessions.welcome(key, body.site)
+        return JSONResponse(sessions.welcome(key, body.site))
 
     @app.post("/api/start")
     def start(key: KeyOf, body: StartBody) -> Any:
-        return sessions.start(key, **body.model_dump())
+        return JSONResponse(sessions.start(key, **body.model_dump()))
 
     @app.post("/api/stimuli")
-    def stimuli(key: KeyOf, body: SessionBody) -> Any:
-        return Response(sessions.stimuli(key, body.session), media_type="application/json")
+    def stimuli(request: Request, key: KeyOf, body: SessionBody) -> Any:
+        found = sessions.stimuli(key, body.session)
+        return _compressed(request, found.plain, found.gzipped, "application/json")
 
-    @app.post("/api/answers")
-    def answers(key: KeyOf, body: AnswersBody) -> Any:
-        items = [item.model_dump(by_alias=True) for item in body.items]
-        outcome = sessions.answers(key, body.session, items)
+    @app.post(ANSWERS, openapi_extra=_json_body(AnswersBody))
+    async def answers(request: Request) -> JSONResponse:
+        key = _key_of(request)
+        body = _read_answers(await request.body())
+        items = [item.as_dict() for item in body.items]
+        outcome = await sessions.answers(key, body.session, items)
         conflict = any(each["outcome"] == "other content" for each in outcome["refused"])
         return JSONResponse(outcome, 409 if conflict else 200)
 
     @app.post("/api/end")
     def end(key: KeyOf, body: EndBody) -> Any:
-        return sessions.end(key, body.session, body.how)
+        return JSONResponse(sessions.end(key, body.session, body.how))
+
+    guarded = HostCheck(BodyLimit(request_response(answers), MAX_BODY), host, public_url)
+    app.add_middleware(AnswersFirst, answers=ExceptionMiddleware(guarded, app.exception_handlers))
 
     if commands is not None:
 
@@ -173,6 +197,18 @@ def session_app(
             return commands(key, name, body)
 
     return app
+
+
+class AnswersFirst:
+    """Takes answers before all else: nearly all that a server is asked, read by pydantic alone."""
+
+    def __init__(self, app: ASGIApp, answers: ASGIApp) -> None:
+        self.app, self.answers = app, answers
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request."""
+        are_answers = scope.get("path") == ANSWERS and scope.get("method") == "POST"
+        await (self.answers if are_answers else self.app)(scope, receive, send)
 
 
 def _key_of(request: Request) -> str:
@@ -184,6 +220,39 @@ def _key_of(request: Request) -> str:
 
 
 KeyOf = Annotated[str, Depends(_key_of)]
+
+
+def _read_answers(body: bytes) -> AnswersBody:
+    try:
+        return AnswersBody.model_validate_json(body)
+    except ValidationError:  # or half a character of a pair, which pages may send
+        pass
+    try:
+        return AnswersBody.model_validate(json.loads(body))
+    except ValidationError as error:
+        raise RequestValidationError(error.errors()) from None
+    except RecursionError:
+        raise ValueError("An answer is not nested that deeply.") from None
+
+
+def _json_body(model: type[BaseModel]) -> dict[str, Any]:
+    """Return what the description of the interface says of a body that the route reads itself."""
+    schema = model.model_json_schema()
+    return {"requestBody": {"required": True, "content": {"application/json": {"schema": schema}}}}
+
+
+def _compressed(
+    request: Request,
+    plain: bytes,
+    gzipped: bytes,
+    media_type: str,
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Return what was compressed beforehand, as the browser takes it."""
+    headers = {**(headers or {}), "vary": "Accept-Encoding"}
+    if "gzip" not in request.headers.get("accept-encoding", ""):
+        return Response(plain, media_type=media_type, headers=headers)
+    return Response(gzipped, media_type=media_type, headers={**headers, "content-encoding": "gzip"})
 
 
 async def _say_not_written(_: Request, error: Exception) -> JSONResponse:
