@@ -98,11 +98,12 @@ def _walkers_and_folds(
             f"X must be (walker, feature) and y (walker,); got shapes {walkers.shape} "
             f"and {y.shape}."
         )
-    incomplete = np.flatnonzero(~np.isfinite(walkers).all(axis=1))
-    if incomplete.size:
+    missing = np.argwhere(np.isnan(walkers))
+    if missing.size:
+        row, column = missing[0]
         raise ValueError(
-            f"{incomplete.size} of {len(walkers)} walkers have features that are no finite numbers "
-            f"(first: row {incomplete[0]}); leave them out of X and y."
+            f"{len(np.unique(missing[:, 0]))} of {len(walkers)} walkers have features that are "
+            f"missing (NaN; first: row {row}, column {column}); leave them out of X and y."
         )
     if constant_features(walkers).all():
         raise ValueError(

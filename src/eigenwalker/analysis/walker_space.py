@@ -13,6 +13,7 @@ from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, Transfo
 from sklearn.utils.validation import check_is_fitted
 
 from eigenwalker.analysis.span import Scale, Span, span_of
+from eigenwalker.core.arguments import check_numbers
 from eigenwalker.core.sklearn_validation import validate_data
 
 
@@ -118,7 +119,7 @@ class WalkerSpace(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimat
     def inverse_transform(self, K: ArrayLike) -> np.ndarray:
         """Return the walkers (walker, feature) of scores (walker, component): eq. 6."""
         check_is_fitted(self)
-        scores = np.asarray(K, dtype=float)
+        scores = check_numbers(K, "K", least=0)
         if scores.ndim != 2 or scores.shape[1] != len(self.eigenwalkers_):
             raise ValueError(
                 f"Scores must have shape (walker, {len(self.eigenwalkers_)}), one column an "

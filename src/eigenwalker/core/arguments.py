@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sized
+from collections.abc import Sequence, Sized
 from numbers import Real
 from typing import Any
 
@@ -34,12 +34,18 @@ def check_kind(value: object, kind: type[Any] | tuple[type[Any], ...], expected:
 
 
 def check_numbers(
-    values: ArrayLike, name: str, *dims: str, missing: bool = False, least: int = 1
+    values: ArrayLike,
+    name: str,
+    *dims: str,
+    missing: bool = False,
+    least: int = 1,
+    columns: Sequence[Any] | None = None,
 ) -> np.ndarray:
     """Return an argument as an array of float64 of these dimensions; any, where none are named.
 
     Refused are other shapes, fewer than `least` along the first dimension, what is no real number,
-    infinity, numbers beyond `LARGEST`, and NaN unless samples may be `missing`.
+    infinity, numbers beyond `LARGEST`, and NaN unless samples may be `missing`; the first of these
+    is named by its place, in a table with the names of its `columns`.
     """
     shape = f" of shape ({', '.join(dims)}{',' * (len(dims) == 1)})" if dims else ""
     expected = f"{name} must be real numbers{shape}"
@@ -54,10 +60,21 @@ def check_numbers(
     largest = float(sizes.max(initial=0, where=~np.isnan(sizes)))
     if largest > LARGEST:
         number = "infinity" if np.isinf(largest) else f"{largest:.4g}"
-        raise ValueError(f"{expected}, finite and up to {LARGEST:g} in size; got {number}.")
+        place = _first_place(sizes == largest, columns)
+        raise ValueError(f"{expected}, finite and up to {LARGEST:g} in size; got {number}{place}.")
     if not missing and (n_missing := int(np.isnan(sizes).sum())):
-        raise ValueError(f"{expected}, and {n_missing} of {array.size} are missing (NaN).")
+        place = _first_place(np.isnan(sizes), columns).replace(" ", ", the first ", 1)
+        raise ValueError(f"{expected}, and {n_missing} of {array.size} are missing (NaN){place}.")
     return array
+
+
+def _first_place(which: np.ndarray, columns: Sequence[Any] | None) -> str:
+    """Return where in an argument the first of these is, counted from 0, in words."""
+    place = np.argwhere(which)[0].tolist()
+    if len(place) == 2:
+        column = place[1] if columns is None else repr(columns[place[1]])[:60]
+        return f" in row {place[0]}, column {column} (counted from 0)"
+    return f" at index {str(place).strip('[]')} (counted from 0)" if place else ""
 
 
 def check_whole(values: ArrayLike, name: str, *dims: str) -> np.ndarray:
@@ -81,6 +98,8 @@ def check_labels(values: ArrayLike, name: str) -> np.ndarray:
             f"{name} must be words or numbers, of which there is one or more in a row; got "
             f"{described(values)}."
         )
+    if labels.dtype.kind == "f":
+        check_numbers(labels, name, missing=True)
     return as_floats(labels, name) if labels.dtype == np.longdouble else labels
 
 

@@ -20,6 +20,10 @@ WINDOW_S = 1 / 3
 UNNOTICED_S = 0.1
 """A jump no larger than the movement in this time is assumed to be hardly noticed."""
 
+STILL_MM = 1.0
+"""Root mean square movement of points, travel over the ground taken out, below which nothing moves:
+markers at rest jitter by less, people who stand sway by more."""
+
 
 def find_transitions(
     a: Clip,
@@ -57,6 +61,11 @@ def find_transitions(
         rotated about the vertical and then translated: ``angle_deg``, ``shift_x_mm``,
         ``shift_y_mm``.
 
+    Raises
+    ------
+    ValueError
+        If nothing moves in either clip, so that each moment is like every other.
+
     See Also
     --------
     motion_map : The map of which these are minima.
@@ -77,6 +86,13 @@ def find_transitions(
     a = as_trajectories(a)
     other = a if b is None else as_trajectories(b)
     rate_hz = sampling_rate(a)
+    positions = common_positions(a, other)
+    if all(_movement_mm(each) < STILL_MM for each in positions):
+        raise ValueError(
+            "Expected a clip in which somebody moves, got one in which no point moves by more than "
+            f"{STILL_MM:g} mm, but for travel of the whole: each moment is like every other, and "
+            "there are no transitions to choose from."
+        )
     cells = motion_map(a, other, metric=metric, window_s=window_s, align=True).values
     if b is None:
         cells = np.where(_far_apart(len(cells), window_s * rate_hz), cells, np.inf)
@@ -84,7 +100,6 @@ def find_transitions(
         threshold = float(np.mean([_unnoticed(clip, metric, window_s) for clip in (a, other)]))
     half = round(window_s * rate_hz / 2)
     frames = _separate_minima(cells, threshold, half)
-    positions = common_positions(a, other)
     rows = [_alignment_at(*positions, i, j, half) for i, j in frames.tolist()]
     moves = np.reshape(rows, (len(rows), 3))
     return pd.DataFrame(
@@ -97,6 +112,12 @@ def find_transitions(
             "shift_y_mm": moves[:, 2],
         }
     )
+
+
+def _movement_mm(positions: np.ndarray) -> float:
+    """Return how far points move about their mean places, travel over the ground taken out."""
+    about = positions - positions.mean(axis=1, keepdims=True) * [1, 1, 0]
+    return float(np.sqrt(np.mean((about - about.mean(axis=0)) ** 2)))
 
 
 def _separate_minima(cells: np.ndarray, threshold: float, half: int) -> np.ndarray:
