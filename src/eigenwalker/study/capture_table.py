@@ -63,11 +63,18 @@ def capture_table(
     if table.empty:
         raise ValueError(f"There are no captures ({_known()}) in {folder}.")
     if not trait_from_name:
-        return check_traits(table)
+        return _checked(table, table)
     named = traits_of_names(table[FILE], trait_from_name)
     if both := [str(name) for name in named if name in table]:
         raise ValueError(f"Both the traits table and the pattern name {both}; let one do so.")
-    return check_traits(table.join(named))
+    return _checked(table.join(named), table)
+
+
+def _checked(table: pd.DataFrame, read: pd.DataFrame) -> pd.DataFrame:
+    """Return a table that was checked, with the units of the one that was read."""
+    checked = check_traits(table)
+    checked.attrs[UNITS] = read.attrs.get(UNITS, {})
+    return checked
 
 
 def captures_in(folder: Path) -> list[str]:

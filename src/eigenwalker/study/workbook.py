@@ -89,7 +89,7 @@ def _with_special(content: bytes, title: str, rows: list[list[str]]) -> list[lis
 
 def _with_merged_filled(sheet: Any, rows: list[list[str]]) -> list[list[str]]:
     filled = [list(row) for row in rows]
-    said: list[str] = []
+    merged: list[str] = []
     for cells in sheet.merged_cells.ranges:
         top, column = cells.min_row - 1, cells.min_col - 1
         value = "".join(filled[top][column : column + 1]) if top < len(filled) else ""
@@ -98,12 +98,12 @@ def _with_merged_filled(sheet: Any, rows: list[list[str]]) -> list[list[str]]:
         for row in filled[top + 1 : cells.max_row]:
             row.extend([""] * (column + 1 - len(row)))
             row[column] = value
-        said.append(f"{cells.coord} ({value!r})")
-    if said:
-        more = f" and {len(said) - _MAX_NAMED} more" if len(said) > _MAX_NAMED else ""
+        merged.append(f"{cells.coord} ({value!r})")
+    if merged:
+        more = f" and {len(merged) - _MAX_NAMED} more" if len(merged) > _MAX_NAMED else ""
         _say(
             f"Merged cells of the traits table count for each of their rows: "
-            f"{', '.join(said[:_MAX_NAMED])}{more}."
+            f"{', '.join(merged[:_MAX_NAMED])}{more}."
         )
     return filled
 
