@@ -136,7 +136,7 @@ def test_a_continuous_trait_has_a_direction_too(kind):
 def test_what_gives_no_direction_is_refused_with_the_reason():
     with pytest.raises(ValueError, match="has 39 eigenwalkers"):
         direction(SPACE, DiscriminantClassifier().fit(SCORES[:, :5], SEX))
-    with pytest.raises(ValueError, match="kind='normal' is unknown"):
+    with pytest.raises(ValueError, match="kind='normal' is not known"):
         direction(SPACE, SEXES, kind="normal")
     with pytest.raises(ValueError, match="a continuous trait has none"):
         direction(SPACE, DiscriminantRegressor().fit(SCORES, R), units="classmean")

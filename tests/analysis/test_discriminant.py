@@ -167,7 +167,7 @@ def test_walkers_without_the_trait_are_named(missing):
         (DiscriminantClassifier(), np.arange(40) % 3, r"3 classes \(0, 1, 2\)"),
         (DiscriminantClassifier(), np.repeat("male", 40), "all 40 here are of the class male"),
         (DiscriminantClassifier(n_components=40), SEX, "not among the 1 to 39"),
-        (DiscriminantClassifier(order="size"), SEX, "order='size' is unknown"),
+        (DiscriminantClassifier(order="size"), SEX, "order='size' is not known"),
     ],
 )
 def test_what_cannot_be_told_apart_is_refused_with_the_reason(classifier, y, said):

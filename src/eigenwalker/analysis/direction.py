@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from eigenwalker.core.arguments import described
+from eigenwalker.core.arguments import check_choice, described
 
 if TYPE_CHECKING:
     from eigenwalker.analysis.discriminant import DiscriminantClassifier, DiscriminantRegressor
@@ -107,10 +107,7 @@ def step_in_scores(
 ) -> np.ndarray:
     """Return the step of `direction` along the eigenwalkers: shape (component,)."""
     for name, choice, choices in (("kind", kind, Kind), ("units", units, Units)):
-        if choice not in get_args(choices):
-            raise ValueError(
-                f"{name}={choice!r} is unknown; choose from {', '.join(get_args(choices))}."
-            )
+        check_choice(choice, get_args(choices), name)
     scores = c if kind == "discriminant" else pattern
     if units == "raw":
         return scores

@@ -6,6 +6,8 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_choice
+
 Order = Literal["standardised", "raw", "variance"]
 
 
@@ -47,8 +49,7 @@ def order_of_components(c: np.ndarray, spread: np.ndarray, order: Order) -> np.n
     Weights c have the shape (component, ...); the standard deviations of the scores, `spread`,
     broadcast against it. Contributions within 1e-12 of the highest are ties, and keep their order.
     """
-    if order not in get_args(Order):
-        raise ValueError(f"order={order!r} is unknown; choose from {', '.join(get_args(Order))}.")
+    check_choice(order, get_args(Order), "order")
     contribution: np.ndarray = {
         "standardised": np.abs(c) * spread,
         "raw": np.abs(c),

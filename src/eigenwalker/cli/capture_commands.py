@@ -5,53 +5,36 @@ from __future__ import annotations
 import json
 import textwrap
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from eigenwalker.cli.option_names import in_options
-from eigenwalker.cli.options import (
-    MappingFile,
-    Partial,
-    Rate,
-    RestPose,
-    SkeletonNames,
-    Subject,
-    Unit,
-    option,
-)
+from eigenwalker.cli.options import RestPose, SkeletonNames, option
+from eigenwalker.cli.reading_options import Reading, reads_captures
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""
 
 
+@reads_captures
 def info(
     file: Annotated[Path, typer.Argument(help="A capture, or a population file (.nc).")],
     as_json: Annotated[bool, option("Print JSON.", "--json")] = False,
-    unit: Unit = None,
-    rate: Rate = None,
-    partial: Partial = "refuse",
-    subject: Subject = None,
-    mapping: MappingFile = None,
     write_mapping: Annotated[
         Path | None,
         option("Begin a mapping of the markers of FILE, to be put right by hand (.toml)."),
     ] = None,
+    *,
+    reading: Reading,
 ) -> None:
     """Say what is in a file, and what is wrong with it."""
     from eigenwalker.study.inspect import file_facts, inspect_file
     from eigenwalker.study.messages import inspection_in_words
 
-    reading: dict[str, Any] = {
-        "unit": unit,
-        "rate_hz": rate,
-        "partial": partial,
-        "subject": subject,
-    }
     if write_mapping is not None:
         _write_mapping(file, write_mapping, reading)
         return
-    reading["mapping"] = mapping
     if as_json:
         facts = inspect_file(file, **reading)
         if isinstance(problems := facts.get("problems"), list):
@@ -65,27 +48,25 @@ def info(
         print(f"{name:<{width}}{_laid_out(value, width)}")
 
 
+@reads_captures
 def convert(
     capture: Annotated[Path, typer.Argument(help="A capture, of any format that is read.")],
     output: Annotated[Path, typer.Argument(help="File to write: .bvh, .c3d, .csv, .nc or .trc.")],
     joints: Annotated[
         bool, option("Write joints, not markers; .bvh always holds joints.", "--joints")
     ] = False,
-    unit: Unit = None,
-    rate: Rate = None,
-    partial: Partial = "refuse",
-    subject: Subject = None,
-    mapping: MappingFile = None,
     skeleton: SkeletonNames = "plain",
     rest_pose: RestPose = "t",
+    *,
+    reading: Reading,
 ) -> None:
     """Write a capture in another format."""
     from eigenwalker.io.read import read_mocap
     from eigenwalker.io.write import write_mocap
     from eigenwalker.markers.virtual_markers import virtual_markers
 
-    reading: dict[str, Any] = {"partial": partial, "subject": subject}
-    walk = read_mocap(capture, unit=unit, rate_hz=rate, **reading)
+    mapping = reading.pop("mapping")
+    walk = read_mocap(capture, **reading)
     if joints or output.suffix.lower() == ".bvh":
         walk = virtual_markers(walk, joints="full", mapping=mapping)
     elif mapping is not None:
@@ -94,13 +75,14 @@ def convert(
     print(f"Written: {written}")
 
 
-def _write_mapping(capture: Path, output: Path, reading: dict[str, Any]) -> None:
+def _write_mapping(capture: Path, output: Path, reading: Reading) -> None:
     from eigenwalker.core.atomic_write import atomic_write
     from eigenwalker.io.read import read_mocap
     from eigenwalker.markers.mapping import mapping_to_begin_with
 
     if output.suffix.lower() != ".toml":
         raise ValueError(f"--write-mapping {output}: a mapping is a .toml file.")
+    del reading["mapping"]  # it is what is begun
     markers = [str(name) for name in read_mocap(capture, **reading).marker.values]
     with atomic_write(output) as unfinished:
         unfinished.write_text(mapping_to_begin_with(markers, capture.name), encoding="utf-8")

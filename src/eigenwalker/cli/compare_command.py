@@ -6,25 +6,24 @@ import sys
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from eigenwalker.cli.exit_codes import EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
-    MappingFile,
     Person,
-    Rate,
     ReportFolder,
     TraitFromName,
-    Unit,
     WithFlagged,
     load_people,
     option,
     progress_bar,
 )
+from eigenwalker.cli.reading_options import Reading, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
@@ -50,6 +49,7 @@ ANSWERS = (
 FILE_SUFFIXES = {".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".pdf", ".png", ".svg", ".txt"}
 
 
+@partial(reads_captures, default="default_")
 def compare(
     first: Annotated[
         Path,
@@ -74,9 +74,8 @@ def compare(
     trait_from_name: TraitFromName = None,
     person: Person = None,
     with_flagged: WithFlagged = False,
-    unit: Unit = None,
-    rate: Rate = None,
-    mapping: MappingFile = None,
+    *,
+    reading: Reading,
 ) -> None:
     """Say how different walks look: two of them, all pairs of many, or those nearest to one.
 
@@ -85,14 +84,10 @@ def compare(
     Ends with 1 when some captures of a folder could not be compared.
     """
     given = {"--nearest": nearest, "--answers": answers, "-o": output, "--clusters": clusters}
-    given |= {"--trait": trait, "--trait-from-name": trait_from_name, "--unit": unit}
-    given |= {
-        "--mapping": mapping,
-        "--person": person,
-        "--with-flagged": with_flagged or None,
-        "--rate": rate,
-    }
-    options = {name for name, value in given.items() if value is not None}
+    given |= {"--trait": trait, "--trait-from-name": trait_from_name, "--person": person}
+    given |= {"--with-flagged": with_flagged or None}
+    given |= {option: reading[name] for option, name in _OF_CAPTURES.items()}
+    options = {name for name, value in given.items() if value not in (None, "refuse")}
     _check_options(first, second, options)
     _check_output(output)
     if clusters is not None and clusters < 1:
@@ -100,8 +95,7 @@ def compare(
     from eigenwalker.psychophysics.weights_file import load_metric
 
     chosen = load_metric(metric)
-    reading = {"mannequin": not own_bodies, "default_unit": unit, "default_rate_hz": rate}
-    reading["mapping"] = mapping
+    reading["mannequin"] = not own_bodies
     if second is not None:
         _compare_two(first, second, output, chosen, reading)
         return
@@ -119,7 +113,8 @@ def compare(
         raise typer.Exit(EXIT_PARTIAL)
 
 
-_OF_CAPTURES = {"--unit", "--rate", "--mapping"}
+_OF_CAPTURES = {"--unit": "default_unit", "--rate": "default_rate_hz", "--mapping": "mapping",
+                "--partial": "partial", "--subject": "subject"}  # fmt: skip
 _OF_MANY = {"--with-flagged", *_OF_CAPTURES}
 
 
@@ -142,7 +137,7 @@ def _check_options(first: Path, second: Path | None, options: set[str]) -> None:
     elif "--clusters" in options and "-o" not in options:
         raise ValueError("--clusters are drawn in a report: give a folder for it too, with -o.")
     if first.suffix.lower() == POPULATION and "--nearest" not in options:
-        _refuse(options & _OF_CAPTURES, "is for captures, not for a population")
+        _refuse(options & set(_OF_CAPTURES), "is for captures, not for a population")
 
 
 def _check_two(first: Path, second: Path) -> None:
@@ -171,7 +166,7 @@ def _check_output(output: Path | None) -> None:
 
 
 def _compare_two(
-    first: Path, second: Path, output: Path | None, metric: GroupMetric, reading: dict[str, Any]
+    first: Path, second: Path, output: Path | None, metric: GroupMetric, reading: Reading
 ) -> None:
     from eigenwalker.metric.clip_distances import compare_walks
     from eigenwalker.metric.published import PUBLISHED
@@ -283,7 +278,7 @@ def _print_nearest(path: Path, query: CaptureWalk, walks: Walks, metric: GroupMe
     _print_remarks(remark_sentences({path.name: query.remark}))
 
 
-def _captured(path: Path, reading: dict[str, Any]) -> CaptureWalk:
+def _captured(path: Path, reading: Reading) -> CaptureWalk:
     """Return the walk of a capture; errors name its file."""
     from eigenwalker.study.walks import walk_of_capture
 
@@ -302,7 +297,7 @@ def _captured(path: Path, reading: dict[str, Any]) -> CaptureWalk:
 
 def _walks(
     source: Path,
-    reading: dict[str, Any],
+    reading: Reading,
     trait: str | None,
     trait_from_name: str | None,
     person: str | None,

@@ -37,14 +37,6 @@ People = Annotated[
     ),
 ]
 WithFlagged = Annotated[bool, option("Count flagged walkers too.", "--with-flagged")]
-Unit = Annotated[
-    str | None, option("Unit of length, for files that name none: mm, cm, m, in, asf.")
-]
-Rate = Annotated[float | None, option("Frames a second, for files that name none.")]
-Partial = Annotated[
-    str, option("'keep' takes the whole frames of files that are cut short, and flags them.")
-]
-Subject = Annotated[str | None, option("One person of files that hold several.")]
 MappingFile = Annotated[
     Path | None,
     option("Markers with names of your own (TOML; 'info FILE --write-mapping' begins one)."),
@@ -201,12 +193,12 @@ def check_folder(output: Path) -> None:
         raise ValueError(f"-o {output}: expected a folder to write into; {above} is a file.")
 
 
-def check_population_file(path: Path) -> None:
-    """Refuse, before any work, a file that no population could be written to."""
-    if path.suffix != ".nc":
-        raise ValueError(f"{path}: a population is written as .nc; name it for instance people.nc.")
+def check_output(path: Path, example: str, option: str = "-o") -> None:
+    """Refuse, before any work, a file that could not be written, or is called otherwise."""
+    if path.suffix.lower() != (suffix := Path(example).suffix):
+        raise ValueError(f"{option} {path}: it is written as {suffix}; name it so, as {example}.")
     if not path.parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.parent} to write into; make it first.")
+        raise ValueError(f"{option} {path}: there is no folder {path.parent}; make it first.")
 
 
 @contextmanager

@@ -11,38 +11,29 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
-    MappingFile,
-    Partial,
     Person,
-    Rate,
-    Subject,
     TraitFromName,
-    Unit,
     WithFlagged,
+    check_output,
     option,
     progress_bar,
 )
+from eigenwalker.cli.reading_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.io.errors import printable
 
 
+@reads_captures
 def parameters(
     folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
     output: Annotated[Path, option("Table to write (.csv).", "-o", "--output")],
-    traits: Annotated[
-        Path | None, option("Table with a column 'file' (relative to FOLDER) and the traits.")
-    ] = None,
+    traits: TraitsTable = None,
     trait_from_name: TraitFromName = None,
     person: Person = None,
     with_flagged: WithFlagged = False,
-    low_pass: Annotated[
-        float | None, option("Cut-off in Hz of a low-pass filter, for noisy captures.")
-    ] = None,
-    jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
-    unit: Unit = None,
-    rate: Rate = None,
-    partial: Partial = "refuse",
-    subject: Subject = None,
-    mapping: MappingFile = None,
+    low_pass: LowPass = None,
+    jobs: Jobs = -1,
+    *,
+    reading: Reading,
 ) -> None:
     """Measure cadence, speed, steps, strides, stance, swing and double support of each capture.
 
@@ -52,15 +43,11 @@ def parameters(
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
     """
     from eigenwalker.core.atomic_write import write_table
-    from eigenwalker.markers.mapping import as_mapping
     from eigenwalker.population.persons import persons_of
     from eigenwalker.report.result_files import write_json
     from eigenwalker.study.parameter_table import parameter_table
 
-    if output.suffix.lower() != ".csv":
-        raise ValueError(f"{output}: the table is written as .csv; name it so: parameters.csv.")
-    if not output.parent.is_dir():
-        raise ValueError(f"{output}: there is no folder {output.parent} to write into; make it.")
+    check_output(output, "parameters.csv")
     with progress_bar("Measuring") as progress:
         table = parameter_table(
             folder,
@@ -71,11 +58,7 @@ def parameters(
             low_pass_hz=low_pass,
             n_jobs=jobs,
             progress=progress,
-            unit=unit,
-            rate_hz=rate,
-            partial=partial,
-            subject=subject,
-            mapping=None if mapping is None else as_mapping(mapping).as_dict(),
+            **reading,
         )
     stem = output.with_suffix("")
     tables = {"files": table.files, "persons": table.persons, "codebook": table.codebook}

@@ -13,46 +13,34 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
-    MappingFile,
-    Partial,
     Person,
     PopulationFile,
-    Rate,
     Seed,
-    Subject,
     TraitFromName,
-    Unit,
     check_choice,
-    check_population_file,
+    check_output,
     option,
     progress_bar,
 )
+from eigenwalker.cli.reading_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
     from eigenwalker.study.fit_folder import Study
 
 
+@reads_captures
 def fit(
     folder: Annotated[Path, typer.Argument(help="Folder of captures, searched with subfolders.")],
     output: PopulationFile,
-    traits: Annotated[
-        Path | None, option("CSV or XLSX with a column 'file' (relative to FOLDER) and the traits.")
-    ] = None,
+    traits: TraitsTable = None,
     trait_from_name: TraitFromName = None,
     form: Annotated[
         str, option("'eigenposture' (Troje 2002) or 'fourier' (WDP2002).")
     ] = "eigenposture",
     harmonics: Annotated[int, option("Multiples of the stride frequency.")] = 2,
-    low_pass: Annotated[
-        float | None, option("Cut-off in Hz of a low-pass filter, for noisy captures.")
-    ] = None,
-    jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
-    unit: Unit = None,
-    rate: Rate = None,
-    partial: Partial = "refuse",
-    subject: Subject = None,
-    mapping: MappingFile = None,
+    low_pass: LowPass = None,
+    jobs: Jobs = -1,
     person: Person = None,
     table: Annotated[
         Path | None, option("CSV to write all into that is known of each capture.")
@@ -60,6 +48,8 @@ def fit(
     fresh: Annotated[
         bool, option("Read all again, also what an interrupted run has read.", "--fresh")
     ] = False,
+    *,
+    reading: Reading,
 ) -> None:
     """Make a population of a folder of captures.
 
@@ -67,18 +57,13 @@ def fit(
     130 when it was interrupted; the same command then goes on where it stopped.
     """
     from eigenwalker.core.atomic_write import write_table
-    from eigenwalker.core.trajectories import MILLIMETRES
     from eigenwalker.study.fit_folder import fit_folder
     from eigenwalker.study.process_capture import DECOMPOSE
 
     check_choice(form, DECOMPOSE, "--form")
-    if unit is not None:
-        check_choice(unit, MILLIMETRES, "--unit")
-    check_population_file(output)
-    if table is not None and not table.parent.is_dir():
-        raise ValueError(
-            f"{table}: there is no folder {table.parent} to write into; make it first."
-        )
+    check_output(output, "people.nc")
+    if table is not None:
+        check_output(table, "captures.csv", "--table")
     checkpoint = output.with_name(f"{output.name}.part")
     if fresh:
         checkpoint.unlink(missing_ok=True)
@@ -89,16 +74,12 @@ def fit(
             trait_from_name=trait_from_name,
             form=form,  # pyright: ignore[reportArgumentType] - checked above
             n_harmonics=harmonics,
-            unit=unit,
-            rate_hz=rate,
-            partial=partial,  # pyright: ignore[reportArgumentType] - checked when a file is read
-            subject=subject,
-            mapping=mapping,
             person=person,
             low_pass_hz=low_pass,
             n_jobs=jobs,
             checkpoint=checkpoint,
             progress=progress,
+            **reading,
         )
     if study.population is not None:
         study.population.save(output)
@@ -192,7 +173,7 @@ def simulate(
         write_captures,
     )
 
-    check_population_file(output)
+    check_output(output, "people.nc")
     people = {"n_women": women, "n_men": men, "seed": seed, "sex_effect": sex_effect}
     with progress_bar("Simulating") as progress:
         population = simulate_population(**people)

@@ -11,18 +11,15 @@ import typer
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
-    MappingFile,
-    Partial,
     Person,
-    Rate,
-    Subject,
-    Unit,
     WithFlagged,
+    check_output,
     load_people,
     option,
     progress_bar,
     trait_or_usual,
 )
+from eigenwalker.cli.reading_options import Jobs, Reading, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
@@ -42,6 +39,7 @@ MEANINGS = {
 """Columns of the table that is printed, in words."""
 
 
+@reads_captures
 def predict(
     people: Annotated[Path, typer.Argument(help="Population file to learn from (.nc).")],
     files: Annotated[list[Path], typer.Argument(help="New captures, or folders of them.")],
@@ -60,27 +58,21 @@ def predict(
     ] = None,
     person: Person = None,
     with_flagged: WithFlagged = False,
-    jobs: Annotated[int, option("Processes; -1 for all cores.")] = -1,
-    unit: Unit = None,
-    rate: Rate = None,
-    partial: Partial = "refuse",
-    subject: Subject = None,
-    mapping: MappingFile = None,
+    jobs: Jobs = -1,
+    *,
+    reading: Reading,
 ) -> None:
     """Tell a trait of new captures, with the error to expect and a warning of unusual walks.
 
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
     """
     from eigenwalker.core.atomic_write import write_table
-    from eigenwalker.markers.mapping import as_mapping
     from eigenwalker.report.result_files import write_json
     from eigenwalker.study.messages import error_to_expect
     from eigenwalker.study.predict_captures import predict_captures
 
-    if output is not None and output.suffix.lower() != ".csv":
-        raise ValueError(f"{output}: the table is written as .csv; name it so: predictions.csv.")
-    if output is not None and not output.parent.is_dir():
-        raise ValueError(f"{output}: there is no folder {output.parent} to write into; make it.")
+    if output is not None:
+        check_output(output, "predictions.csv")
     population = load_people(people, with_flagged, person)
     trait = trait or trait_or_usual(population)
     with progress_bar("Predicting") as progress:
@@ -91,11 +83,7 @@ def predict(
             trait_from_name=person_from_name,
             n_jobs=jobs,
             progress=progress,
-            unit=unit,
-            rate_hz=rate,
-            partial=partial,
-            subject=subject,
-            mapping=None if mapping is None else as_mapping(mapping).as_dict(),
+            **reading,
         )
     table, model = found.table, found.model
     sentence = error_to_expect(model)

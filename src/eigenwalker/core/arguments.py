@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Sized
+from collections.abc import Iterable, Sequence, Sized
 from numbers import Real
 from typing import Any
 
@@ -31,6 +31,14 @@ def check_kind(value: object, kind: type[Any] | tuple[type[Any], ...], expected:
     """Raise a TypeError that says what was expected and what came, unless a value is of a kind."""
     if not isinstance(value, kind):
         raise TypeError(f"Expected {expected}, got {described(value)}.")
+
+
+def check_choice(value: object, known: Iterable[object], name: str) -> None:
+    """Raise a ValueError that lists what is known, unless a value is."""
+    choices = list(known)
+    if not any(value is each or (type(value) is type(each) and value == each) for each in choices):
+        few = len(choices) < 4 and " or ".join(map(repr, choices))
+        raise ValueError(f"{name}={value!r} is not known; give {few or f'one of {choices}'}.")
 
 
 def check_numbers(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Generator
+from collections.abc import Collection, Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,6 +39,16 @@ def atomic_write(path: Path) -> Generator[Path, None, None]:
         raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def check_destination(path: Path, suffixes: Collection[str] = (), purpose: str = "") -> str:
+    """Return the suffix of a file that can be written, in small letters; refuse others."""
+    suffix = path.suffix.lower()
+    if suffixes and suffix not in suffixes:
+        raise ValueError(f"{path.name!r} must end in one of {sorted(suffixes)} {purpose}.")
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
+    return suffix
 
 
 def write_table(table: pd.DataFrame, path: Path, **options: Any) -> Path:

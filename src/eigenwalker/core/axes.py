@@ -7,6 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from eigenwalker.core.arguments import check_choice
+
 Layout = Literal["planar", "interleaved"]
 """Coordinates of markers one after the other: x x x ... y y y ... z z z, or x y z x y z ..."""
 
@@ -54,6 +56,5 @@ def to_rows(positions: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def _known(layout: str) -> str:
-    if layout not in ("planar", "interleaved"):
-        raise ValueError(f"layout={layout!r} is not known; give 'planar' or 'interleaved'.")
+    check_choice(layout, ("planar", "interleaved"), "layout")
     return layout

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from eigenwalker.core.arguments import as_floats, described
+from eigenwalker.core.arguments import as_floats, check_choice, described
 
 DIMS = ("time", "marker", "axis")
 AXES = ("x", "y", "z")
@@ -81,8 +81,7 @@ def label_trajectories(
     """
     if not np.isfinite(rate_hz) or rate_hz <= 0:
         raise ValueError(f"rate_hz={rate_hz} is no frame rate; give frames a second, above 0.")
-    if unit not in MILLIMETRES:
-        raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
+    check_choice(unit, sorted(MILLIMETRES), "unit")
     values = as_floats(values, "Positions must be real numbers") * MILLIMETRES[unit]
     if not values.size:
         raise ValueError(f"There are no positions in values of shape {values.shape}.")

@@ -12,6 +12,7 @@ from collections.abc import Hashable
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.core.trajectories import (
     AXES,
     MILLIMETRES,
@@ -286,6 +287,5 @@ def _in_millimetres(position: xr.DataArray, unit: str | None, up: str) -> np.nda
             f"The unit of the positions is {unit!r} here; name it: unit= one of "
             f"{sorted(MILLIMETRES)}."
         )
-    if up not in UPS:
-        raise ValueError(f"up={up!r} is not known; give one of {UPS}.")
+    check_choice(up, UPS, "up")
     return np.asarray(position.values, dtype=float) @ turn_upright(up).T * MILLIMETRES[unit]

@@ -11,6 +11,7 @@ from typing import Literal
 
 import xarray as xr
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.core.trajectories import MILLIMETRES
 from eigenwalker.io.capture_file import CaptureFile, as_utf8, read_bytes
 from eigenwalker.io.errors import EXPORT_AGAIN, UnreadableFile
@@ -152,8 +153,7 @@ def read_mocap(
     """
     path = Path(path)
     content = as_utf8(read_bytes(path))
-    if partial not in ("refuse", "keep"):
-        raise ValueError(f"partial={partial!r} is not known; give 'refuse' or 'keep'.")
+    check_choice(partial, ("refuse", "keep"), "partial")
     file = CaptureFile(
         path,
         content,
@@ -189,8 +189,7 @@ def _checked_unit(argument: str, unit: str | None) -> Unit | None:
     known = MILLIMETRES | UNITS
     if unit is None:
         return None
-    if unit not in known:
-        raise ValueError(f"{argument}={unit!r} is not known; give one of {sorted(known)}.")
+    check_choice(unit, sorted(known), argument)
     return Unit(unit, known[unit], "named by the caller")
 
 

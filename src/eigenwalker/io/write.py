@@ -11,7 +11,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.atomic_write import atomic_write
+from eigenwalker.core.arguments import check_choice
+from eigenwalker.core.atomic_write import atomic_write, check_destination
 from eigenwalker.core.trajectories import MILLIMETRES, check_trajectories, sampling_rate
 from eigenwalker.core.walker import Walker
 from eigenwalker.io.to_trajectories import with_coordinate
@@ -135,10 +136,8 @@ def write_mocap(
     path = Path(path)
     form = _format_of(path)
     unit, up = unit or form.unit, up or form.up
-    if unit not in MILLIMETRES:
-        raise ValueError(f"unit={unit!r} is not known; give one of {sorted(MILLIMETRES)}.")
-    if up not in ("y", "z"):
-        raise ValueError(f"up={up!r} is not known; give 'y' or 'z'.")
+    check_choice(unit, sorted(MILLIMETRES), "unit")
+    check_choice(up, ("y", "z"), "up")
     write = form.write
     if path.suffix.lower() == ".bvh":
         write = partial(write_bvh, skeleton=skeleton, rest_pose=rest_pose)
@@ -163,11 +162,7 @@ def write_mocap(
 
 
 def _format_of(path: Path) -> Format:
-    if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path.name!r} must end in one of {sorted(FORMATS)} to hold a capture.")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
-    return FORMATS[path.suffix.lower()]
+    return FORMATS[check_destination(path, FORMATS, "to hold a capture")]
 
 
 def _sampled_walk(

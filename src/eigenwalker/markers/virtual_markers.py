@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, trajectories_at
 from eigenwalker.markers.joint_centres import HIP_REGRESSIONS
@@ -128,12 +129,8 @@ def virtual_markers(
     walk = check_trajectories(trajectories)
     with suppress(ValueError):  # where frames are not evenly spaced
         walk = repair_labels(walk)
-    if joints not in ("walker", "full"):
-        raise ValueError(f"joints={joints!r} is not known; give 'walker' or 'full'.")
-    if hip_regression not in HIP_REGRESSIONS:
-        raise ValueError(
-            f"hip_regression={hip_regression!r} is not known; give one of {list(HIP_REGRESSIONS)}."
-        )
+    check_choice(joints, ("walker", "full"), "joints")
+    check_choice(hip_regression, HIP_REGRESSIONS, "hip_regression")
     mapped = as_mapping(mapping)
     own, own_skin = _mapped_points(walk, mapped)
     on_skin = targets()["skin"]
@@ -223,10 +220,7 @@ def _best_set(
         return _Joints(own, set(), "own mapping")
     sets = [known for known in known_sets() if marker_set in (None, known.name)]
     if not sets:
-        raise ValueError(
-            f"marker_set={marker_set!r} is not known; give one of "
-            f"{[known.name for known in known_sets()]}."
-        )
+        check_choice(marker_set, [known.name for known in known_sets()], "marker_set")
     names = marker_names(tuple(points))
     missing: dict[str, list[str]] = {}
     for known in sets:

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.arguments import check_choice, check_numbers
 from eigenwalker.core.kinematics import shortest_turn
 from eigenwalker.metric.clips import Clip, as_trajectories
 from eigenwalker.metric.joint_groups import BONES
@@ -252,8 +252,7 @@ def angle_between(a: ArrayLike, b: ArrayLike, *, kind: AngleDistance = "angle") 
     >>> float(angle_between([0, 0, 0, 1], -quarter).round(4))
     1.5708
     """
-    if kind not in get_args(AngleDistance):
-        raise ValueError(f"kind={kind!r} is not known; give one of {get_args(AngleDistance)}.")
+    check_choice(kind, get_args(AngleDistance), "kind")
     a, b = (check_numbers(each, "quaternions", missing=True) for each in (a, b))
     pairs = zip(a.shape[::-1], b.shape[::-1], strict=False)
     if {*a.shape[-1:], *b.shape[-1:]} != {4} or any(m != n and 1 not in (m, n) for m, n in pairs):

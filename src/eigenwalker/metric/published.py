@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.metric.frame_metrics import GroupMetric, Metric, Shape
 from eigenwalker.metric.joint_groups import GROUPS, By
 
@@ -93,6 +94,5 @@ def metric_named(metric: str | Metric) -> Metric:
     """Return a published metric by its name; any other metric unchanged."""
     if not isinstance(metric, str):
         return metric
-    if metric not in PUBLISHED:
-        raise ValueError(f"metric={metric!r} is not known; give one of {list(PUBLISHED)}.")
+    check_choice(metric, PUBLISHED, "metric")
     return PUBLISHED[metric]

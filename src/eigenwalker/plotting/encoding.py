@@ -15,7 +15,7 @@ import numpy as np
 from av.video.plane import VideoPlane
 from av.video.stream import VideoStream
 
-from eigenwalker.core.atomic_write import atomic_write
+from eigenwalker.core.atomic_write import atomic_write, check_destination
 from eigenwalker.core.progress import Progress, ticked
 
 CENTISECONDS = {50: 2, 25: 4, 20: 5}
@@ -54,11 +54,7 @@ FORMATS = {
 
 def film_format(path: Path, rate_hz: float | None) -> FilmFormat:
     """Return how a film of this name is written, if it can be at this rate."""
-    if path.suffix.lower() not in FORMATS:
-        raise ValueError(f"{path.name!r} must end in one of {sorted(FORMATS)} to become a film.")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
-    form = FORMATS[path.suffix.lower()]
+    form = FORMATS[check_destination(path, FORMATS, "to become a film")]
     if form.codec == "gif" and rate_hz is not None and rate_hz not in CENTISECONDS:
         raise ValueError(
             f"A GIF waits whole hundredths of a second between frames, so rate_hz={rate_hz:g} "

@@ -18,7 +18,7 @@ import xarray as xr
 
 from eigenwalker._version import __version__
 from eigenwalker.core.arguments import check_numbers
-from eigenwalker.core.atomic_write import atomic_write
+from eigenwalker.core.atomic_write import atomic_write, check_destination
 from eigenwalker.core.trajectories import AXES
 from eigenwalker.core.walker import CaptureFit, Walker
 from eigenwalker.io.capture_file import read_bytes
@@ -62,8 +62,7 @@ class Stored(NamedTuple):
 
 def write_population(content: Stored, path: Path) -> Path:
     """Write walkers in correspondence, with their traits, to a NetCDF file; return its path."""
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"There is no folder {path.parent} to write {path.name} into.")
+    check_destination(path)
     dataset = _dataset(content.walkers, content.traits, content.correspondence)
     dataset.attrs = {
         "format": FORMAT,

@@ -11,6 +11,7 @@ import pandas as pd
 import xarray as xr
 from joblib import Parallel, delayed
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.core.atomic_write import write_table
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.walker import Walker
@@ -242,9 +243,7 @@ def write_captures(
     """
     from eigenwalker.io.write import FORMATS, write_mocap
 
-    if f".{format}" not in FORMATS:
-        known = [suffix.removeprefix(".") for suffix in FORMATS]
-        raise ValueError(f"format={format!r} is not known; give one of {known}.")
+    check_choice(format, [suffix.removeprefix(".") for suffix in FORMATS], "format")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     people = []

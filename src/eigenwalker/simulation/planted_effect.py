@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.arguments import check_numbers
+from eigenwalker.core.arguments import check_choice, check_numbers
 from eigenwalker.core.fourier import harmonic_basis
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories
@@ -89,8 +89,7 @@ def random_effect(
     >>> bool(effect.structure.any()), bool(effect.movement.any())
     (True, False)
     """
-    if part not in ("structure", "dynamics"):
-        raise ValueError(f"part={part!r} is not known; give 'structure' or 'dynamics'.")
+    check_choice(part, ("structure", "dynamics"), "part")
     rng = np.random.default_rng([seed, 77])
     shape = (_N_JOINTS, 3) if part == "structure" else (4, _N_JOINTS, 3)
     direction = rng.standard_normal(shape)

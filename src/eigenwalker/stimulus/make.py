@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from eigenwalker._version import __version__
-from eigenwalker.core.arguments import check_kind, check_numbers
+from eigenwalker.core.arguments import check_choice, check_kind, check_numbers
 from eigenwalker.core.walker import Walker
 from eigenwalker.plotting.layout import DEFAULT_DURATION_S
 from eigenwalker.population.population import Population, check_population
@@ -212,6 +212,7 @@ def with_information(
         own = same_size.X[walker]
     else:
         own = _normalised(population, check_numbers(walker, "walker", "feature"))
+    check_choice(information, ("full", "structure", "dynamics"), "information")
     match information:
         case "full":
             return same_size.walker(own)
@@ -219,9 +220,6 @@ def with_information(
             return same_size.walker(same_size.hybrid(structure=own, dynamics=same_size.average))
         case "dynamics":
             return same_size.walker(same_size.hybrid(structure=same_size.average, dynamics=own))
-    raise ValueError(
-        f"information={information!r} is not known; choose 'full', 'structure' or 'dynamics'."
-    )
 
 
 def _normalised(population: Population, vector: np.ndarray) -> np.ndarray:

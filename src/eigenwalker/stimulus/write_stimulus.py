@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eigenwalker.core.atomic_write import atomic_write
+from eigenwalker.core.atomic_write import atomic_write, check_destination
 from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.stimulus.html_page import stand_alone_page
 from eigenwalker.stimulus.rig_choices import RigChoices
@@ -110,12 +110,7 @@ def write_stimulus(
 
 def check_suffix(path: Path) -> str:
     """Return the suffix of a file that can be written; refuse others."""
-    suffix = path.suffix.lower()
-    if suffix and suffix not in SUFFIXES:
-        raise ValueError(f"{path.name!r} must end in one of {SUFFIXES} to hold a stimulus.")
-    if not path.parent.is_dir():
-        raise FileNotFoundError(f"The folder {str(path.parent)!r} does not exist; make it first.")
-    return suffix
+    return check_destination(path, SUFFIXES if path.suffix else (), "to hold a stimulus")
 
 
 def _write_film(stimulus: Stimulus, path: Path, progress: Progress | None) -> None:

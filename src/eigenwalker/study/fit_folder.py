@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import joblib
 import numpy as np
@@ -14,7 +14,7 @@ import pandas as pd
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.io.read import companion_files
 from eigenwalker.markers.mapping import as_mapping
@@ -78,16 +78,13 @@ def fit_folder(
     trait_from_name: str | None = None,
     form: Form = "eigenposture",
     n_harmonics: int = 2,
-    unit: str | None = None,
-    rate_hz: float | None = None,
-    partial: Literal["refuse", "keep"] = "refuse",
-    subject: str | None = None,
     mapping: Any = None,
     person: str | None = None,
     low_pass_hz: float | None = None,
     n_jobs: int = -1,
     checkpoint: str | Path | None = None,
     progress: Progress | None = None,
+    **reading: Any,
 ) -> Study:
     r"""Return the population of the captures in a folder.
 
@@ -105,14 +102,6 @@ def fit_folder(
         Decomposition: principal components or a Fourier series.
     n_harmonics : int
         Multiples of the stride frequency.
-    unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
-        Unit of length of all captures, in place of what they say.
-    rate_hz : float, optional
-        Frames a second of all captures, in place of what they say.
-    partial : {"refuse", "keep"}
-        "keep" takes the whole frames of captures that are cut short, and flags them.
-    subject : str, optional
-        The person to take of captures that hold several.
     person : str, optional
         The trait that says who walked, or "none"; else one such as
         ``person``, ``Subject`` or a repeating ``ID`` is taken.
@@ -128,6 +117,9 @@ def fit_folder(
         changed since are not read again. Remove it when the population is saved.
     progress : callable, optional
         Called with the number of captures done and of all.
+    **reading
+        As `read_mocap` takes them, such as ``unit`` and ``rate_hz``; those that are cut short
+        (``partial="keep"``) are flagged.
 
     Returns
     -------
@@ -165,23 +157,19 @@ def fit_folder(
     settings = {
         "form": form,
         "n_harmonics": n_harmonics,
-        "unit": unit,
-        "rate_hz": rate_hz,
-        "partial": partial,
-        "subject": subject,
         "mapping": as_mapping(mapping).as_dict(),
         "low_pass_hz": low_pass_hz,
+        **reading,
     }
     earlier = None
     if checkpoint is not None:
         earlier = Checkpoint(Path(checkpoint), folder, settings)
     done: dict[str, _Outcome] = {}
     n_resumed = 0
-    for name, outcome, resumed in _outcomes(folder, names, settings, n_jobs, earlier):
+    outcomes = _outcomes(folder, names, settings, n_jobs, earlier)
+    for name, outcome, resumed in ticked(outcomes, len(names), progress):
         done[name] = outcome
         n_resumed += resumed
-        if progress:
-            progress(len(done), len(names))
     unlisted = sorted(set(captures_in(folder)) - set(names)) if traits is not None else ()
     study = _study(table, [done[name] for name in names], form, tuple(unlisted))
     return replace(study, n_resumed=n_resumed)
@@ -317,6 +305,12 @@ def _refused(reason: str) -> _Outcome:
     return None, {"status": "refused", "reason": reason}
 
 
+def status_of(result: CaptureResult) -> dict[str, Any]:
+    """Return the status of a capture that was read, and the reason where it is flagged."""
+    flag = flag_of(result.quality)
+    return {"status": "flagged" if flag else "used", "reason": flag}
+
+
 def _walker_and_row(result: CaptureResult) -> _Outcome:
     return result.walker, _row(result)
 
@@ -324,10 +318,8 @@ def _walker_and_row(result: CaptureResult) -> _Outcome:
 def _row(result: CaptureResult) -> dict[str, Any]:
     """Return the row of `Study.files` for a capture that was read."""
     quality, walker, capture = result.quality, result.walker, result.capture
-    flag = flag_of(quality)
     return {
-        "status": "flagged" if flag else "used",
-        "reason": flag,
+        **status_of(result),
         "rate_hz": quality.rate_hz,
         "duration_s": quality.duration_s,
         "strides": quality.n_strides,
@@ -349,7 +341,7 @@ def _row(result: CaptureResult) -> dict[str, Any]:
         "unit_guessed": quality.unit_guessed,
         "rate_assumed": assumed_rate_in_words(capture),
         "verdict": quality.verdict,
-        FLAG: flag,
+        FLAG: flag_of(quality),
     }
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -33,31 +33,16 @@ _MEASURED = (
 _MARKER_SET = ("marker_set", "marker_set_share", "marker_set_runner_up", "approximate")
 
 
-def inspect_file(
-    path: str | Path,
-    *,
-    unit: str | None = None,
-    rate_hz: float | None = None,
-    partial: Literal["refuse", "keep"] = "refuse",
-    subject: str | None = None,
-    mapping: Any = None,
-) -> dict[str, Fact]:
+def inspect_file(path: str | Path, **reading: Any) -> dict[str, Fact]:
     """Return what is in a capture or a population file, and what is wrong with it.
 
     Parameters
     ----------
     path : str or Path
         A capture of any format that `read_mocap` reads, or a population (``.nc``).
-    unit : {"um", "mm", "cm", "dm", "m", "in", "ft", "asf"}, optional
-        Unit of length, in place of what the capture says.
-    rate_hz : float, optional
-        Frames a second, in place of what the capture says.
-    partial : {"refuse", "keep"}
-        "keep" takes the whole frames of a capture that is cut short.
-    subject : str, optional
-        One person of a capture that holds several.
-    mapping : optional
-        Markers with names of your own, as `virtual_markers` takes it.
+    **reading
+        As `read_mocap` takes them, such as ``unit`` and ``rate_hz``; and ``mapping``, as
+        `virtual_markers` takes it.
 
     Returns
     -------
@@ -85,9 +70,7 @@ def inspect_file(
     >>> facts["format"], facts["verdict"], facts["n_strides"], facts["problems"]
     ('C3D', 'use', 10, [])
     """
-    reading: dict[str, Any] = {"unit": unit, "rate_hz": rate_hz, "partial": partial}
-    facts = file_facts(Path(path), **reading, subject=subject, mapping=mapping)
-    return {name: plain_fact(value) for name, value in facts.items()}
+    return {name: plain_fact(value) for name, value in file_facts(Path(path), **reading).items()}
 
 
 def file_facts(path: Path, **reading: Any) -> dict[str, object]:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.gait.events import gait_events
 from eigenwalker.gait.parameters import gait_parameters
 from eigenwalker.population.persons import PERSON, name_persons, persons_of
 from eigenwalker.population.trait_table import heading_parts
 from eigenwalker.study.capture_table import FILE, capture_table
-from eigenwalker.study.fit_folder import outcomes_in_processes
-from eigenwalker.study.messages import flag_of, parameter_codebook
+from eigenwalker.study.fit_folder import outcomes_in_processes, status_of
+from eigenwalker.study.messages import parameter_codebook
 from eigenwalker.study.process_capture import CaptureResult
 from eigenwalker.study.traits_file import UNITS
 
@@ -109,12 +109,9 @@ def parameter_table(
     table = capture_table(folder, traits, trait_from_name)
     if person is not None:
         table = name_persons(table, person)
-    names, rows = table[FILE].tolist(), []
-    settings = {"joints": "full", **reading}
-    for row in outcomes_in_processes(folder, names, settings, n_jobs, _measured):
-        rows.append(row[1])
-        if progress:
-            progress(len(rows), len(names))
+    names, settings = table[FILE].tolist(), {"joints": "full", **reading}
+    outcomes = outcomes_in_processes(folder, names, settings, n_jobs, _measured)
+    rows = [row for _, row in ticked(outcomes, len(names), progress)]
     measured = pd.DataFrame(rows).reindex(columns=list(parameter_codebook()))
     traits_of = table.drop(columns=[name for name in measured if name in table and name != FILE])
     files = pd.concat([traits_of, measured.drop(columns=FILE, errors="ignore")], axis=1)
@@ -129,12 +126,9 @@ def parameter_table(
 
 def _measured(result: CaptureResult) -> tuple[None, dict[str, Any]]:
     """Return the row of a capture."""
-    walk, flag = result.walk, flag_of(result.quality)
-    parameters = gait_parameters(walk)
-    events = gait_events(walk)
+    parameters, events = gait_parameters(result.walk), gait_events(result.walk)
     row = {
-        "status": "flagged" if flag else "used",
-        "reason": flag,
+        **status_of(result),
         "strides": result.quality.n_strides,
         "duration_s": result.quality.duration_s,
         "events_from": ", ".join(sorted({_plain(name) for name in events["marker"]})),

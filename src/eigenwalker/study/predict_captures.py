@@ -15,13 +15,13 @@ import pandas as pd
 
 from eigenwalker.analysis.contrast import usual_trait
 from eigenwalker.analysis.trait_model import TraitModel, trait_model
-from eigenwalker.core.progress import Progress
+from eigenwalker.core.progress import Progress, ticked
 from eigenwalker.core.walker import Walker
 from eigenwalker.population.persons import persons_of
 from eigenwalker.population.population import Population
 from eigenwalker.study.capture_table import FILE, captures_in, traits_of_names
-from eigenwalker.study.fit_folder import outcomes_in_processes
-from eigenwalker.study.messages import error_to_expect, flag_of
+from eigenwalker.study.fit_folder import outcomes_in_processes, status_of
+from eigenwalker.study.messages import error_to_expect
 from eigenwalker.study.process_capture import CaptureResult
 
 MOST_WAITED_FOR = 150
@@ -116,15 +116,10 @@ def predict_captures(
     form = {"form": first.form, "n_harmonics": len(first.harmonics) // 2}
     folder = Path(os.path.commonpath([path.parent for path in paths]))
     names = [str(path.relative_to(folder)) for path in paths]
-    rows, vectors = [], []
     outcomes = outcomes_in_processes(
         folder, names, form | reading, n_jobs, partial(_placed, population)
     )
-    for vector, row in outcomes:
-        vectors.append(vector)
-        rows.append(row)
-        if progress:
-            progress(len(rows), len(names))
+    vectors, rows = zip(*ticked(outcomes, len(names), progress), strict=True)
     inside = pd.Series([Path(name).as_posix() for name in names])
     one_folder = len({name.parent for name in named.values()}) == 1 or isinstance(files, str | Path)
     written = [path.as_posix() for path in named.values()]
@@ -181,9 +176,7 @@ def _paths(files: Sequence[str | Path] | str | Path) -> dict[Path, Path]:
 def _placed(
     population: Population, result: CaptureResult
 ) -> tuple[Walker | np.ndarray | None, dict[str, Any]]:
-    flag = flag_of(result.quality)
-    row = {"status": "flagged" if flag else "used", "reason": flag}
-    return population.vector(result.walker), row
+    return population.vector(result.walker), status_of(result)
 
 
 def _persons_known(model: TraitModel, files: pd.Series, pattern: str | None) -> list[str]:

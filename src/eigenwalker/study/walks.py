@@ -82,9 +82,7 @@ def walk_of_capture(
     path: str | Path,
     *,
     mannequin: bool = True,
-    default_unit: str | None = None,
-    default_rate_hz: float | None = None,
-    mapping: Any = None,
+    **reading: Any,
 ) -> CaptureWalk:
     """Return the steady strides of a capture, to be compared with other walks.
 
@@ -94,10 +92,8 @@ def walk_of_capture(
         A capture of any format that `read_mocap` reads.
     mannequin : bool
         Whether to show the walk on the neutral mannequin (`retarget`).
-    default_unit, default_rate_hz : optional
-        Unit of length and frames a second, for files that name none.
-    mapping : optional
-        Markers with names of your own, as `virtual_markers` takes it.
+    **reading
+        As `process_capture` takes them, such as ``default_unit``, ``default_rate_hz``, ``mapping``.
 
     Returns
     -------
@@ -107,13 +103,7 @@ def walk_of_capture(
     --------
     process_capture : The same with the walker and the quality.
     """
-    result = process_capture(
-        path,
-        joints="full",
-        default_unit=default_unit,
-        default_rate_hz=default_rate_hz,
-        mapping=mapping,
-    )
+    result = process_capture(path, joints="full", **reading)
     flag, walk, warnings = flag_of(result.quality), result.walk, None
     if mannequin:
         walk = retarget(result.walk)
@@ -128,10 +118,8 @@ def walks_of_folder(
     person: str | None = None,
     with_flagged: bool = False,
     mannequin: bool = True,
-    default_unit: str | None = None,
-    default_rate_hz: float | None = None,
-    mapping: Any = None,
     progress: Progress | None = None,
+    **reading: Any,
 ) -> Walks:
     """Return the captures of a folder and its subfolders as comparable walks, named by file.
 
@@ -148,12 +136,10 @@ def walks_of_folder(
         Whether captures count that are flagged (`assess`).
     mannequin : bool
         Whether to show the walks on the neutral mannequin (`retarget`).
-    default_unit, default_rate_hz : optional
-        Unit of length and frames a second, for files that name none.
-    mapping : optional
-        Markers with names of your own, as `virtual_markers` takes it.
     progress : callable, optional
         Called with the number of captures that are done, and of all.
+    **reading
+        As `process_capture` takes them, such as ``default_unit``, ``default_rate_hz``, ``mapping``.
 
     Returns
     -------
@@ -192,13 +178,7 @@ def walks_of_folder(
     for row in ticked(table.to_dict("records"), len(table), progress):
         name = str(row[FILE])
         try:
-            clip, flag, remark = walk_of_capture(
-                Path(folder, name),
-                mannequin=mannequin,
-                default_unit=default_unit,
-                default_rate_hz=default_rate_hz,
-                mapping=mapping,
-            )
+            clip, flag, remark = walk_of_capture(Path(folder, name), mannequin=mannequin, **reading)
         except (ValueError, OSError) as error:
             walks.refused[name] = str(error)
             continue

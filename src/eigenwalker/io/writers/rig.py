@@ -19,6 +19,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
+from eigenwalker.core.arguments import check_choice
 from eigenwalker.core.kinematics import forward_kinematics, rigid_turn, shortest_turn
 from eigenwalker.core.quaternions import Rotation
 from eigenwalker.core.skeleton import JOINTS
@@ -149,10 +150,8 @@ def fit_rig(
 
 
 def _check(walk: xr.DataArray, skeleton: str, rest_pose: str) -> None:
-    if skeleton not in SKELETONS:
-        raise ValueError(f"skeleton={skeleton!r} is not known; give one of {list(SKELETONS)}.")
-    if rest_pose not in ("t", "a"):
-        raise ValueError(f"rest_pose={rest_pose!r} is not known; give 't' or 'a'.")
+    check_choice(skeleton, SKELETONS, "skeleton")
+    check_choice(rest_pose, ("t", "a"), "rest_pose")
     lacking = missing_markers(walk, JOINTS.markers)
     unknown = sorted(set(map(str, walk.marker.values)) - {*JOINTS.markers, *EXTRAS})
     if lacking or unknown:
