@@ -9,9 +9,9 @@ from typing import Annotated
 
 import typer
 
+from eigenwalker.cli.capture_options import Reading, reads_captures
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import RestPose, SkeletonNames, option
-from eigenwalker.cli.reading_options import Reading, reads_captures
 
 LONGEST_IN_LINE = 24
 """Letters up to which entries of a list are printed one after the other."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from eigenwalker.cli.capture_options import Reading, reads_captures
 from eigenwalker.cli.exit_codes import EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
@@ -23,7 +24,6 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
-from eigenwalker.cli.reading_options import Reading, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from eigenwalker.cli.capture_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
@@ -18,7 +19,6 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
-from eigenwalker.cli.reading_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.io.errors import printable
 
 

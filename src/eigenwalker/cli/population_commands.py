@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from eigenwalker.cli.capture_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_INTERRUPTED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
@@ -22,7 +23,6 @@ from eigenwalker.cli.options import (
     option,
     progress_bar,
 )
-from eigenwalker.cli.reading_options import Jobs, LowPass, Reading, TraitsTable, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from eigenwalker.cli.capture_options import Jobs, Reading, reads_captures
 from eigenwalker.cli.exit_codes import EXIT_FAILED, EXIT_PARTIAL
 from eigenwalker.cli.option_names import in_options
 from eigenwalker.cli.options import (
@@ -19,7 +20,6 @@ from eigenwalker.cli.options import (
     progress_bar,
     trait_or_usual,
 )
-from eigenwalker.cli.reading_options import Jobs, Reading, reads_captures
 from eigenwalker.io.errors import printable
 
 if TYPE_CHECKING:
