@@ -56,6 +56,8 @@ from .psychophysics import (
     PerceptualMetric as PerceptualMetric,
     mixed_anova as mixed_anova,
     scheffe as scheffe,
+    sensitivity as sensitivity,
+    spearman_critical as spearman_critical,
 )
 from .quality import assess as assess
 from .simulation import simulate_population as simulate_population, simulate_walk as simulate_walk

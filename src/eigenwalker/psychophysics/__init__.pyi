@@ -17,12 +17,23 @@ from .dissimilarity_structure import (
     map_of_walks as map_of_walks,
     order_of_walks as order_of_walks,
 )
+from .error_rates import condition_means as condition_means, error_rates as error_rates
 from .fit_to_answers import MetricFit as MetricFit, fit_to_answers as fit_to_answers
+from .item_analysis import (
+    confidence_correlations as confidence_correlations,
+    walker_errors as walker_errors,
+)
 from .mixed_anova import mixed_anova as mixed_anova
+from .paired_t import paired_t as paired_t
 from .perceptual_metric import (
     PerceptualMetric as PerceptualMetric,
     Weights as Weights,
     non_negative_fit as non_negative_fit,
+)
+from .rank_correlation import (
+    RankCorrelation as RankCorrelation,
+    rank_correlation as rank_correlation,
+    spearman_critical as spearman_critical,
 )
 from .reliability import (
     Bootstrap as Bootstrap,
@@ -31,6 +42,7 @@ from .reliability import (
     split_half as split_half,
 )
 from .scheffe import scheffe as scheffe
+from .sensitivity import sensitivity as sensitivity
 from .shape_search import (
     RandomStarts as RandomStarts,
     ShapeFit as ShapeFit,

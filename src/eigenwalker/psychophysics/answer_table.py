@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,18 @@ _MAX_NAMES = 6
 """Names listed in a message."""
 
 
-def take_columns(table: Any, *, numbers: tuple[str, ...] = (), **columns: Any) -> pd.DataFrame:
+def take_columns(
+    table: Any,
+    columns: Mapping[str, Any],
+    *,
+    numbers: tuple[str, ...] = (),
+    empty: tuple[str, ...] = (),
+) -> pd.DataFrame:
     """Return the columns of a table under the names of what they mean, checked.
 
-    Those in `numbers` become float64, and must be finite; the others are labels, and no cell of
-    them may be empty. Rows keep the lines of a file whose first line is the headings.
+    `columns` has the name of each in the table. Those in `numbers` become float64, and must be
+    finite; the others are labels, and no cell of them may be empty but of those in `empty`. Rows
+    keep the lines of a file whose first line is the headings.
     """
     check_kind(table, pd.DataFrame, "a table of answers (a pandas DataFrame)")
     has = f"the table has {[str(name) for name in table.columns][:20]}"
@@ -38,9 +46,9 @@ def take_columns(table: Any, *, numbers: tuple[str, ...] = (), **columns: Any) -
     for role, name in columns.items():
         if role in numbers:
             taken[role] = _finite_numbers(taken[role], name)
-        elif (empty := taken[role].isna()).any():
+        elif role not in empty and (unnamed := taken[role].isna()).any():
             raise ValueError(
-                f"Line {empty.idxmax()} of the table has an empty cell in the column {name!r}; "
+                f"Line {unnamed.idxmax()} of the table has an empty cell in the column {name!r}; "
                 "name what belongs there, or leave the line out."
             )
     return taken

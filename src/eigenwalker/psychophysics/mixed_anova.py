@@ -117,7 +117,7 @@ def mixed_anova(
 
     """
     columns = {"dv": dv, "between": between, "within": within, "subject": subject}
-    taken = take_columns(table, numbers=("dv",), **columns)
+    taken = take_columns(table, columns, numbers=("dv",))
     strata = strata_of(taken, between=between, within=within)
     counts, n_levels = strata.counts, len(strata.contrasts) + 1
     row_means = strata.group_means.mean(axis=1)

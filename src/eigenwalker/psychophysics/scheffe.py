@@ -72,7 +72,7 @@ def scheffe(
 
     """
     columns = {"dv": dv, "between": between, "within": within, "subject": subject}
-    taken = take_columns(table, numbers=("dv",), **columns)
+    taken = take_columns(table, columns, numbers=("dv",))
     strata = strata_of(taken, between=between, within=within)
     means = strata.group_means.mean(axis=0)
     mean_square, df2 = strata.error_within / strata.df_within, strata.df_within
