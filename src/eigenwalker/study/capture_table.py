@@ -118,13 +118,14 @@ def _traits_table(traits: pd.DataFrame | str | Path, folder: Path) -> pd.DataFra
             table[name] = _persons(table[name])
         elif LINE in cells.attrs:
             column = letters.get(given, "")
-            table[name] = trait_values(
+            values = trait_values(
                 table[name].tolist(),
                 name,
                 lambda at, column=column: f"cell {column}{lines[at]}",
                 decimal_comma=cells.attrs[DECIMAL_COMMA],
             )
-            units[name] = table[name].attrs.get(UNIT) or units.get(given, "")
+            units[name] = values.attrs.get(UNIT) or units.get(given, "")
+            table[name] = values
         elif _holds_text(table[name]):
             table[name] = in_one_spelling(_numbers_where_all_are(table[name]))
     found = pd.DataFrame({name: table[name] for name in table})
