@@ -11,7 +11,12 @@ from eigenwalker.experiment.design import Design
 from eigenwalker.experiment.design_file import BadDesign, parse_design
 from eigenwalker.experiment.experiment_folder import DESIGNS
 from eigenwalker.experiment.manipulations import CARICATURE, MANIPULATIONS, manipulation_design
-from eigenwalker.experiment.order import session_trials, session_views, shown_walkers
+from eigenwalker.experiment.order import (
+    session_trials,
+    session_views,
+    shown_walkers,
+    trials_for_page,
+)
 
 
 def text_of(name: str, seed: int = 1) -> str:
@@ -93,15 +98,18 @@ def test_views_of_sessions_are_counterbalanced_over_places() -> None:
     assert len({tuple(order) for order in orders}) == 6
 
 
-def test_squares_have_four_different_walkers_in_places_by_chance() -> None:
+def test_squares_have_four_different_walkers_each_as_often_in_places_by_chance() -> None:
     made = design("prazak2010")
     walkers = shown_walkers(made, 40)
     assert len(set(walkers)) == 21
     places: Counter[tuple[int, int]] = Counter()
     for place in range(8):
         trials = session_trials(made, walkers, group="all", place=place)
-        assert sum(not trial["spare"] for trial in trials) == 63
+        counted = [trial for trial in trials if not trial["spare"]]
+        assert len(counted) == 63
         assert all(len(set(trial["walkers"])) == 4 for trial in trials)
+        shown = Counter(walker for trial in counted for walker in trial["walkers"])
+        assert set(shown.values()) == {12}
         places.update((w, i) for trial in trials for i, w in enumerate(trial["walkers"]))
     assert len(places) == 21 * 4
     assert max(places.values()) < 3 * min(places.values())
@@ -114,7 +122,7 @@ def test_an_order_depends_on_seed_group_place_and_session_alone() -> None:
         return [t["walkers"][0] for t in session_trials(made, range(40), group=group, place=place)]
 
     assert order() == order()
-    assert order()[:12] == [26, 37, 25, 30, 9, 0, 1, 7, 10, 29, 22, 11]  # on every machine
+    assert order()[:12] == [38, 5, 19, 17, 35, 8, 22, 25, 36, 14, 10, 4]  # on every machine
     others = [order(design("troje2002", 2)), order(group="profile"), order(place=1)]
     assert all(other != order() for other in others)
 
@@ -122,3 +130,74 @@ def test_an_order_depends_on_seed_group_place_and_session_alone() -> None:
 def test_more_walkers_than_there_are_is_refused() -> None:
     with pytest.raises(ValueError, match="write 10 or less"):
         shown_walkers(design("prazak2010"), 10)
+
+
+def test_pairs_are_the_same_in_half_of_the_trials_and_all_walkers_are_shown() -> None:
+    made = design("same_different")
+    trials = session_trials(made, range(40), group="all", place=0)
+    practice, main = trials[:8], trials[8:]
+    assert all(trial["practice"] for trial in practice)
+    for some in (practice, main):
+        right = Counter(trial["correct"] for trial in some)
+        assert right["same"] == right["different"] == len(some) / 2
+    for trial in main:
+        assert (len(set(trial["walkers"])) == 1) == (trial["correct"] == "same")
+        assert trial["stimuli"][1].endswith("view+60")
+    assert [trial["trial"] for trial in main if trial.get("break_after")] == [48]
+    page = trials_for_page(made, trials)
+    assert [trial["trial"] for trial in page if "correct" in trial] == [*range(1, 9)]
+
+
+@pytest.mark.parametrize("figures", [3, 4])
+def test_one_of_the_figures_is_the_odd_one_in_places_in_turn(figures: int) -> None:
+    made = parse_design(text_of("odd_one_out").replace("figures = 3", f"figures = {figures}"))
+    trials = session_trials(made, range(40), group="all", place=0)
+    for trial in trials:
+        shown = Counter(trial["walkers"])
+        assert sorted(shown.values()) == [1, figures - 1]
+        assert shown[trial["walkers"][trial["correct"]]] == 1
+    assert set(Counter(trial["correct"] for trial in trials).values()) == {60 / figures}
+
+
+def test_one_person_differs_in_conditions() -> None:
+    conditions = "".join(
+        f'[[conditions]]\nname = "{name}"\ntrait = "sex"\nalpha = {alpha}\n'
+        for name, alpha in (("plain", 0.0), ("strong", 3.0))
+    )
+    text = text_of("odd_one_out") + conditions
+    made = parse_design(
+        text.replace('"walkers" ', '"conditions" ').replace(
+            "all_differ = false", 'conditions = ["plain", "strong"]'
+        )
+    )
+    trials = session_trials(made, range(40), group="all", place=0)
+    for trial in trials:
+        assert len(set(trial["walkers"])) == 1
+        assert sorted(Counter(trial["conditions"]).values()) == [1, 2]
+        assert trial["condition"] in ("plain/strong", "strong/plain")
+
+
+def test_sliders_begin_anywhere_and_step_from_the_lowest_to_the_highest_weight() -> None:
+    made = design("adjustment")
+    trials = session_trials(made, range(40), group="all", place=0)
+    assert len(trials) == 20
+    assert trials[0]["levels"][:2] == [-6.0, -5.5]
+    assert trials[0]["levels"][-1] == 6.0
+    assert len(trials[0]["stimuli"]) == 25
+    assert len({trial["begins"] for trial in trials}) > 5
+
+
+def test_catch_trials_are_among_the_others_and_have_a_right_answer() -> None:
+    text = text_of("troje2002").replace("instances = 2", "instances = 1\ntrials = 10", 1)
+    text += '[[conditions]]\nname = "man"\nwalker = "average"\ntrait = "sex"\nalpha = 6.0\n'
+    text += 'toward = "male"\n'
+    catch = '[[blocks.catch]]\ncondition = "man"\nright = ["male"]\nnumber = 2\n\n[[blocks]]'
+    made = parse_design(catch.join(text.rsplit("[[blocks]]", 1)))
+    classes = {"sex": ["female", "male"] * 20}
+    trials = session_trials(made, range(40), group="profile", place=0, classes=classes)[:12]
+    caught = [trial for trial in trials if trial.get("catch")]
+    assert [(trial["walkers"], trial["correct"]) for trial in caught] == [([], ["male"])] * 2
+    assert sorted(trial["view_deg"] for trial in caught) == [-90.0, 90.0]
+    others = [trial for trial in trials if not trial.get("catch")]
+    assert Counter(trial["view_deg"] for trial in others) == {90.0: 5, -90.0: 5}
+    assert all(t["correct"] == classes["sex"][t["walkers"][0]] for t in others)

@@ -242,7 +242,7 @@ def test_simulated_observers_answer_all_and_count_in_no_group(
     assert len(answered) == 6 * 16
     assert {row["simulated"] for row in rows} == {"1"}
     truth = (service.folder / "simulated_truth.csv").read_text(encoding="utf-8").splitlines()
-    assert len(truth) == 1 + 3 * 6 + 40
+    assert len(truth) == 1 + 9 * 6 + 40
     found = service.writer.do(store.counts)
     assert found["refused"] == 0
 

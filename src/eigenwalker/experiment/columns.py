@@ -36,7 +36,7 @@ COLUMNS = (
     Column("walker", "name of the walker, where one is shown", values="names of the population"),
     Column(
         "response",
-        "the answer: a class, a step of the scale from 1, or two places from 0",
+        "the answer: a class, a step of the scale from 1, one or two places from 0, or a setting",
         values="text; empty without an answer",
         source="page",
     ),
@@ -111,8 +111,41 @@ QUESTIONS = (
 RATING = (
     Column("rating", "the step of the scale, from 1 at its first end", "", "integer", "page"),
 )
+RIGHT = (
+    Column(
+        "right_answer",
+        "the right answer, where there is one; several of a catch trial, separated by blanks",
+        values="as in response; empty",
+    ),
+    Column(
+        "correct",
+        "whether the response is right",
+        values="0, 1; empty without a response or a right answer",
+        source="computed at export",
+    ),
+    Column("catch", "whether it is a catch trial, whose right answer is plain", values="0, 1"),
+)
+FIGURES = tuple(
+    Column(name, "walker in that place, from the left, above before below", "", "names")
+    for name in "abcd"
+)
 PAIRS = (
-    *(Column(name, "walker in that place: above a, b; below c, d", "", "names") for name in "abcd"),
     Column("chosen_1", "one walker of the chosen pair", "", "names; empty", "page"),
     Column("chosen_2", "the other walker of the chosen pair", "", "names; empty", "page"),
+)
+ODD = (Column("chosen", "the walker that was chosen as the odd one", "", "names; empty", "page"),)
+SETTINGS = (
+    Column(
+        "setting",
+        "weight of the trait that the observer set; 0 is the walker as it is",
+        "standard deviation of the walkers",
+        "number; empty",
+        "page",
+    ),
+    Column(
+        "setting_start",
+        "weight at which the slider began",
+        "standard deviation of the walkers",
+        "number; empty",
+    ),
 )

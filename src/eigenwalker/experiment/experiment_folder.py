@@ -21,7 +21,12 @@ from eigenwalker.experiment.manipulations import (
     MANIPULATIONS,
     manipulation_design,
 )
-from eigenwalker.experiment.order import shown_walkers, stimulus_name
+from eigenwalker.experiment.order import (
+    Trial,
+    session_trials,
+    shown_walkers,
+    stimulus_name,
+)
 from eigenwalker.experiment.stimulus_bundle import (
     Bundle,
     Piece,
@@ -37,13 +42,19 @@ ANSWERS, VERSIONS, BACKUPS = "answers.sqlite", "versions", "backups"
 MAX_KEPT = 2000
 """Stimuli of a version that a server has in memory, some 10 kB each."""
 _NUMBER = re.compile(r"(?m)^(# )?number = \d+")
-DESIGNS = ("troje2002", "wdp2002", "prazak2010", "detection")
+DESIGNS = (
+    *("troje2002", "wdp2002", "prazak2010", "detection"),
+    *("same_different", "odd_one_out", "adjustment"),
+)
 """Ready to run, beside `MANIPULATIONS` and `CARICATURE`."""
 TEXTS_OF = {
     "choice": "troje2002",
     "rating": "wdp2002",
     "similar_pair": "prazak2010",
     "detection": "detection",
+    "same_different": "same_different",
+    "odd_one_out": "odd_one_out",
+    "adjustment": "adjustment",
 }
 """The texts that a design of one's own begins with, by the task of its first block."""
 
@@ -105,10 +116,21 @@ class Material:
         """Return the names of all stimuli that any observer may be shown."""
         return [
             stimulus_name(walker, condition.name, view)
-            for walker in self.walkers
             for condition in self.design.shown
+            for walker in ([None] if condition.walker == "average" else self.walkers)
             for view in self.design.views_deg
         ]
+
+    def trials(self, group: str, place: int, session: int = 0) -> list[Trial]:
+        """Return the trials of a session, with right answers where walkers have classes."""
+        return session_trials(
+            self.design,
+            self.walkers,
+            group=group,
+            place=place,
+            session=session,
+            classes=self.people["classes"],
+        )
 
     def faults(self) -> list[str]:
         """Return what is missing beside the design, each with what to do."""
@@ -242,8 +264,9 @@ def write_stimuli(
 
     (material.folder / STIMULI).mkdir(exist_ok=True)
     stimuli = ConditionStimuli(material.design, population)
-    for done, walker in enumerate(material.walkers):
+    everyone = [*material.walkers, None]
+    for done, walker in enumerate(everyone):
         if progress is not None:
-            progress(done, len(material.walkers))
+            progress(done, len(everyone))
         for name, stimulus in stimuli.of(walker):
             material.stimulus_path(name).write_text(stimulus.to_json(), encoding="utf-8")

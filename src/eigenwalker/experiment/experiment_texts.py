@@ -9,7 +9,16 @@ from functools import cached_property
 from importlib.resources import files
 from pathlib import Path
 
-from eigenwalker.experiment.design import Choice, Design, Detection, Rating, SimilarPair
+from eigenwalker.experiment.design import (
+    Adjustment,
+    Choice,
+    Design,
+    Detection,
+    OddOneOut,
+    Rating,
+    SameOrDifferent,
+    SimilarPair,
+)
 
 PAGES = ("consent", "instructions", "break", "pause", "welcome_back", "debriefing", "warning")
 """Texts that are pages: paragraphs, lists, emphasis. All others are plain."""
@@ -77,15 +86,22 @@ def template(name: str) -> str:
 def missing_texts(design: Design, texts: Texts) -> list[str]:
     """Return the names of texts that a design needs and a language lacks."""
     common = sections_of(_TEXTS.joinpath("common.en.md").read_text(encoding="utf-8"))
-    needed = ["title", "consent", "instructions", "debriefing", *common]
+    needed = ["title", "consent", "instructions", "debriefing"]
+    needed += [name for name in common if not name.startswith(tuple(_SOMETIMES))]
     for block in design.blocks:
-        if isinstance(block, Choice | Detection):
+        if block.feedback:
+            needed += [name for name in common if name.startswith("feedback_")]
+        if isinstance(block, Choice | Detection | SameOrDifferent):
             needed += [f"{part}_{name}" for name in block.choices for part in ("key", "button")]
         elif isinstance(block, Rating):
             scales = {block.scale or group.scale for group in design.groups}
             needed += [f"{scale}_{end}" for scale in sorted(map(str, scales)) for end in _ENDS]
         elif isinstance(block, SimilarPair):
             needed += ["figure", "pair_chosen"]
+        elif isinstance(block, OddOneOut):
+            needed += ["figure"]
+        elif isinstance(block, Adjustment):
+            needed += [name for name in common if name.startswith("slider_")]
     for question in design.questions:
         needed.append(f"question_{question.name}")
         needed += [f"option_{option}" for option in question.options]
@@ -93,3 +109,5 @@ def missing_texts(design: Design, texts: Texts) -> list[str]:
 
 
 _ENDS = ("first", "last")
+_SOMETIMES = ("feedback_", "slider_")
+"""Beginnings of common texts that only some designs show."""

@@ -16,8 +16,18 @@ from typing import Any
 
 from eigenwalker._version import __version__
 from eigenwalker.experiment import store
-from eigenwalker.experiment.columns import COLUMNS, PAIRS, QUESTIONS, RATING, Column
-from eigenwalker.experiment.design import Design, Rating, SimilarPair
+from eigenwalker.experiment.columns import (
+    COLUMNS,
+    FIGURES,
+    ODD,
+    PAIRS,
+    QUESTIONS,
+    RATING,
+    RIGHT,
+    SETTINGS,
+    Column,
+)
+from eigenwalker.experiment.design import Design
 from eigenwalker.experiment.experiment_folder import ANSWERS, VERSIONS, Material
 from eigenwalker.experiment.showings import session_rows
 
@@ -68,10 +78,18 @@ DESCRIPTION = "dataset_description.json"
 
 
 def _columns(designs: list[Design]) -> tuple[Column, ...]:
-    blocks = [block for design in designs for block in design.blocks]
-    rating = RATING if any(isinstance(block, Rating) for block in blocks) else ()
-    pairs = PAIRS if any(isinstance(block, SimilarPair) for block in blocks) else ()
-    return (*COLUMNS, *rating, *pairs)
+    tasks = {block.task for design in designs for block in design.blocks}
+    added = [(RIGHT, {"choice", "same_different", "odd_one_out", "detection"})]
+    if any(getattr(block, "catch", None) for design in designs for block in design.blocks):
+        added = [(RIGHT, tasks)]
+    added += [
+        (RATING, {"rating"}),
+        (FIGURES, {"similar_pair", "same_different", "odd_one_out"}),
+        (PAIRS, {"similar_pair"}),
+        (ODD, {"odd_one_out"}),
+        (SETTINGS, {"adjustment"}),
+    ]
+    return (*COLUMNS, *(column for columns, of in added if of & tasks for column in columns))
 
 
 def _all_rows(database: Any, materials: dict[str, Material]) -> Iterator[dict[str, Any]]:
@@ -106,10 +124,11 @@ class _ParquetTable:
     """A Parquet file that grows by batches of rows."""
 
     MEASURED = ("_ms", "_deg")
+    NUMBERS = ("level", "setting", "setting_start")
     WHOLE = (
         *("observer", "session", "block", "trial", "attempt", "repeated", "interrupted"),
         *("practice", "test", "simulated", "rating", "page_hidden", "focus_lost"),
-        *("frames_shown", "frames_planned", "frames_dropped"),
+        *("frames_shown", "frames_planned", "frames_dropped", "correct", "catch"),
     )
 
     def __init__(self, path: Path, names: list[str]) -> None:
@@ -120,7 +139,7 @@ class _ParquetTable:
 
         kinds = {
             **{name: pa.float64() for name in names if name.endswith(self.MEASURED)},
-            "level": pa.float64(),
+            **dict.fromkeys(self.NUMBERS, pa.float64()),
             **dict.fromkeys(self.WHOLE, pa.int64()),
         }
         self._pa = pa

@@ -17,7 +17,7 @@ from eigenwalker.experiment.backup import forget_in_copies
 from eigenwalker.experiment.experiment_folder import DESIGN, VERSIONS, Material
 from eigenwalker.experiment.lab_page import lab_page
 from eigenwalker.experiment.link_keys import hash_of, keyed_hash, new_key, same, withdrawal_code
-from eigenwalker.experiment.order import session_trials
+from eigenwalker.experiment.order import trials_for_page
 from eigenwalker.experiment.rescue import take_items
 from eigenwalker.experiment.status import experiment_status
 from eigenwalker.experiment.stimulus_bundle import Bundle
@@ -241,9 +241,7 @@ class Service:
             if found is None:
                 raise Closed("closed")
             group, place = found
-        trials = session_trials(
-            design, material.walkers, group=group, place=place, session=len(begun)
-        )
+        trials = material.trials(group, place, len(begun))
         values = {
             "observer": observer,
             "number": len(begun) + 1,
@@ -413,11 +411,13 @@ class Service:
             "proof": proof,
             "number": row["number"],
             "language": row["language"],
-            "trials": json.loads(row["trials"]),
+            "trials": trials_for_page(design, json.loads(row["trials"])),
             "group": design.group(group).model_dump(mode="json"),
             "blocks": [block.model_dump(mode="json") for block in design.blocks],
             "picture": design.picture.model_dump(mode="json"),
-            "questions": [each.model_dump(mode="json") for each in design.questions],
+            "questions": [
+                each.model_dump(mode="json") for each in design.questions_in(row["number"])
+            ],
             "pace": design.pace.model_dump(mode="json"),
             "screen": design.screen.model_dump(mode="json"),
             "answered": [

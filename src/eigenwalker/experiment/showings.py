@@ -88,12 +88,12 @@ def _row(
     row = {
         "block": trial["block"],
         "trial": trial["trial"],
-        "stimulus": content.get("stimulus") or " ".join(trial["stimuli"]),
+        "stimulus": content.get("stimulus") or _stimuli(trial),
         "view_deg": trial["view_deg"],
         "information": trial["information"],
         "condition": trial["condition"],
         "level": content.get("level", trial.get("level")),
-        "walker": names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None,
+        "walker": _walker(trial, names),
         "response": " ".join(map(str, response)) if isinstance(response, list) else response,
         "response_by": content.get("response_by"),
         "response_device": content.get("response_device"),
@@ -106,19 +106,51 @@ def _row(
         "started_utc": started,
         "answer": answer["answer"] if answer else None,
     }
+    row["catch"] = int(trial.get("catch", False))
+    if "correct" in trial:
+        right = _texts(trial["correct"])
+        row["right_answer"] = " ".join(right)
+        if response is not None:
+            row["correct"] = int(str(response) in right)
     if trial["task"] == "rating":
         row["rating"] = response
-    elif trial["task"] == "similar_pair":
+    elif trial["task"] == "adjustment":
+        row["setting"] = response if _is_number(response) else None
+        row["setting_start"] = trial["levels"][trial["begins"]]
+    elif len(trial["walkers"]) > 1:
         shown = [names[walker] for walker in trial["walkers"]]
-        row |= dict(zip("abcd", shown, strict=True))
-        chosen = [shown[place] for place in _places(response)]
-        row |= dict(zip(("chosen_1", "chosen_2"), chosen, strict=False))
+        row |= dict(zip("abcd", shown, strict=False))
+        chosen = [shown[place] for place in _places(response, len(shown))]
+        columns = ("chosen_1", "chosen_2") if trial["task"] == "similar_pair" else ("chosen",)
+        row |= dict(zip(columns, chosen, strict=False))
     return row
 
 
-def _places(response: Any) -> list[int]:
-    two = isinstance(response, list) and len(response) == 2
-    return response if two and all(place in (0, 1, 2, 3) for place in response) else []
+def _stimuli(trial: Row) -> str:
+    """Return the names of what a trial shows; of many levels one is shown, which is unknown."""
+    return "" if "levels" in trial else " ".join(trial["stimuli"])
+
+
+def _walker(trial: Row, names: Sequence[str]) -> str | None:
+    """Return the one walker that a trial shows."""
+    if not trial["walkers"]:
+        return "average"
+    return names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None
+
+
+def _texts(right: Any) -> list[str]:
+    return [str(each) for each in (right if isinstance(right, list) else [right])]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _places(response: Any, number: int) -> list[int]:
+    """Return the places that were chosen: one, or two of a pair."""
+    given = [response] if _is_number(response) else response
+    known = isinstance(given, list) and len(given) <= 2
+    return [place for place in given if type(place) is int and 0 <= place < number] if known else []
 
 
 def _flags(content: Row, design: Design) -> str:
