@@ -351,9 +351,9 @@ class Design(Part):
 
     def questions_in(self, session: int) -> list[Question]:
         """Return the questions of a session, which counts from 1."""
-        asked = {"each", *(["first"] if session == 1 else [])}
-        asked |= {"last"} if session == self.n_sessions else set()
-        return [question for question in self.questions if question.sessions in asked]
+        kinds = {"each", *(["first"] if session == 1 else [])}
+        kinds |= {"last"} if session == self.n_sessions else set()
+        return [question for question in self.questions if question.sessions in kinds]
 
     def view_deg(self, group: Group, session_view: float | None) -> float:
         """Return the view of a session: its own, that of the group, or that of the picture."""

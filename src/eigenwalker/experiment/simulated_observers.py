@@ -161,11 +161,11 @@ class _Session:
 
     def _questions(self, when: str) -> list[dict[str, Any]]:
         """Answers to questions, by chance."""
-        asked = [each for each in self.design.questions_in(self.number) if each.when == when]
-        if not asked:
+        wanted = [each for each in self.design.questions_in(self.number) if each.when == when]
+        if not wanted:
             return []
         answers: dict[str, str] = {}
-        for question in asked:
+        for question in wanted:
             low, high = question.least, question.most
             low = (high - 50 if high is not None else 18) if low is None else low
             high = low + 50 if high is None else high
