@@ -81,7 +81,7 @@ it("sets aside what is refused for good, and sends what is behind it", async () 
   const sender = new Sender(outbox, "key", 1, () => {});
   await sender.drain();
   expect(sent.slice(0, 5).map((names) => names.length)).toEqual([3, 2, 1, 1, 1]);
-  const left = await outbox.items(1);
+  const left = outbox.items("key", 1);
   expect(left.map(({ item, refused }) => [item.answer, refused?.slice(0, 3)])).toEqual([[bad, "422"]]);
 });
 
@@ -93,7 +93,7 @@ it("keeps an answer until that very answer is confirmed", async () => {
   answers([409, ([name]) => ({ confirmed: [], refused: [{ answer: name, outcome: "other content" }] })]);
   const sender = new Sender(outbox, "key", 1, () => {});
   await sender.drain();
-  const left = await outbox.items(1);
+  const left = outbox.items("key", 1);
   expect(left.map(({ item, refused }) => [item.answer, refused])).toEqual([[first.answer, "other content"]]);
 });
 

@@ -15,6 +15,8 @@ const info = {
   parameters: {
     /** The parsed contents of stimulus files: above left and right, below left and right. */
     stimuli: { type: ParameterType.COMPLEX, default: undefined },
+    /** Shares of a stride after which the walkers begin; none where all begin alike. */
+    starts: { type: ParameterType.FLOAT, array: true, default: [] as number[] },
     /** How many figures are chosen; 0 where buttons answer. */
     choose: { type: ParameterType.INT, default: 0 },
     /** Keys of the figures, or of the buttons, one each. */
@@ -52,6 +54,7 @@ class FiguresPlugin {
     const mannequin = (trial.mannequin as MannequinPainter | null) ?? undefined;
     const canvases = stimuli.map(() => make("canvas", { "aria-hidden": "true" }));
     const painters = stimuli.map((stimulus, i) => painterOn(canvases[i]!, stimulus, trial.scale!, mannequin));
+    const beginnings = stimuli.map(({ figures }, i) => (trial.starts![i] ?? 0) / (figures[0]?.walker?.frequency_hz ?? 1));
     const isChoice = trial.choose! > 0;
     const figures = canvases.map((canvas, i) => {
       if (!isChoice) return make("div", { class: "figure", role: "img", "aria-label": trial.labels![i]! }, canvas);
@@ -110,7 +113,7 @@ class FiguresPlugin {
         return false;
       }
       if (elapsedMs < shownMs - half) {
-        stimuli.forEach((stimulus, i) => painters[i]!.paint((elapsedMs / 1000) % stimulus.timing.duration_s));
+        painters.forEach((painter, i) => painter.paint(elapsedMs / 1000 + beginnings[i]!));
         log.frame(elapsedMs, first);
       } else if (isShown) {
         isShown = false;

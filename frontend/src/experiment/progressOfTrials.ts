@@ -45,7 +45,7 @@ export class TrialProgress {
     const { start = 0, down = 1 } = this.block(trial);
     const before = this.session.trials.filter((each) => each.block === trial.block && each.trial < trial.trial);
     const answered = before.filter((each) => this.responses.has(each.trial));
-    const correct = answered.map((each) => this.responses.get(each.trial) === each.correct);
+    const correct = answered.map((each) => isRight(each, this.responses.get(each.trial)));
     return nextLevel(correct, { start, down, nLevels: trial.levels!.length });
   }
 
@@ -62,7 +62,16 @@ export class TrialProgress {
     return trials.filter((trial) => (!trial.spare || shown.has(trial)) && !this.state(trial.trial).done);
   }
 
+  /** Practice is shown again. */
+  practiseAgain(): void {
+    for (const { trial, practice } of this.session.trials) if (practice) this.state(trial).done = false;
+  }
+
   get anyBegun(): boolean {
     return [...this.states.values()].some((state) => state.attempts > 0);
   }
 }
+
+/** Whether a response is the right one, or one of them. */
+export const isRight = ({ correct }: Trial, response: unknown): boolean =>
+  [correct].flat().some((each) => each !== undefined && String(each) === String(response));

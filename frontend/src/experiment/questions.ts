@@ -15,7 +15,7 @@ function fieldOf(pages: Pages, { name, kind, options }: Question): HTMLElement {
   const text = pages.text(`question_${name}`);
   if (kind !== "choice") {
     const input = make("input", { type: kind === "number" ? "number" : "text", id: `question-${name}`, maxlength: 1000 });
-    return make("p", {}, make("label", { for: input.id }, text), input);
+    return make("div", { class: "question" }, make("label", { for: input.id }, text), input);
   }
   const choices = options.map((option) => {
     const id = `question-${name}-${option}`;

@@ -4,7 +4,8 @@ import { itemOf } from "./answers";
 import type { Kept, Outbox } from "./outbox";
 import { Refusal, sendItems, type Outcome } from "./server";
 
-const MAX_ITEMS = 100;
+/** So few that making a request takes no frame. */
+const MAX_ITEMS = 25;
 const LONGEST_WAIT_MS = 20_000;
 
 export class Sender {
@@ -25,20 +26,25 @@ export class Sender {
   }
 
   /** Items that are neither confirmed nor refused. */
-  async unsent(): Promise<readonly Kept[]> {
-    return (await this.outbox.items(this.session)).filter((kept) => kept.refused === null);
+  unsent(): readonly Kept[] {
+    return this.outbox.items(this.key, this.session).filter((kept) => kept.refused === null);
   }
 
-  /** Send now and in the background whatever there is. */
+  /** Send in the background whatever there is; where the server was not reached, when it is time to try again. */
+  offer(): void {
+    this.running ??= this.run().finally(() => (this.running = null));
+  }
+
+  /** Send now. */
   hurry(): void {
     this.wait = 500;
     this.wake();
-    this.running ??= this.run().finally(() => (this.running = null));
+    this.offer();
   }
 
   /** Send until nothing is left. */
   async drain(): Promise<void> {
-    while (!this.ended && (await this.unsent()).length > 0) {
+    while (!this.ended && this.unsent().length > 0) {
       this.hurry();
       await this.running;
     }
@@ -50,7 +56,7 @@ export class Sender {
   }
 
   private async run(): Promise<void> {
-    for (let items = await this.unsent(); items.length > 0 && !this.ended; items = await this.unsent()) {
+    for (let items = this.unsent(); items.length > 0 && !this.ended; items = this.unsent()) {
       try {
         await this.send(items.slice(0, MAX_ITEMS));
         this.reached = true;
@@ -78,7 +84,7 @@ export class Sender {
     try {
       outcome = await sendItems(this.key, this.session, items.map((kept) => kept.item));
     } catch (error) {
-      if (!(error instanceof Refusal) || ![413, 422].includes(error.status)) throw error;
+      if (!(error instanceof Refusal) || ![400, 413, 422].includes(error.status)) throw error;
       if (items.length > 1) {
         const half = Math.ceil(items.length / 2);
         await this.send(items.slice(0, half));
@@ -100,5 +106,21 @@ export class Sender {
     await this.outbox.setAside(kept, reason);
     const { answer, kind } = kept.item;
     if (kind !== "event") await this.outbox.put(itemOf("event", { event: "refused", answer, reason }), this.key, this.session);
+  }
+}
+
+/** Try once to send what earlier observers, or sessions, left on this machine. */
+export async function sendLeft(outbox: Outbox, key: string, session: number): Promise<void> {
+  for (const left of outbox.others(key, session)) {
+    for (let from = 0; from < left.length; from += MAX_ITEMS) {
+      const some = left.slice(from, from + MAX_ITEMS);
+      try {
+        await outbox.remove((await sendItems(some[0]!.key, some[0]!.session, some.map(({ item }) => item))).confirmed);
+      } catch (error) {
+        const isGone = error instanceof Refusal && error.status === 410; // deleted as the observer asked
+        if (isGone) await outbox.remove(left.map(({ item }) => item.answer));
+        break;
+      }
+    }
   }
 }

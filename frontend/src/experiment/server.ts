@@ -1,7 +1,7 @@
 /** The server: the one module that calls `fetch`. */
 
 import type { Item } from "./answers";
-import type { SessionContent, StimulusFile, Welcome } from "./session";
+import type { End, SessionContent, StimulusFile, Welcome } from "./session";
 
 /** An answer of the server that is not the one asked for; status 0 is none at all. */
 export class Refusal extends Error {
@@ -25,17 +25,16 @@ export interface Outcome {
   readonly refused: readonly { readonly answer: string; readonly outcome: string }[];
 }
 
-export interface End {
-  readonly withdrawal_code?: string;
-  readonly completion_code?: string;
-  readonly return_url?: string;
-}
-
 export type Site = Readonly<Record<string, string>>;
 
 const LONGEST_WAIT_MS = 30_000;
+const LONGEST_LOAD_MS = 600_000;
 
-async function ask(key: string, path: string, body: unknown, taken: readonly number[] = [200]): Promise<Response> {
+/** The server's clock at its last answer; a machine's own may be wrong. */
+let serverMs = Date.now();
+export const serverTimeMs = (): number => serverMs;
+
+async function ask(key: string, path: string, body: unknown, taken: readonly number[] = [200], longestMs = LONGEST_WAIT_MS): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(`/api/${path}`, {
@@ -43,11 +42,12 @@ async function ask(key: string, path: string, body: unknown, taken: readonly num
       headers: { authorization: `Bearer ${key}`, "content-type": "application/json" },
       body: JSON.stringify(body),
       cache: "no-store",
-      signal: AbortSignal.timeout(LONGEST_WAIT_MS),
+      signal: AbortSignal.timeout(longestMs),
     });
   } catch (error) {
     throw new Refusal(0, String(error));
   }
+  serverMs = Date.parse(response.headers.get("date") ?? "") || serverMs;
   if (taken.includes(response.status)) return response;
   const content = (await response.json().catch(() => ({}))) as Record<string, unknown>;
   const wait = Number(response.headers.get("retry-after"));
@@ -70,8 +70,24 @@ export const start = (
   asked: { readonly consent: string; readonly language: string; readonly own_key: string; readonly site: Site },
 ): Promise<SessionContent> => json(ask(key, "start", asked));
 
-export const stimuli = (key: string, session: number): Promise<Readonly<Record<string, StimulusFile>>> =>
-  json(ask(key, "stimuli", { session }));
+/** All stimuli of a session; `report` is told which share has come. */
+export async function stimuli(
+  key: string,
+  session: number,
+  report: (share: number) => void,
+): Promise<Readonly<Record<string, StimulusFile>>> {
+  const response = await ask(key, "stimuli", { session }, [200], LONGEST_LOAD_MS);
+  const size = Number(response.headers.get("content-length"));
+  if (!response.body || !size) return json(Promise.resolve(response));
+  let read = 0;
+  const counted = new TransformStream<Uint8Array, Uint8Array>({
+    transform(chunk, out) {
+      report(Math.min((read += chunk.byteLength) / size, 1));
+      out.enqueue(chunk);
+    },
+  });
+  return json(Promise.resolve(new Response(response.body.pipeThrough(counted))));
+}
 
 export const sendItems = (key: string, session: number, items: readonly Item[]): Promise<Outcome> =>
   json(ask(key, "answers", { session, items }, [200, 409]));

@@ -4,13 +4,17 @@ import { initJsPsych, type JsPsych } from "jspsych";
 
 import WalkerPlugin from "../../plugin-walker/src/index";
 import { mannequinInPage, type MannequinPainter } from "../canvas/mannequinLoader";
-import { make } from "../page/elements";
+import { find, make } from "../page/elements";
+import AdjustmentPlugin from "./adjustmentPlugin";
 import { itemOf, type Content, type Item } from "./answers";
 import FiguresPlugin from "./figuresPlugin";
 import type { Pages } from "./pages";
-import type { TrialProgress } from "./progressOfTrials";
+import { expectKeys } from "./printedKeys";
+import { isRight, type TrialProgress } from "./progressOfTrials";
+import type { ScreenWatch } from "./screenWatch";
 import type { Block, SessionContent, StimulusFile, Trial } from "./session";
 import StepPlugin from "./stepPlugin";
+import type { StopControl } from "./stopControl";
 
 type TrialDescription = Extract<Parameters<JsPsych["run"]>[0], readonly unknown[]>[number];
 
@@ -20,7 +24,9 @@ export interface TrialsOptions {
   readonly progress: TrialProgress;
   readonly pages: Pages;
   /** Factor of the size in the stimulus files. */
-  readonly scale: number;
+  readonly scale: () => number;
+  readonly watch: ScreenWatch;
+  readonly stopping: StopControl;
   /** Keeps an item; the promise is kept when it is safe. */
   readonly keep: (item: Item) => Promise<void>;
   /** Whether the observer asked to stop. */
@@ -36,68 +42,108 @@ interface Shown {
 
 /** Show all trials that are to be done; the promise is kept when there are none, or at a stop. */
 export async function runTrials(options: TrialsOptions): Promise<void> {
-  const { pages, progress } = options;
+  const { pages, progress, stopping, watch, keep } = options;
   const jsPsych = initJsPsych({ display_element: pages.showTrials(), override_safe_mode: true });
   const mannequin = await mannequinFor(options);
+  const goOn = (text: string): Promise<string> =>
+    pages.ask([pages.title(), pages.paragraphs(text)], [["continue", "continue"]]);
   let unanswered = 0;
   for (let trial = progress.next(); trial && !options.stopped(); ) {
+    await watch.check();
     pages.showTrials();
-    await jsPsych.run([blank(options), oneTrial(trial, options, mannequin)]);
+    const results: Result[] = [];
+    await jsPsych.run([blank(options), oneTrial(trial, options, mannequin, (result) => results.push(result))]);
+    jsPsych.data.reset(); // what was kept is in the outbox
+    await stopping.answered;
     if (options.stopped()) return;
     const block = progress.block(trial);
-    unanswered = progress.state(trial.trial).done && !lastTimedOut(jsPsych) ? 0 : unanswered + 1;
+    const [result] = results; // none of an interrupted trial
+    if (block.feedback && result?.answered) await jsPsych.run([feedback(isRight(trial, result.response), options)]);
+    if (result) unanswered = result.answered ? 0 : unanswered + 1;
     if (unanswered > 0 && unanswered >= (block.pause_after ?? (block.repeats ?? 0) + 1)) {
       unanswered = 0;
-      await options.keep(itemOf("event", { event: "pause" }, trial.trial));
-      await pages.ask([pages.title(), pages.paragraphs("pause")], [["continue", "continue"]]);
+      await keep(itemOf("event", { event: "pause" }, trial.trial));
+      await goOn("pause");
     }
     const next = progress.next();
-    if (next && next.block !== trial.block && block.break_after) {
-      await pages.ask([pages.title(), pages.paragraphs("break")], [["continue", "continue"]]);
-    }
+    const isBetween = next !== null && next.block !== trial.block && block.break_after;
+    if (isBetween || (next && next !== trial && trial.break_after)) await goOn("break");
     trial = next;
   }
 }
 
-const lastTimedOut = (jsPsych: JsPsych): boolean =>
-  (jsPsych.data.getLastTrialData().values()[0] as Shown | undefined)?.response === null;
+/** What became of a trial. */
+interface Result {
+  readonly answered: boolean;
+  readonly response: unknown;
+}
 
 /** Black, or the number of trials that remain. */
 function blank({ session, progress, pages }: TrialsOptions): TrialDescription {
   const count = progress.todo().length;
-  return {
-    type: StepPlugin,
-    step: async (display: HTMLElement) => {
-      const text = session.pace.count_remaining ? [make("p", { class: "remaining" }, pages.text("remaining", { count }))] : [];
-      display.replaceChildren(...text);
-      await new Promise((resolve) => setTimeout(resolve, 1000 * session.pace.blank_s));
-      display.replaceChildren();
-    },
-  };
+  const text = session.pace.count_remaining ? [make("p", { class: "remaining" }, pages.text("remaining", { count }))] : [];
+  return step(text, session.pace.blank_s);
 }
 
-function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPainter | null): TrialDescription {
-  const { progress, keep } = options;
+/** Whether the answer was right, in words, so that it is not told by colours alone. */
+function feedback(right: boolean, { session, pages }: TrialsOptions): TrialDescription {
+  const name = right ? "feedback_right" : "feedback_wrong";
+  const text = make("p", { class: `feedback ${name}`, role: "status" }, pages.text(name));
+  return step([text], session.pace.feedback_s ?? 1);
+}
+
+const step = (content: readonly Node[], seconds: number): TrialDescription => ({
+  type: StepPlugin,
+  step: async (display: HTMLElement) => {
+    display.replaceChildren(...content);
+    await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+    display.replaceChildren();
+  },
+});
+
+function oneTrial(
+  trial: Trial,
+  options: TrialsOptions,
+  mannequin: MannequinPainter | null,
+  note: (result: Result) => void,
+): TrialDescription {
+  const { progress, keep, stopping } = options;
   const block = progress.block(trial);
   const attempt = progress.state(trial.trial).attempts + 1;
-  const place = trial.levels ? progress.level(trial) : null;
-  const level = place === null ? {} : { level: trial.levels![place], stimulus: trial.stimuli[place] };
+  const ofStaircase = trial.levels && trial.begins === undefined ? progress.level(trial) : null;
+  const scale = options.scale();
   let watched: ReturnType<typeof watch>;
+  let wasAsked = false;
+  const onStop = (): void => void (wasAsked ||= stopping.isOpen);
+  let keys = (): void => {};
+  const stimuli = ofStaircase === null ? trial.stimuli : [trial.stimuli[ofStaircase]!];
+  const parameters = shown({ ...trial, stimuli }, block, options, mannequin, scale);
+  const choices = parameters["choices"] ?? parameters["keys"];
   return {
-    ...shown(place === null ? trial : { ...trial, stimuli: [trial.stimuli[place]!] }, block, options, mannequin),
+    ...parameters,
     on_start: () => {
-      const item = itemOf("begun", {}, trial.trial, attempt);
       progress.note({ kind: "begun", trial: trial.trial, attempt, outcome: null });
-      void keep(item);
+      void keep(itemOf("begun", {}, trial.trial, attempt));
+      keys = expectKeys((choices ?? []) as readonly string[]);
+      document.addEventListener("focusin", onStop);
+      onStop();
       watched = watch();
     },
     // jsPsych waits for this before the next trial begins
     on_finish: async (data: Shown & Content) => {
+      keys();
+      onStop();
+      document.removeEventListener("focusin", onStop);
+      const around = watched.end();
+      if (wasAsked) return keep(itemOf("event", { event: "asked to stop" }, trial.trial, attempt)); // shown anew
       const outcome = data.response !== null ? "answered" : block.task === "similar_pair" ? "timeout" : "none";
-      const response = meaning(data, block, options.pages);
-      const content = { ...factsOf(data, watched.end()), ...level, response, outcome, scale: options.scale };
+      const response = meaning(data, trial, block, options.pages);
+      const place = trial.begins === undefined ? ofStaircase : Number(data.response);
+      const level = place === null ? {} : { level: trial.levels![place], stimulus: trial.stimuli[place] };
+      const content = { ...factsOf(data, around), ...level, response, outcome, scale };
       await keep(itemOf("answer", content, trial.trial, attempt));
       progress.note({ kind: "answer", trial: trial.trial, attempt, outcome, response });
+      note({ answered: outcome === "answered", response });
     },
   };
 }
@@ -106,40 +152,80 @@ function oneTrial(trial: Trial, options: TrialsOptions, mannequin: MannequinPain
 function shown(
   trial: Trial,
   block: Block,
-  { session, stimuli, pages, scale }: TrialsOptions,
+  { session, stimuli, pages }: TrialsOptions,
   mannequin: MannequinPainter | null,
-): TrialDescription {
+  scale: number,
+): TrialDescription & Record<string, unknown> {
   const files = trial.stimuli.map((name) => stimuli[name]);
   const fileS = (files[0] as { timing: { duration_s: number } }).timing.duration_s;
   const durationMs = 1000 * Math.max(session.picture.duration_s, fileS);
-  if (block.task === "similar_pair") {
-    const keys = files.map((_, i) => String(i + 1));
-    const labels = keys.map((number) => pages.text("figure", { number }));
-    return { type: FiguresPlugin, stimuli: files, choose: 2, keys, labels, trial_duration: 1000 * block.limit_s!, mannequin, scale };
+  const buttons = block.choices?.map((name) => pages.text(`button_${name}`)) ?? [];
+  const choices = block.choices?.map((name) => keyOf(name, pages)) ?? [];
+  const numbers = files.map((_, i) => String(i + 1));
+  const figures = {
+    type: FiguresPlugin,
+    stimuli: files,
+    starts: trial.starts ?? [],
+    keys: numbers,
+    labels: numbers.map((number) => pages.text("figure", { number })),
+    trial_duration: block.limit_s ? 1000 * block.limit_s : durationMs,
+    mannequin,
+    scale,
+  };
+  switch (block.task) {
+    case "similar_pair":
+      return { ...figures, choose: 2 };
+    case "odd_one_out":
+      return { ...figures, choose: 1 };
+    case "same_different":
+      return { ...figures, keys: choices, buttons };
+    case "adjustment":
+      return {
+        type: AdjustmentPlugin,
+        stimuli: files,
+        begins: trial.begins,
+        label: pages.text("slider_label"),
+        button: pages.text("slider_set"),
+        mannequin,
+        scale,
+      };
+    case "choice":
+    case "detection":
+      return { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale, choices, buttons };
+    case "rating": {
+      const name = block.scale ?? session.group.scale ?? "";
+      const steps = Array.from({ length: block.steps! }, (_, i) => String(i + 1));
+      const ends = [pages.text(`${name}_first`), pages.text(`${name}_last`)] as const;
+      const on_load = (): void => labelEnds(ends);
+      const css_classes = ["above"];
+      return { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale, choices: steps, buttons: steps, css_classes, on_load };
+    }
   }
-  const single = { type: WalkerPlugin, stimulus: files[0], trial_duration: durationMs, scale };
-  if (block.task === "choice" || block.task === "detection") {
-    return {
-      ...single,
-      choices: block.choices!.map((name) => pages.text(`key_${name}`).toLowerCase()),
-      buttons: block.choices!.map((name) => pages.text(`button_${name}`)),
-    };
-  }
-  const scaleName = block.scale ?? session.group.scale ?? "";
-  const steps = Array.from({ length: block.steps! }, (_, i) => String(i + 1));
-  const buttons = steps.map((step, i) =>
-    i === 0 ? pages.text(`${scaleName}_first`) : i === steps.length - 1 ? pages.text(`${scaleName}_last`) : step,
-  );
-  return { ...single, choices: steps, buttons, css_classes: ["above"] };
 }
 
-/** What the observer chose, in the words of the design: a class, a step from 1, two places. */
-function meaning({ response, response_by }: Shown, block: Block, pages: Pages): unknown {
-  if (response === null || block.task === "similar_pair") return response;
+/** Write what the ends of a scale mean below its first and last button. */
+function labelEnds([first, last]: readonly [string, string]): void {
+  const row = find(".jspsych-walker-buttons", HTMLElement);
+  const buttons = [...row.querySelectorAll("button")];
+  for (const [each, label] of [[buttons[0]!, first], [buttons.at(-1)!, last]] as const) {
+    each.setAttribute("aria-label", `${each.textContent}, ${label}`);
+  }
+  const half = Math.floor(buttons.length / 2);
+  const end = (text: string, columns: string): HTMLElement =>
+    make("span", { class: "end", "aria-hidden": "true", style: `grid-column: ${columns}` }, text);
+  row.append(end(first, `1 / ${half + 1}`), end(last, `${half + 1} / ${buttons.length + 1}`));
+}
+
+const keyOf = (name: string, pages: Pages): string => pages.text(`key_${name}`).toLowerCase();
+
+/** What the observer chose, in the words of the design: a class, a step from 1, places, or a level. */
+function meaning({ response, response_by }: Shown, trial: Trial, block: Block, pages: Pages): unknown {
+  if (response === null || block.task === "similar_pair" || block.task === "odd_one_out") return response;
   const byKey = response_by === "key";
+  if (block.task === "adjustment") return trial.levels![Number(response)];
   if (block.task === "rating") return byKey ? Number(response) : Number(response) + 1;
-  const names = block.choices!;
-  return byKey ? names.find((name) => pages.text(`key_${name}`).toLowerCase() === response) : names[Number(response)];
+  if (block.task === "same_different" || !byKey) return block.choices![Number(response)];
+  return block.choices!.find((name) => keyOf(name, pages) === response);
 }
 
 /** Names of what a plugin measured, with their units. */

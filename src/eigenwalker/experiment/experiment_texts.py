@@ -20,7 +20,10 @@ from eigenwalker.experiment.design import (
     SimilarPair,
 )
 
-PAGES = ("consent", "instructions", "break", "pause", "welcome_back", "debriefing", "warning")
+PAGES = (
+    *("consent", "instructions", "break", "pause", "welcome_back", "debriefing", "warning"),
+    "blind_spot",
+)
 """Texts that are pages: paragraphs, lists, emphasis. All others are plain."""
 _SECTION = re.compile(r"(?m)^# +([A-Za-z0-9_-]+) *$")
 _TEXTS = files("eigenwalker.experiment").joinpath("texts")
