@@ -38,16 +38,23 @@ export async function askDistance(pages: Pages, pxPerCm: number, assumedMm: numb
     inputmode: "decimal",
     ...RANGE_CM,
     step: "any",
-    value: Math.round(assumedMm / 10),
   });
   const label = make("label", { for: "distance" }, pages.text("distance_label"));
   const wrong = make("p", { role: "alert", class: "wrong" });
   const canMeasure = (10 * window.innerWidth) / pxPerCm >= NEEDED_MM;
+  centimetres.onkeydown = (event) => {
+    if (event.key === "Enter") centimetres.closest("main")?.querySelector<HTMLButtonElement>(".first")?.click();
+  };
   for (;;) {
     const answer = await pages.ask(
       [pages.title(), pages.paragraph("distance"), make("p", {}, label, centimetres), wrong],
-      [["told", "continue"], ...(canMeasure ? ([["measure", "distance_measure"]] as const) : [])],
+      [
+        ["told", "continue"],
+        ...(canMeasure ? ([["measure", "distance_measure"]] as const) : []),
+        ["unknown", "distance_unknown"],
+      ],
     );
+    if (answer === "unknown") return assumedDistance(assumedMm);
     if (answer === "measure") {
       const settings = await blindSpot(pages, pxPerCm);
       if (settings) return ofSettings(settings);
@@ -57,6 +64,7 @@ export async function askDistance(pages: Pages, pxPerCm: number, assumedMm: numb
         return { ...assumedDistance(10 * told), distance_method: "told" };
       }
       wrong.textContent = pages.text("distance_wrong", RANGE_CM);
+      centimetres.setAttribute("aria-invalid", "true");
     }
   }
 }
