@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import eigenwalker as ew
 from eigenwalker.io.read import read_mocap
@@ -82,6 +83,19 @@ def test_both_shanks_of_wrong_length_are_found(person):
 def test_a_body_twice_or_half_as_broad_is_found(person):
     for factor in (0.5, 2.0):
         assert "breadth" in kinds(person.copy(data=person.values * [1, factor, 1]))
+
+
+@pytest.mark.parametrize(("torso", "factor"), [(1.4, 0.55), (0.75, 1.8)])
+def test_skeletons_that_are_broad_or_narrow_themselves_are_found_once_stretched(
+    person, torso, factor
+):
+    """Where hips and shoulders alone could be those of a skeleton of the other kind."""
+    skeleton = person.copy(deep=True)
+    for part in ("hip", "shoulder"):
+        skeleton.loc[{"marker": [f"left_{part}", f"right_{part}"], "axis": "y"}] *= torso
+    assert "breadth" not in kinds(skeleton)
+    stretched_whole = skeleton * xr.DataArray([1, factor, 1], dims="axis")
+    assert "breadth" in kinds(stretched_whole)
 
 
 def test_a_camera_that_makes_all_lengths_vary_tells_nothing_of_links(person):

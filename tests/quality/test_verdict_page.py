@@ -44,7 +44,7 @@ LIMITS = {
     "unequal": (joints.SIDE_FACTOR,),
     "place": (joints.ONE_PLACE,),
     "middle": (joints.MIDDLE, joints.NEAR_MIDDLE),
-    "breadth": (*joints.TORSO_FACTORS, *joints.BREADTH_FACTORS),
+    "breadth": (*joints.TORSO_FACTORS, *joints.BREADTH_FACTORS, *sum(joints.BOTH_FACTORS, ())),
     "link": (joints.LINK_VARIATION, joints.LINK_OF_LIMBS),
 }
 

@@ -49,6 +49,11 @@ show, 0.66 to 1.32."""
 TORSO_FACTORS = (0.65, 1.6)
 """The same of hips and shoulders alone, on which posture tells nothing; shown are 0.71 to 1.51."""
 
+BOTH_FACTORS = (0.8, 1.35), (0.7, 1.42)
+"""Ranges of hips and shoulders, and of all, that nobody leaves to the same side: where hips and
+shoulders of a skeleton are 0.72 or 1.51 of those of people its other joints are not, and the mean
+of all is 0.74 and more or 1.33 and less. In a body that is stretched all are."""
+
 NARROWEST = 0.25
 """Share of `BREADTHS` below which a single breadth counts as this, so that none decides alone."""
 
@@ -253,6 +258,10 @@ def _sides(path: dict[str, np.ndarray], stature: float) -> Iterator[WrongJoint]:
         yield WrongJoint("breadth", (), torso)
     elif len(logs) == len(BREADTHS) and not BREADTH_FACTORS[0] <= whole <= BREADTH_FACTORS[1]:
         yield WrongJoint("breadth", (), whole)
+    elif len(logs) == len(BREADTHS):
+        (narrow, broad), (narrowest, broadest) = BOTH_FACTORS
+        if (torso < narrow and whole < narrowest) or (torso > broad and whole > broadest):
+            yield WrongJoint("breadth", (), whole)
 
 
 def _left_by_legs(path: dict[str, np.ndarray]) -> np.ndarray:
