@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ def people() -> ew.Population:
 
 
 def test_setting_traits_moves_the_walker(people):
-    widget = show(people)
+    widget = show(people, keep_size=True)
     widget.alpha = {"sex": 2, "weight_kg": -1}
     vector = people.average + 2 * ew.trait_axis(people, "sex").step
     vector -= ew.trait_axis(people, "weight").step
@@ -35,7 +36,9 @@ def test_setting_traits_moves_the_walker(people):
 
 
 def test_everything_chosen_makes_the_walker(people):
-    widget = show(people, start=4, part="structure", kind="mean_difference", alpha={"sex": 3})
+    widget = show(
+        people, keep_size=True, start=4, part="structure", kind="mean_difference", alpha={"sex": 3}
+    )
     axis = ew.trait_axis(people, "sex", part="structure", kind="mean_difference")
     np.testing.assert_allclose(widget.vector, people.X[4] + 3 * axis.step, atol=1e-5)
     widget.strengths = [0, 1, 1, 1]
@@ -63,10 +66,29 @@ def test_numbers_beyond_the_sliders_are_refused(people, chosen, said):
 
 def test_ones_own_walker_moves_along_traits_of_a_population(people):
     other = people.walkers[9]
-    widget = show(other, population=people.drop([9]), alpha={"sex": -1})
     rest = people.drop([9])
+    widget = show(other, population=rest, alpha={"sex": -1}, keep_size=True)
     step = ew.trait_axis(rest, "sex").step
     np.testing.assert_allclose(widget.vector, rest.vector(other) - step, atol=1e-5)
+
+
+def test_size_is_divided_out_until_it_is_kept(people):
+    """Troje (2002), eq. 12, as on the page: the slider of sex makes nobody small."""
+    widget = show(people, alpha={"sex": 2})
+    for shown, keep in ((people.size_normalised(), False), (people, True)):
+        widget.keep_size = keep
+        expected = shown.average + 2 * ew.trait_axis(shown, "sex").step
+        np.testing.assert_allclose(widget.vector, expected, atol=1e-5)
+
+
+def test_ones_own_walker_has_the_size_of_the_average_until_it_is_kept(people):
+    one = people.walkers[2]
+    tall = replace(one, p0=1.2 * one.p0, p=1.2 * one.p)
+    widget = show(tall, population=people)
+    average = people.size_normalised().average[:45]
+    assert widget.vector[:45] @ average == pytest.approx(average @ average, rel=1e-6)
+    widget.keep_size = True
+    np.testing.assert_allclose(widget.vector, people.vector(tall), atol=1e-5)
 
 
 def test_a_walker_alone_is_shown_as_it_is():
@@ -228,6 +250,19 @@ def test_hand_and_python_move_the_same_walker(people, browser, tmp_path):
     page.wait_for_function("Object.keys(window.saved.alpha).length === 0")
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("window.saved.playing === true")
+    page.close()
+
+
+def test_the_switch_for_size_is_read_in_python_and_set_by_it(people, browser, tmp_path):
+    page = opened(browser, show(people, playing=False, alpha={"sex": -6}), tmp_path)
+    switch = page.get_by_label("Keep people's size")
+    assert not switch.is_checked()
+    switch.check()
+    page.wait_for_function("window.saved.keep_size === true")
+    page.evaluate("window.model.set('keep_size', false)")
+    page.wait_for_function(
+        "!document.querySelector('#here').shadowRoot.querySelector('[type=checkbox]').checked"
+    )
     page.close()
 
 

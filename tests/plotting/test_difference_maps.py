@@ -23,7 +23,7 @@ from eigenwalker.plotting.difference_tables import (
     short_names,
 )
 from eigenwalker.plotting.fitted_weights import figure_predictions, figure_shares, figure_weights
-from eigenwalker.plotting.style import BLUE, RED
+from eigenwalker.plotting.style import PURPLE, TEAL
 from eigenwalker.simulation.walk import simulate_walk
 
 AWKWARD = "<b>$x_{1$ & \\frac.c3d"
@@ -44,7 +44,7 @@ def test_the_map_of_a_walk_is_dark_along_its_period(walk):
     np.testing.assert_array_equal(shown, cells.values)
     rows, columns = np.searchsorted(times, [0.5, 0.5 + looped.period_s])
     assert shown[rows, columns] < 0.1 * shown.mean()
-    assert to_rgb(axes.lines[0].get_color()) == to_rgb(RED)
+    assert to_rgb(axes.lines[0].get_color()) == to_rgb(PURPLE)
     np.testing.assert_allclose(axes.lines[0].get_xydata(), line[:, ::-1])
 
 
@@ -61,14 +61,14 @@ def test_the_path_of_two_strides_runs_on_through_the_repeated_map(walk):
     along = picture.values[rows, columns]
     assert along.mean() == pytest.approx(registered.cost, rel=0.02)
     axes = figure_maps([picture]).axes[0]
-    assert to_rgb(axes.patches[0].get_edgecolor()[:3]) == to_rgb(BLUE)
+    assert to_rgb(axes.patches[0].get_edgecolor()[:3]) == to_rgb(TEAL)
 
 
 def test_two_walks_lie_over_each_other_in_their_colours(walk):
     markers = [str(name) for name in walk.marker.values]
     figure = figure_two_walks(walk.values, walk.values + 5, markers, names=("a", AWKWARD))
     inks = {to_rgb(text.get_color()) for text in figure.axes[0].texts if text.get_text() in "a"}
-    assert inks == {to_rgb(BLUE)}
+    assert inks == {to_rgb(TEAL)}
     figure.savefig(io.BytesIO(), format="svg")
 
 

@@ -19,7 +19,7 @@ from eigenwalker.decomposition import decompose_pca
 from eigenwalker.plotting.components import figure_scores, figure_variance, scores_of
 from eigenwalker.plotting.curves import figure_curves, figure_regression_curves
 from eigenwalker.plotting.eigenpostures import figure_eigenpostures
-from eigenwalker.plotting.style import BLUE, RED
+from eigenwalker.plotting.style import PURPLE, TEAL
 from eigenwalker.plotting.walker_space_figure import figure_space
 from eigenwalker.plotting.walkers import figure_joints, figure_walkers, view_name
 
@@ -67,7 +67,7 @@ def test_separation_is_dashed_blue_and_generalisation_solid_red():
     separation, generalisation = (
         figure_curves({"sex": curves(9, 1)}, n_walkers=40).axes[0].lines[:2]
     )
-    assert (separation.get_color(), generalisation.get_color()) == (BLUE, RED)
+    assert (separation.get_color(), generalisation.get_color()) == (TEAL, PURPLE)
     assert separation.is_dashed()
     assert not generalisation.is_dashed()
 
@@ -111,7 +111,7 @@ def test_the_curves_of_a_trait_are_those_given_in_the_same_look():
         assert axes.get_title(loc="left") == title
         np.testing.assert_array_equal(separation.get_ydata(), curve.trained_r2)
         np.testing.assert_array_equal(generalisation.get_ydata(), curve.r2)
-        assert (separation.get_color(), generalisation.get_color()) == (BLUE, RED)
+        assert (separation.get_color(), generalisation.get_color()) == (TEAL, PURPLE)
         assert separation.is_dashed()
         assert not generalisation.is_dashed()
         assert ring.get_ydata()[0] == curve.r2.max()

@@ -3,12 +3,12 @@
 import { addressOf, stateOf } from "../model/address";
 import { populationLabel, warnings } from "../model/labels";
 import type { OwnWalker } from "../model/model";
+import { modelSourceOf, withSize, type ModelSource } from "../model/modelSource";
 import type { State } from "../model/state";
 import { button, find, messageOf } from "../page/elements";
 import { panels } from "./panels";
 import {
-  bundleName, bundles, modelSourceOf, openFiles, takeFiles, withSize,
-  type DroppedFiles, type ModelSource, type Opened,
+  bundleName, bundles, openFiles, takeFiles, type DroppedFiles, type Opened,
 } from "./openFile";
 import { Notices } from "./notices";
 import { Store, type View } from "./store";

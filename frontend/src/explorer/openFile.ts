@@ -3,7 +3,7 @@
 import { readStimulus } from "../core/readStimulus";
 import { InvalidFile } from "../core/schema";
 import type { Model, OwnWalker } from "../model/model";
-import { readModel } from "../model/readModel";
+import { modelSourceOf, type ModelSource } from "../model/modelSource";
 import { find } from "../page/elements";
 import { ownWalkerOf } from "./ownWalker";
 import { fieldsSaid, hasServer, readCapture, readPopulation } from "./server";
@@ -14,14 +14,6 @@ export type Opened = { readonly messages: readonly string[] } & (
   | { readonly kind: "own"; readonly own: OwnWalker }
 );
 
-/** A model, and the name of its population on the server; empty if the server does not hold it. */
-export interface ModelSource {
-  readonly model: Model;
-  /** The same walkers with their size, if the model's are without it, or the other way round. */
-  readonly other: Model | null;
-  readonly population: string;
-}
-
 const MAX_TEXT_BYTES = 64e6;
 const POPULATION = /\.nc$/i;
 const TEXT = /\.json$/i;
@@ -29,19 +21,6 @@ const TEXT = /\.json$/i;
 const MAX_NAMED = 2;
 /** Files that belong to a capture. */
 const COMPANION = /\.asf$/i;
-
-export function modelSourceOf(content: unknown): ModelSource {
-  const population = content && typeof content === "object" && "population" in content ? content.population : "";
-  const named = { population: typeof population === "string" ? population : "" };
-  const model = readModel(content);
-  if (!content || typeof content !== "object" || !("other_size" in content)) return { model, other: null, ...named };
-  const keepSize = model.size_kept;
-  return { model: { ...model, keepSize }, other: { ...readModel(content.other_size), keepSize }, ...named };
-}
-
-/** A source whose walkers have their size, or not; as it is where that cannot be chosen. */
-export const withSize = (source: ModelSource, keep: boolean): ModelSource =>
-  source.other && source.model.size_kept !== keep ? { ...source, model: source.other, other: source.model } : source;
 
 /** Files in groups that are opened one after the other. */
 export function bundles(files: readonly File[]): File[][] {

@@ -5,7 +5,7 @@
 
 import { entry } from "../core/schema";
 import { componentName } from "../model/captions";
-import { capitalised, classOf, endLabels } from "../model/labels";
+import { capitalised, classOf, endLabels, SIZE_HINT } from "../model/labels";
 import { partsOf } from "../model/mixing";
 import type { Kind, Model } from "../model/model";
 import { clamped, RANGES, type State } from "../model/state";
@@ -151,7 +151,6 @@ const PARTS: Readonly<Record<string, Omit<Option<string>, "value">>> = {
   frequency: { label: "Frequency" },
   phases: { label: "Phases" },
 };
-const SIZE = "Otherwise all are as large as the average walker: size is divided out, as in Troje (2002)";
 const COMMON = ["all", "structure", "dynamics"];
 
 const KINDS: readonly Option<Kind>[] = [
@@ -176,7 +175,7 @@ export function classifierControls(store: Store): Part {
         ? "The direction that tells people apart best: one step is one standard deviation of the walkers."
         : "From the mean of one class to the mean of the other: shows best what goes along with a trait.";
   };
-  const size = toggle("Keep people's size", (keepSize) => store.change({ keepSize }), SIZE);
+  const size = toggle("Keep people's size", (keepSize) => store.change({ keepSize }), SIZE_HINT);
   return group({},
     ...(store.model.keepSize === undefined ? [] : [bound(size, (state) => state.keepSize)]),
     bound(parts, (state) => state.part),

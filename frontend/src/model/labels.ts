@@ -59,3 +59,6 @@ export function warnings({ n_walkers, traits }: Model): string[] {
   const blank = "No trait tells these walkers apart, for want of a table of traits or of walkers: the large slider is what varies most among them.";
   return [...(n_walkers < FEW ? [few] : []), ...(traits.length === 0 ? [blank] : [])];
 }
+
+/** What the switch for people's size does. */
+export const SIZE_HINT = "Otherwise all are as large as the average walker: size is divided out, as in Troje (2002)";

@@ -34,8 +34,15 @@ export function partsOf(model: Model): string[] {
 }
 
 export function startVector(model: Model, { from }: State, own: OwnWalker | null): Numbers {
-  if (from === "own" && own) return own.vector;
+  if (from === "own" && own) return model.size_kept ? own.vector : sizeDivided(model, own.vector);
   return (typeof from === "number" ? model.walkers[from]?.vector : undefined) ?? model.average;
+}
+
+/** A walker with the size of the average walker: Troje (2002), eq. 12. */
+function sizeDivided(model: Model, vector: Numbers): Numbers {
+  const product = (a: Numbers): number => columnsOf(model, "p0").reduce((sum, i) => sum + a[i]! * model.average[i]!, 0);
+  const size = product(vector) / product(model.average);
+  return columnsOf(model, "postures").reduce((all, i) => all.with(i, all[i]! / size), [...vector]);
 }
 
 function addTrait(

@@ -6,9 +6,9 @@ import { painterOn } from "../canvas/painter";
 import { readStimulus } from "../core/readStimulus";
 import { entry } from "../core/schema";
 import { figuresOf } from "../model/figures";
-import { endLabels } from "../model/labels";
+import { endLabels, SIZE_HINT } from "../model/labels";
 import type { Model, OwnWalker, Trait } from "../model/model";
-import { readModel } from "../model/readModel";
+import { modelSourceOf, withSize } from "../model/modelSource";
 import { initialState, RANGES, type State } from "../model/state";
 import { button, make, messageOf, signed } from "../page/elements";
 import { Viewer } from "../viewer/viewer";
@@ -30,7 +30,7 @@ const PLAIN = [
   "kind", "part", "bias", "tempo", "azimuth_deg", "elevation_deg", "perspective", "style", "trails",
   "dark", "playing", "cycle",
 ] as const satisfies readonly (keyof State)[];
-const WATCHED = [...PLAIN, "alpha", "start", "strengths", "eigenwalkers", "_own"];
+const WATCHED = [...PLAIN, "keep_size", "alpha", "start", "strengths", "eigenwalkers", "_own"];
 
 function render({ model: shared, el }: { model: SharedModel; el: HTMLElement }): () => void {
   const root = el.shadowRoot ?? el.attachShadow({ mode: "open" });
@@ -78,7 +78,9 @@ function showStimulus(shared: SharedModel, box: HTMLElement): () => void {
 
 /** Show a walker of a model with its sliders; the returned function ends that. */
 function showWalker(shared: SharedModel, box: HTMLElement): () => void {
-  const model = readModel(shared.get("_model"));
+  const source = modelSourceOf(shared.get("_model"));
+  const sized = (): Model => withSize(source, Boolean(shared.get("keep_size"))).model;
+  const { model } = source;
   const canvas = make("canvas", { class: "turns", role: "img" });
   canvas.style.height = `${Number(shared.get("height_px"))}px`;
   const send = senderOf(shared);
@@ -96,6 +98,7 @@ function showWalker(shared: SharedModel, box: HTMLElement): () => void {
   let request = 0;
   const show = (): void => {
     request = 0;
+    const model = sized();
     const state = stateOf(shared, model);
     box.classList.toggle("light", !state.dark);
     canvas.setAttribute("aria-label", `${model.title}, seen from ${Math.round(state.azimuth_deg)} degrees`);
@@ -147,6 +150,7 @@ function stateOf(shared: SharedModel, model: Model): State {
   return {
     ...initial,
     ...(plain as Partial<State>),
+    keepSize: Boolean(shared.get("keep_size")),
     traits: shared.get("alpha") as State["traits"],
     from: shared.get("start") as State["from"],
     strengths: numbers("strengths"),
@@ -193,11 +197,16 @@ export function controlsOf(model: Model, change: Change): Controls {
   const back = button("Back to average", () =>
     change({ alpha: {}, bias: null, strengths: [], eigenwalkers: [], start: "average" }),
   );
-  const bar = make("div", { class: "bar" }, play, ...(model.traits.length > 0 ? [back] : []));
+  const size = make("input", { type: "checkbox" });
+  size.addEventListener("change", () => change({ keep_size: size.checked }));
+  const sizes = make("label", { class: "size", title: SIZE_HINT }, size, "Keep people's size");
+  const bar = make("div", { class: "bar" }, play, ...(model.traits.length > 0 ? [back] : []),
+    ...(model.keepSize === undefined ? [] : [sizes]));
   return {
     element: make("div", { class: "controls" }, ...sliders.map(({ element }) => element), bar),
     show(state) {
       shown = state;
+      size.checked = state.keepSize;
       play.textContent = state.playing ? "Pause" : "Play";
       for (const slider of sliders) slider.show(state);
     },

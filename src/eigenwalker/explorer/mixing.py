@@ -86,7 +86,8 @@ def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
     if start == "average":
         return np.array(model["average"], dtype=float)
     if start == "own" and state.get("own") is not None:
-        return np.array(state["own"], dtype=float)
+        own = np.array(state["own"], dtype=float)
+        return own if model.get("size_kept", True) else _size_divided(model, own)
     walkers = model["walkers"]
     if not isinstance(start, int) or not 0 <= start < len(walkers):
         raise ValueError(
@@ -94,6 +95,15 @@ def _start(model: Mapping[str, Any], state: Mapping[str, Any]) -> np.ndarray:
             f"{len(walkers) - 1}."
         )
     return np.array(walkers[start]["vector"], dtype=float)
+
+
+def _size_divided(model: Mapping[str, Any], vector: np.ndarray) -> np.ndarray:
+    """Return a walker with the size of the average walker: Troje (2002), eq. 12."""
+    layout = model_layout(model)
+    mean = np.array(model["average"])[layout.columns("p0")]
+    size = vector[layout.columns("p0")] @ mean / (mean @ mean)
+    vector[layout.columns("postures")] /= size
+    return vector
 
 
 def _trait(model: Mapping[str, Any], name: str) -> Mapping[str, Any]:

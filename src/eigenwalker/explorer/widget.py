@@ -9,7 +9,7 @@ import numpy as np
 from eigenwalker.core.walker import Walker
 from eigenwalker.explorer.interactive_page import MANNEQUIN
 from eigenwalker.explorer.mixing import check_ranges, mixed_vector, mixed_walker
-from eigenwalker.explorer.model import page_model, walker_model
+from eigenwalker.explorer.model import page_models, walker_model
 from eigenwalker.population.population import Population
 from eigenwalker.stimulus.html_page import built
 from eigenwalker.stimulus.make import make_stimulus
@@ -39,6 +39,9 @@ def show(
 ) -> WalkerWidget:
     """Return a widget that shows a walker in a notebook; it plays, and turns when dragged.
 
+    As on the page, walkers of a population, and yours beside it, begin with size divided out
+    (Troje 2002, eq. 12); ``keep_size=True``, or the switch in the widget, leaves it.
+
     Parameters
     ----------
     shown : Walker, Stimulus or Population, optional
@@ -66,7 +69,7 @@ def show(
 
     References
     ----------
-    Troje (2002), eq. 13 and demonstration 1.
+    Troje (2002), eqs. 12 and 13, and demonstration 1.
 
     Examples
     --------
@@ -85,13 +88,13 @@ def show(
         return WalkerWidget(_model=walker_model(shown), **options)
     if isinstance(shown, Walker) and population is not None:
         own = population.vector(shown).tolist()
-        return WalkerWidget(_model=page_model(population), _own=own, start="own", **options)
+        return WalkerWidget(_model=page_models(population), _own=own, start="own", **options)
     people = population if shown is None else shown
     if not isinstance(people, Population):
         raise ValueError(
             f"A notebook shows a Walker, a Stimulus or a Population; got {type(shown).__name__}."
         )
-    return WalkerWidget(_model=page_model(people), **options)
+    return WalkerWidget(_model=page_models(people), **options)
 
 
 class WalkerWidget(anywidget.AnyWidget):
@@ -106,6 +109,9 @@ class WalkerWidget(anywidget.AnyWidget):
     alpha : dict of str to float
         Standard deviations along the axis of each trait, from -6 to 6. (``traits`` are the
         attributes themselves, in the widget's library.)
+    keep_size : bool
+        Whether walkers have their own size; otherwise all are as large as the average walker.
+        Of use where a population is shown.
     kind, part : str
         As `trait_axis` takes them.
     start : "average", "own" or int
@@ -139,6 +145,7 @@ class WalkerWidget(anywidget.AnyWidget):
     alpha = traitlets.Dict(value_trait=traitlets.CFloat(), key_trait=traitlets.Unicode()).tag(
         sync=True
     )
+    keep_size = traitlets.Bool(False).tag(sync=True)
     kind = traitlets.Enum(["discriminant", "mean_difference"], "discriminant").tag(sync=True)
     part = traitlets.Unicode("all").tag(sync=True)
     start = traitlets.Union(
@@ -170,11 +177,11 @@ class WalkerWidget(anywidget.AnyWidget):
     @traitlets.validate(*_STATE)
     def _check_walker(self, proposal: Any) -> Any:
         """Refuse what the model does not have, before it reaches the page."""
-        if self._model is not None:
+        if model := self._sized_model():
             try:
                 state = self._state(**{proposal["trait"].name: proposal["value"]})
                 check_ranges(state)
-                mixed_vector(self._model, state)
+                mixed_vector(model, state)
             except (ValueError, TypeError, KeyError) as error:
                 raise traitlets.TraitError(str(error)) from None
         return proposal["value"]
@@ -207,10 +214,18 @@ class WalkerWidget(anywidget.AnyWidget):
             background=_DARK if self.dark else _LIGHT,
         )
 
+    def _sized_model(self) -> dict[str, Any] | None:
+        """The model whose walkers have their size, or not, as is chosen."""
+        model = self._model
+        if model is not None and model.get("size_kept") not in (None, self.keep_size):
+            return model["other_size"]
+        return model
+
     def _model_or_refuse(self) -> dict[str, Any]:
-        if self._model is None:
+        model = self._sized_model()
+        if model is None:
             raise ValueError("A stimulus is shown; its figures are in widget.stimulus.figures.")
-        return self._model
+        return model
 
 
 def _send_mannequin(widget: WalkerWidget, message: Any, _buffers: Any) -> None:

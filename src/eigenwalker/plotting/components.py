@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from eigenwalker.core.trajectories import check_trajectories
 from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.plotting.style import (
-    BLUE,
     INK,
     PALE,
-    RED,
+    PURPLE,
     SMALL,
+    TEAL,
     USUAL,
     head_line,
     new_figure,
@@ -24,7 +24,7 @@ from eigenwalker.plotting.style import (
     panels,
 )
 
-FOUR_INKS = (BLUE, RED, "#009988", "#AA4499")
+FOUR_INKS = (TEAL, PURPLE, "#BB8800", INK)
 """Of the first four components."""
 
 
@@ -65,7 +65,7 @@ def figure_variance(walkers: Sequence[Walker], *, n_components: int = 6) -> Figu
     spread = percent.std(axis=0, ddof=1) if len(percent) > 1 else None
     figure, axes = panel(3.3, 2.3)
     order = np.arange(1, n_components + 1)
-    axes.bar(order, mean, width=0.62, color=BLUE)
+    axes.bar(order, mean, width=0.62, color=TEAL)
     if spread is not None:
         axes.errorbar(
             order, mean, spread, fmt="none", ecolor=INK, elinewidth=0.8, capsize=2.5, capthick=0.8

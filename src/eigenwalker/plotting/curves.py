@@ -13,11 +13,11 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from eigenwalker.plotting.style import (
-    BLUE,
     INK,
     PALE,
-    RED,
+    PURPLE,
     SMALL,
+    TEAL,
     USUAL,
     head_line,
     new_figure,
@@ -62,8 +62,8 @@ def figure_curves(
 ) -> Figure:
     """Return misclassified walkers over the number of components, one panel an input.
 
-    Dashed blue is separation: walkers misclassified by a classifier that was fitted to them too.
-    Solid red is generalisation: walkers misclassified by one that was fitted to all others. The
+    Dashed teal is separation: walkers misclassified by a classifier that was fitted to them too.
+    Solid purple is generalisation: walkers misclassified by one that was fitted to all others. The
     axis at the right gives the share of walkers.
 
     Parameters
@@ -114,8 +114,8 @@ def figure_regression_curves(
 ) -> Figure:
     """Return the share of a trait's variance explained over the number of components.
 
-    Panels as in `figure_curves`. Dashed blue is separation: R2 of the walkers that a regression was
-    fitted to. Solid red is generalisation: R2 of walkers left out. Below the thin line at 0 the
+    Panels as in `figure_curves`. Dashed teal is separation: R2 of the walkers that a regression was
+    fitted to. Solid purple is generalisation: R2 of walkers left out. Below the thin line at 0 the
     mean of all walkers predicts better; a curve that falls far below leaves its panel, and with it
     the ring at its best.
 
@@ -164,10 +164,10 @@ def figure_regression_curves(
 _LOWEST_R2 = -0.6
 """A regression that overshoots falls without limit; drawing all of it would flatten the rest."""
 _CORNER: dict[str, Any] = {
-    "xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": SMALL, "color": RED
+    "xycoords": "axes fraction", "ha": "right", "va": "top", "fontsize": SMALL, "color": PURPLE
 }  # fmt: skip
 _RING: dict[str, Any] = {
-    "marker": "o", "mfc": "white", "mec": RED, "mew": 1.1, "ms": 4.5, "clip_on": False
+    "marker": "o", "mfc": "white", "mec": PURPLE, "mew": 1.1, "ms": 4.5, "clip_on": False
 }  # fmt: skip
 """Where generalisation is best."""
 
@@ -189,8 +189,8 @@ def _grid(titles: Collection[str], n_columns: int | None) -> tuple[Figure, list[
 
 def _draw(axis: Axes, n: np.ndarray, separation: np.ndarray, generalisation: np.ndarray) -> None:
     """Both curves over the number of components."""
-    axis.plot(n, separation, color=BLUE, lw=1.1, ls=(0, (4, 2)), label="separation")
-    axis.plot(n, generalisation, color=RED, lw=1.1, label="generalisation (leave one out)")
+    axis.plot(n, separation, color=TEAL, lw=1.1, ls=(0, (4, 2)), label="separation")
+    axis.plot(n, generalisation, color=PURPLE, lw=1.1, label="generalisation (leave one out)")
     axis.set_xlim(0, n[-1] + 0.5)
     axis.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
 

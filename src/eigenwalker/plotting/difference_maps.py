@@ -15,10 +15,10 @@ from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.plotting.difference_tables import short_names
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
-    BLUE,
     GREY,
-    RED,
+    PURPLE,
     SMALL,
+    TEAL,
     USUAL,
     bare,
     colour_scale,
@@ -47,9 +47,9 @@ class MapPicture:
     title, unit : str
         What is compared, and the unit of the values.
     path : array of shape (step, 2), optional
-        Corresponding moments of a and b in seconds, drawn red.
+        Corresponding moments of a and b in seconds, drawn purple.
     period : tuple of float, optional
-        Beginnings of a period on a and b, and its lengths, drawn as a blue frame.
+        Beginnings of a period on a and b, and its lengths, drawn as a teal frame.
     marks : array of shape (moment, 2), optional
         Moments of a and b to mark by a ring.
     names : tuple of str
@@ -194,14 +194,16 @@ def _draw_map(figure: Figure, axes: Axes, picture: MapPicture) -> None:
     if picture.period is not None:
         start_a, start_b, length_a, length_b = picture.period
         axes.add_patch(
-            Rectangle((start_b, start_a), length_b, length_a, fc="none", ec=BLUE, lw=1.4)
+            Rectangle((start_b, start_a), length_b, length_a, fc="none", ec=TEAL, lw=1.4)
         )
     if picture.path is not None:
-        axes.plot(picture.path[:, 1], picture.path[:, 0], color=RED, lw=1.4)
+        axes.plot(picture.path[:, 1], picture.path[:, 0], color=PURPLE, lw=1.4)
         axes.set_xlim(b[0] - half_b, b[-1] + half_b)
         axes.set_ylim(a[0] - half_a, a[-1] + half_a)
     if picture.marks is not None:
-        axes.plot(picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=RED, ms=5, mew=1.1)
+        axes.plot(
+            picture.marks[:, 1], picture.marks[:, 0], "o", mfc="none", mec=PURPLE, ms=5, mew=1.1
+        )
     colour_scale(figure, drawn, picture.unit, cax=axes.inset_axes((1.03, 0, 0.05, 1)))
     ordinate, abscissa = short_names(picture.names)
     axes.set_ylabel(f"{ordinate} (s)", parse_math=False)
@@ -236,8 +238,8 @@ def figure_two_walks(
     Returns
     -------
     Figure
-        Seen from the side above, from the front below; the first walk blue, the second red, their
-        left limbs paler.
+        Seen from the side above, from the front below; the first walk teal, the second purple,
+        their left limbs paler.
 
     See Also
     --------
@@ -262,13 +264,13 @@ def figure_two_walks(
     bare(axes)
     for row, view in enumerate(views):
         for column in range(n_moments):
-            for walk, color in zip(seen[view], (BLUE, RED), strict=True):
+            for walk, color in zip(seen[view], (TEAL, PURPLE), strict=True):
                 look = {"skeleton": skeleton, "color": color, "width": 1.1, "dots": False}
                 draw_body(axes, walk[column], markers, at=(column * pitch, -row * storey), **look)
     for column in range(n_moments):
         share = f"{100 * column / n_moments:.0f} %"
         axes.text(column * pitch, low - storey - 90, share, fontsize=SMALL, ha="center", color=GREY)
-    for place, (name, color) in enumerate(zip(names, (BLUE, RED), strict=True)):
+    for place, (name, color) in enumerate(zip(names, (TEAL, PURPLE), strict=True)):
         offset = (0, 2 + 10 * (1 - place))
         note(axes, name, (0, 1), offset, xycoords="axes fraction", fontsize=USUAL, color=color)
     axes.set_xlim(-reach, (n_moments - 1) * pitch + reach)

@@ -9,14 +9,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.plotting.style import BLUE, GREY, INK, RED, SMALL, colour_scale, note, panel
+from eigenwalker.plotting.style import CLASSES, GREY, SMALL, TEAL, colour_scale, note, panel
 
 MAX_NAMED = 45
 """Walks up to which each is named; more names would overlap."""
 _LONGEST = 15
-_INKS = (BLUE, RED, "#009988", "#AA4499", GREY, "#DDAA33", "#882255", INK)
 _MARKS = "o^sDvPX>*"
-MAX_CLASSES = len(_INKS) * len(_MARKS)
+MAX_CLASSES = len(CLASSES) * len(_MARKS)
 """Classes that have a colour and a mark of their own."""
 
 
@@ -40,8 +39,8 @@ def figure_difference_table(
     if clusters is not None:
         sorted_clusters = np.asarray(clusters)[order]
         for border in np.flatnonzero(np.diff(sorted_clusters)) + 0.5:
-            axes.axhline(border, color="#009988", lw=1.0, ls="--")
-            axes.axvline(border, color="#009988", lw=1.0, ls="--")
+            axes.axhline(border, color=TEAL, lw=1.0, ls="--")
+            axes.axvline(border, color=TEAL, lw=1.0, ls="--")
     if len(order) <= MAX_NAMED:
         short = short_names(names)
         labels = [short[walk] for walk in order]
@@ -63,7 +62,7 @@ def figure_map_of_walks(
     places, of = np.asarray(places, dtype=float), np.asarray(classes)
     figure, axes = panel(4.8, 3.9)
     for number, name in enumerate(np.unique(of)):
-        color, mark = _INKS[number % len(_INKS)], _MARKS[number % len(_MARKS)]
+        color, mark = CLASSES[number % len(CLASSES)], _MARKS[number % len(_MARKS)]
         chosen = places[of == name]
         label = f"{name} ({len(chosen)})".replace("$", r"\$")  # words, not mathematics
         axes.scatter(*chosen.T, s=20, c=color, marker=mark, lw=0, alpha=0.85, label=label)

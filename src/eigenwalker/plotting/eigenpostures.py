@@ -14,12 +14,12 @@ from eigenwalker.core.skeleton import LINKS, Skeleton
 from eigenwalker.core.walker import Walker, check_walkers
 from eigenwalker.plotting.projection import project
 from eigenwalker.plotting.style import (
-    BLUE,
     GREY,
     INK,
     PALE,
-    RED,
+    PURPLE,
     SMALL,
+    TEAL,
     USUAL,
     bare,
     panel,
@@ -46,8 +46,8 @@ def figure_eigenpostures(
 ) -> Figure:
     """Return the eigenpostures of a walker one by one, over its mean posture.
 
-    Blue is the mean posture plus the eigenposture, with arrows from where the joints are on
-    average; red and dashed is the mean minus it. Small ones are drawn larger, by the factor that
+    Teal is the mean posture plus the eigenposture, with arrows from where the joints are on
+    average; purple and dashed is the mean minus it. Small ones are drawn larger, by the factor that
     stands under their names.
 
     Parameters
@@ -126,8 +126,8 @@ def _draw_extremes(
     """Mean posture, mean plus and mean minus the eigenposture: `shown` of (3, marker, 2)."""
     mean, plus, minus = shown
     draw_body(axes, mean, markers, color=PALE, width=2.2, dots=False, zorder=0, **body)
-    draw_body(axes, minus, markers, color=RED, width=0.8, dots=False, dashes=(0, (3, 2)), **body)
-    draw_body(axes, plus, markers, color=BLUE, width=1.1, dots=False, zorder=3, **body)
+    draw_body(axes, minus, markers, color=PURPLE, width=0.8, dots=False, dashes=(0, (3, 2)), **body)
+    draw_body(axes, plus, markers, color=TEAL, width=1.1, dots=False, zorder=3, **body)
     for start, end in zip(mean + body["at"], plus + body["at"], strict=True):
         if np.linalg.norm(end - start) > 40:
             axes.add_patch(FancyArrowPatch(tuple(start), tuple(end), **_ARROW))

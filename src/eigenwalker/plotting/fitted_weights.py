@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, panel
+from eigenwalker.plotting.style import GREY, INK, PALE, PURPLE, SMALL, TEAL, panel
 
 
 def figure_weights(
@@ -24,7 +24,7 @@ def figure_weights(
     places = np.arange(len(names))
     least = 0.0
     for count, ((name, (weights, low, high)), color) in enumerate(
-        zip(fits.items(), (BLUE, RED), strict=False)
+        zip(fits.items(), (TEAL, PURPLE), strict=False)
     ):
         at = places + (count - (len(fits) - 1) / 2) * 0.3
         axes.hlines(at, low, high, color=color, lw=1.6)
@@ -47,7 +47,7 @@ def figure_predictions(observed: ArrayLike, predicted: ArrayLike) -> Figure:
     figure, axes = panel(3.2, 3.2)
     ends = [min(observed.min(), predicted.min()), max(observed.max(), predicted.max())]
     axes.plot(ends, ends, color=GREY, lw=0.8, ls="--", zorder=0)
-    axes.plot(observed, predicted, "o", ms=3, mfc=BLUE, mec="none", alpha=0.6)
+    axes.plot(observed, predicted, "o", ms=3, mfc=TEAL, mec="none", alpha=0.6)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("Perceived difference", color=INK)
     axes.set_ylabel("Predicted difference", color=INK)
@@ -60,7 +60,7 @@ def figure_shares(shares: Mapping[str, float]) -> Figure:
     figure, axes = panel(3.6, 0.6 + 0.2 * len(ordered))
     places = np.arange(len(ordered))
     percent = [100 * share for share in ordered.values()]
-    axes.barh(places, percent, height=0.65, color=BLUE)
+    axes.barh(places, percent, height=0.65, color=TEAL)
     for place, value in enumerate(percent):
         axes.text(value, place, f" {value:.0f} %", va="center", fontsize=SMALL, color=INK)
     axes.set_yticks(places, [name.replace("_", " ") for name in ordered])

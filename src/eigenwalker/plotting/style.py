@@ -9,8 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-BLUE, RED = "#0077BB", "#CC3311"
-"""Told apart under every common colour blindness (Paul Tol's vibrant scheme)."""
+NEGATIVE, POSITIVE = "#D55E00", "#2488CC"
+"""Of the two classes of a trait, such as women and men, in figures as on pages."""
+TEAL, PURPLE = "#009988", "#AA4499"
+"""Of two things that are no classes. All four differ under every common colour blindness."""
+CLASSES = (NEGATIVE, POSITIVE, TEAL, PURPLE, "#6E6E6E", "#DDAA33", "#882255", "#1A1A1A")
+"""Of the classes of a trait in sorted order."""
 INK, GREY, PALE = "#1A1A1A", "#6E6E6E", "#C8C8C8"
 SMALL, USUAL = 7.0, 8.0
 """Sizes of letters in points."""

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_labels, check_numbers
-from eigenwalker.plotting.style import BLUE, GREY, INK, PALE, RED, SMALL, note, panel
+from eigenwalker.plotting.style import CLASSES, INK, PALE, SMALL, note, panel
 
 
 class Space(Protocol):
@@ -55,7 +55,7 @@ def figure_space(
         A direction, as `direction` returns it: drawn as a line through the average walker that
         crosses all walkers, however long the step.
     poles : tuple of str
-        What the two ends of the line are called, the negative one first.
+        What the two ends of the line are called, the negative one first; so are classes coloured.
     components : tuple of int
         The eigenwalkers, counted from 1.
 
@@ -75,7 +75,7 @@ def figure_space(
     if len(values) != len(X):
         raise ValueError(f"X has {len(X)} walkers, and trait {len(values)} values.")
     if values.dtype.kind in "OUS":
-        _draw_classes(axes, scores, values.astype(str))
+        _draw_classes(axes, scores, values.astype(str), poles)
         figure.legend(
             loc="outside upper left", ncols=5, fontsize=SMALL, frameon=False, handletextpad=0.1
         )
@@ -100,11 +100,15 @@ def figure_space(
     return figure
 
 
-_CLASS_LOOK = ((BLUE, "o"), (RED, "^"), ("#009988", "s"), ("#AA4499", "D"), (GREY, "v"))
+_CLASS_LOOK = tuple(zip(CLASSES, "o^sDv", strict=False))
 
 
-def _draw_classes(axes: Axes, scores: np.ndarray, values: np.ndarray) -> None:
+def _draw_classes(
+    axes: Axes, scores: np.ndarray, values: np.ndarray, poles: tuple[str, str]
+) -> None:
     classes = sorted(set(values))
+    if set(poles) <= set(classes):
+        classes = [*poles, *(name for name in classes if name not in poles)]
     if len(classes) > len(_CLASS_LOOK):
         raise ValueError(
             f"There are {len(classes)} classes {classes[:6]} ..., more than the "

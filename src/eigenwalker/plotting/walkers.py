@@ -194,6 +194,7 @@ def figure_walkers(
     azimuths_deg: Sequence[float] = (0, 90),
     phase: float = 0.25,
     skeleton: Skeleton = LINKS,
+    colors: Sequence[str] = (),
 ) -> Figure:
     """Return walkers side by side at one scale, each over the paths of its joints.
 
@@ -212,6 +213,8 @@ def figure_walkers(
         front.
     skeleton : Skeleton
         Which markers are joined.
+    colors : sequence of str
+        Of each walker; black if left out.
 
     Returns
     -------
@@ -233,6 +236,9 @@ def figure_walkers(
     check_kind(walkers, Mapping, "walkers by title")
     check_walkers(walkers.values())
     strides = {title: _one_stride(walker, phase) for title, walker in walkers.items()}
+    if len(colors) not in (0, len(walkers)):
+        raise ValueError(f"There are {len(colors)} colours for {len(walkers)} walkers.")
+    inks = list(colors) or [INK] * len(walkers)
     pictures = [[project(s, azimuth_deg=view) for s in strides.values()] for view in azimuths_deg]
     seen = np.concatenate([picture.reshape(-1, 2) for row in pictures for picture in row])
     pitch = 2 * np.abs(seen[:, 0]).max() + 160
@@ -243,11 +249,13 @@ def figure_walkers(
     )
     bare(axes)
     for row, shown in enumerate(pictures):
-        for column, (picture, walker) in enumerate(zip(shown, walkers.values(), strict=True)):
+        for column, (picture, walker, ink) in enumerate(
+            zip(shown, walkers.values(), inks, strict=True)
+        ):
             at = (column * pitch, -row * story)
             paths = picture + at
             axes.plot(*np.moveaxis(paths, -1, 0), color=PALE, lw=0.7, zorder=0.5)
-            draw_body(axes, picture[0], walker.markers, skeleton=skeleton, at=at)
+            draw_body(axes, picture[0], walker.markers, skeleton=skeleton, at=at, color=ink)
     for column, title in enumerate(walkers):
         where = (column * pitch, top + 60)
         axes.text(*where, title, fontsize=USUAL, ha="center", color=INK, parse_math=False)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import matplotlib.figure
 import xarray as xr
 
 from eigenwalker.analysis.classification import Classification, results_of_panels
+from eigenwalker.analysis.contrast import Contrast
 from eigenwalker.analysis.trait_study import TraitStudy
 from eigenwalker.core.walker import Walker
 from eigenwalker.decomposition.pca import decompose_pca
 from eigenwalker.plotting.components import figure_scores, figure_variance
 from eigenwalker.plotting.curves import figure_curves, figure_regression_curves
 from eigenwalker.plotting.eigenpostures import figure_eigenpostures
+from eigenwalker.plotting.style import INK, NEGATIVE, POSITIVE
 from eigenwalker.plotting.walker_films import Style, write_film
 from eigenwalker.plotting.walker_space_figure import figure_space
 from eigenwalker.plotting.walkers import figure_joints, figure_walkers
@@ -39,9 +41,10 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
         curves = {each.input.title: each.curves for each in results_of_panels(result.results)}
         drawings["regression curves"] = figure_regression_curves(curves)
     for kind, view in study.views.items():
-        drawings[kind] = figure_walkers(view.walkers)
+        drawings[kind] = figure_walkers(view.walkers, colors=_inks(view.walkers, contrast))
     if study.class_averages:
-        drawings["classes"] = figure_walkers(study.class_averages)
+        inks = _inks(study.class_averages, contrast)
+        drawings["classes"] = figure_walkers(study.class_averages, colors=inks)
     drawings["space"] = figure_space(
         study.space,
         study.X,
@@ -54,6 +57,18 @@ def draw_figures(study: TraitStudy, example: xr.DataArray | None) -> dict[str, F
     names = {"trait": contrast.trait, "negative": contrast.negative, "positive": contrast.positive}
     names["source"] = source[:1].upper() + source[1:].replace("_", " ")
     return {name: figure(drawing, name, **names) for name, drawing in drawings.items()}
+
+
+def _inks(walkers: Iterable[str], contrast: Contrast) -> list[str]:
+    """Return the colour of the class after which each walker is called; black for an average."""
+    if not contrast.two_classes:
+        return []
+    poles = {contrast.positive: POSITIVE, contrast.negative: NEGATIVE}
+    by_length = sorted(poles, key=len, reverse=True)  # "old" before "o"
+    return [
+        next((poles[pole] for pole in by_length if title.startswith(pole)), INK)
+        for title in walkers
+    ]
 
 
 def write_films(walkers: Mapping[str, Walker], stem: Path) -> list[Film]:

@@ -35,8 +35,8 @@ def loop_and_pair_maps(comparison: Comparison, names: tuple[str, str]) -> Figure
     blended, marks = "the capture holds one stride, which is closed into a loop", {}
     if looped.n_periods > 1:
         blended = (
-            "a period (blue) and the line at 45 degrees along which two periods are blended into a "
-            "loop (red)"
+            "a period (teal) and the line at 45 degrees along which two periods are blended into a "
+            "loop (purple)"
         )
         marks = {
             "path": np.array([[start, start + period], [start + period, start + 2 * period]]),
