@@ -63,6 +63,8 @@ def test_two_walks_get_a_number_where_they_differ_and_a_report(run, folder, tmp_
     assert page.count("<img") >= 5  # bodies, shares, two of maps, transitions
     assert "positions-sigmoid" in page
     assert "mannequin" in page
+    for term in ("Distance:", "lee:", "Joint group:", "Motion map:"):
+        assert f">{term}" in page
 
 
 def test_the_same_person_is_nearer_than_another(run, folder):

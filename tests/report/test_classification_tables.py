@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from eigenwalker.report.classification_tables import (
     gait_table,
     missed_table,
     multiple_inputs_sentence,
+    people_gait_table,
     permutation_sentence,
     person_sentences,
     plausibility_table,
@@ -44,6 +46,18 @@ def test_a_body_without_pelvis_has_no_row_for_it(people) -> None:
     kept = [average.markers.index(name) for name in feet]
     legs = replace(average, markers=tuple(feet), p0=average.p0[kept], p=average.p[:, kept])
     assert not any("pelvis" in str(row[0]) for row in gait_table({"legs": legs}).rows)
+
+
+@pytest.mark.parametrize(("foot", "bias"), [("heel", "3 and 5 %"), ("toe", "7 and 14 %")])
+def test_how_much_too_long_stance_comes_out_is_said_for_the_points_there_are(people, foot, bias):
+    walker = people.walkers[0]
+    ankles = [walker.markers.index(f"{side}_ankle") for side in ("left", "right")]
+    markers = (*walker.markers, f"left_{foot}", f"right_{foot}")
+    p0, p = (np.concatenate([a, a[..., ankles, :]], axis=-2) for a in (walker.p0, walker.p))
+    footed = replace(walker, markers=markers, p0=p0, p=p)
+    contrast = SimpleNamespace(two_classes=False)
+    study = SimpleNamespace(result=SimpleNamespace(contrast=contrast), contrast_walkers=[footed])
+    assert bias in people_gait_table(study).caption
 
 
 def test_limbs_of_the_average_are_unchanged_without_a_sign(people) -> None:

@@ -195,6 +195,17 @@ def test_words_stay_at_the_left_and_as_they_are():
     assert "class" not in page.all("td")[0]
 
 
+def test_columns_of_results_stay_on_the_screen_of_a_telephone(browser, tmp_path):
+    columns = ["input", "nested errors", "nested %", "p", "separated at n", "best n", "errors"]
+    row = ["first three eigenpostures", "13", "32.5", "<= 0.005", "17", "25", "13", "32.5"]
+    table = Table("Errors", [*columns, "error %"], [row])
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    page.goto(write_report(Report("Sex", "", [Section("A", [table])]), tmp_path).as_uri())
+    right = "[...document.querySelectorAll('th, td')].map((e) => e.getBoundingClientRect().right)"
+    assert page.evaluate(f"Math.max(...{right})") <= 390
+    page.close()
+
+
 def test_a_table_with_a_short_row_is_refused():
     with pytest.raises(ValueError, match=r"2 columns .* a row of 1 cells"):
         Table("Errors", ["input", "errors"], [["structure"]])

@@ -128,4 +128,5 @@ def _draw_direction(axes: Axes, moved: np.ndarray, length: float, poles: tuple[s
     axes.annotate("", xy=tuple(ends[1]), xytext=tuple(ends[0]), arrowprops=arrow, zorder=1)
     axes.plot(*1.15 * ends.T, lw=0)  # room for the words
     for words, end, outwards in zip(poles, ends, (-way, way), strict=True):
-        note(axes, words, end, 10 * outwards, ha="center", va="center")
+        ha = "center" if abs(outwards[0]) < 0.4 else "left" if outwards[0] > 0 else "right"
+        note(axes, words, end, 5 * outwards, ha=ha, va="center")

@@ -188,7 +188,9 @@ def people_gait_table(study: TraitStudy) -> Table:
         cells = [_mean_and_sd(values[members].dropna(), decimals) for members in groups.values()]
         if any(cells):
             rows.append([title, *cells])
-    return Table(TABLES["people"], ["", *groups], rows)
+    toes = any("left_toe" in walker.markers for walker in study.contrast_walkers)
+    bias = WORDS["bias"]["toes" if toes else "ankles"]
+    return Table(TABLES["people"].format(bias=bias), ["", *groups], rows)
 
 
 def _mean_and_sd(values: pd.Series, decimals: int) -> str | None:

@@ -24,7 +24,7 @@ from eigenwalker.report.blocks import Block, Cell, Code, Figure, Film, Items, Re
 FILMS = {".mp4": "video/mp4", ".webm": "video/webm", ".gif": "image/gif"}
 CONTENT_POLICY = "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'"
 """What a browser may load for the page: only what the page itself holds."""
-_FEW_COLUMNS = 6
+_FEW_COLUMNS = 4
 """Columns that fit on the screen of a telephone."""
 SCREEN_DPI = 125
 """CSS pixels per inch of a figure: letters of 8 points are as large as a footnote."""

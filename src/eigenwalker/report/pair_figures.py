@@ -14,7 +14,7 @@ from eigenwalker.metric.motion_maps import motion_map
 from eigenwalker.metric.transitions import find_transitions
 from eigenwalker.plotting.difference_maps import MapPicture, figure_maps, picture_of_strides
 from eigenwalker.report.blocks import Block, Figure, Table, Text
-from eigenwalker.report.words import TABLES, figure
+from eigenwalker.report.words import TABLES, WORDS, figure
 
 SHOWN_S = 4.0
 """Seconds of either walk on a map: a few strides."""
@@ -82,12 +82,13 @@ def transitions(comparison: Comparison, names: tuple[str, str]) -> list[Block]:
     which = f"the best {len(best)} of {len(found)} transitions"
     if len(best) == len(found):
         which = "one transition" if len(found) == 1 else f"all {len(found)} transitions"
+    terms = WORDS["terms"]["transitions"]
     table = Table(
         TABLES["transitions"].format(which=which),
         ["from first (s)", "into second (s)", "apart (mm)", "turn (deg)", "x (mm)", "y (mm)"],
         [list(map(float, row)) for row in best.to_numpy()],
     )
-    return [_transitions_figure(a, b, best, "transitions", names, which), table]
+    return [_transitions_figure(a, b, best, "transitions", names, which), table, Text(terms)]
 
 
 def _transitions_figure(

@@ -62,7 +62,7 @@ def write_pair_report(
     sections = [
         Section("How different", _how_different(result, names)),
         Section("Where", _where(comparison)),
-        Section("Motion maps", maps),
+        Section("Motion maps", [*maps, Text(WORDS["terms"]["maps"])]),
         Section("From one walk into the other", transitions(comparison, names)),
         Section("How this was done", [Items(_method(comparison)), made_with(CITE["prazak2010"])]),
     ]
@@ -152,6 +152,7 @@ def _how_different(result: ReferenceComparison, names: tuple[str, str]) -> list[
     return [
         _bodies(result.comparison, names),
         Table(caption, columns, rows),
+        Items(WORDS["terms"]["pair"]),
         Text(WORDS["metric"]["no_percentage_of_angles"]),
         Text(WORDS["metric"]["scale_is_unknown"]),
     ]
@@ -170,11 +171,12 @@ def _where(comparison: Comparison) -> list[Block]:
         ["joint group", "place (mm)", "velocity (mm/s)", "joint angle (degrees)"],
         [[plain_name(group), *map(float, row)] for group, *row in comparison.groups.itertuples()],
     )
+    terms = Text(WORDS["terms"]["groups"])
     if comparison.shares.isna().any():
-        return [table]
+        return [table, terms]
     shares = {str(group): float(share) for group, share in comparison.shares.items()}
     bars = ", ".join(f"{plain_name(g)} {100 * share:.0f} %" for g, share in shares.items())
-    return [figure(figure_shares(shares), "shares", bars=bars), table]
+    return [figure(figure_shares(shares), "shares", bars=bars), table, terms]
 
 
 def _method(comparison: Comparison) -> list[str]:
