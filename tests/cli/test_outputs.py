@@ -78,7 +78,7 @@ def test_a_folder_that_holds_other_files_is_not_written_into(source):
 @pytest.mark.parametrize(
     ("name", "output", "beside"),
     [
-        ("parameters", "a.csv", ["a-persons.csv", "a-codebook.csv", "a.json"]),
+        ("parameters", "a.csv", ["a-persons.csv", "a-codebook.csv", "a.json", "a.html", "a.pdf"]),
         ("predict", "a.csv", ["a.json"]),
         ("stimulus", "a.py", ["a.npz"]),
         ("synthesize", "a.PY", ["a.npz"]),

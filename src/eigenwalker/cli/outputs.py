@@ -31,7 +31,7 @@ MORE_OUTPUTS = {"fit": "table", "simulate": "captures", "info": "write_mapping"}
 FOLDERS = ("classify", "compare", "demo", "captures")
 """Commands whose output is a folder, and parameters that name one."""
 BESIDE = {
-    "parameters": (".csv", ("-persons.csv", "-codebook.csv", ".json")),
+    "parameters": (".csv", ("-persons.csv", "-codebook.csv", ".json", ".html", ".svg", ".pdf")),
     "predict": (".csv", (".json",)),
     "stimulus": (".py", (".npz",)),
 }

@@ -38,12 +38,13 @@ def parameters(
     """Measure cadence, speed, steps, strides, stance, swing and double support of each capture.
 
     Beside the table NAME.csv: NAME-persons.csv, mean and SD by person; NAME-codebook.csv, units and
-    meanings; NAME.json, all three.
+    meanings; NAME.json, all three; NAME.html, a page; NAME.svg and NAME.pdf, its figure.
 
     Ends with 0 when all captures were read, 1 when some were refused, 2 when nothing could be used.
     """
     from eigenwalker.core.atomic_write import write_table
     from eigenwalker.population.persons import persons_of
+    from eigenwalker.report.parameters_report import write_parameters_report
     from eigenwalker.report.result_files import write_json
     from eigenwalker.study.parameter_table import parameter_table
 
@@ -72,14 +73,21 @@ def parameters(
             reason = str(row.reason).removeprefix(f"{row.file}: ")
             print(f"{status}: {printable(in_options(f'{row.file}: {reason}'))}", file=sys.stderr)
     n_read = len(table.files) - counts.get("refused", 0)
-    print(
-        f"{n_read} of {len(table.files)} captures measured, {counts.get('flagged', 0)} of them "
-        f"flagged{'' if with_flagged else ' and left out of the means of persons'}."
-    )
     who = "capture" if persons_of(table.files) is None else "person"
-    print(f"Means and SDs are of each {who}.")
+    counted = (
+        f"{n_read} of {len(table.files)} captures measured, {counts.get('flagged', 0)} of them "
+        f"flagged{'' if with_flagged else ' and left out of means'}."
+    )
+    print(f"{counted}\nMeans and SDs are of each {who}.")
+    page = write_parameters_report(
+        table,
+        stem.with_name(f"{stem.name}.html"),
+        title=f"Gait parameters of {folder.resolve().name}",
+        results=[counted],
+        with_flagged=with_flagged,
+    )
     print(f"Table: {output}\nBy person, codebook, all as JSON: {stem}-persons.csv, ", end="")
-    print(f"{stem}-codebook.csv, {stem}.json")
+    print(f"{stem}-codebook.csv, {stem}.json\nPage, figure: {page}, {stem}.svg, {stem}.pdf")
     if not n_read:
         raise typer.Exit(EXIT_FAILED)
     if n_read < len(table.files):

@@ -175,6 +175,12 @@ class Comparison:
     groups: pd.DataFrame
     missing_groups: tuple[str, ...]
 
+    def _repr_html_(self) -> str:
+        """The distance, and a table of joint groups, for notebooks."""
+        table = self.groups.assign(share=self.shares.reindex(self.groups.index))
+        html = table.to_html(escape=True, float_format="{:.3g}".format, na_rep="")
+        return f"<p>Distance {self.distance:.4g}</p>{html}"
+
     def __repr__(self) -> str:
         most = "none" if self.shares.isna().all() else self.shares.idxmax()
         return f"Comparison(distance {self.distance:.4g}, most by {most})"

@@ -13,6 +13,7 @@ from .difference_maps import (
 )
 from .eigenpostures import figure_eigenpostures as figure_eigenpostures
 from .layout import Style as Style
+from .parameter_figure import figure_parameters as figure_parameters
 from .projection import observer_axes as observer_axes, project as project
 from .walker_films import Background as Background, write_film as write_film
 from .walker_space_figure import Space as Space, figure_space as figure_space

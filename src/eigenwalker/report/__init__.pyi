@@ -16,3 +16,4 @@ from .html_report import write_report as write_report
 from .metric_fit_report import write_metric_fit_report as write_metric_fit_report
 from .pair_report import write_pair_report as write_pair_report
 from .pairs_report import write_pairs_report as write_pairs_report
+from .parameters_report import write_parameters_report as write_parameters_report

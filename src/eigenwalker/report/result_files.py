@@ -47,17 +47,24 @@ def _plain(value: Any) -> Any:
 
 def write_figures(figures: Mapping[str, matplotlib.figure.Figure], folder: Path) -> list[Path]:
     """Write figures by name as SVG and PDF into a folder; return their paths."""
-    paths = []
     folder.mkdir(parents=True, exist_ok=True)
+    paths = []
     for name, drawn in figures.items():
         plain = "-".join("".join(c if c.isalnum() else " " for c in name).split())
-        for suffix in FIGURES:
-            path = folder / f"{plain}{suffix}"
-            fonts: Any = {"svg.hashsalt": "eigenwalker", "svg.fonttype": "none", "pdf.fonttype": 42}
-            metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
-            with mpl.rc_context(fonts), atomic_write(path) as unfinished:
-                drawn.savefig(unfinished, metadata=metadata)
-            paths.append(path)
+        paths += figure_files(drawn, folder / plain)
+    return paths
+
+
+def figure_files(drawn: matplotlib.figure.Figure, stem: Path) -> list[Path]:
+    """Write a figure as SVG and PDF; return their paths."""
+    paths = []
+    for suffix in FIGURES:
+        path = stem.with_name(f"{stem.name}{suffix}")
+        fonts: Any = {"svg.hashsalt": "eigenwalker", "svg.fonttype": "none", "pdf.fonttype": 42}
+        metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}[suffix]
+        with mpl.rc_context(fonts), atomic_write(path) as unfinished:
+            drawn.savefig(unfinished, metadata=metadata)
+        paths.append(path)
     return paths
 
 

@@ -60,6 +60,10 @@ class Study:
     unlisted: tuple[str, ...] = ()
     n_resumed: int = 0
 
+    def _repr_html_(self) -> str:
+        """The table of files, for notebooks."""
+        return self.files.to_html(index=False, escape=True, float_format="{:.4g}".format, na_rep="")
+
     @property
     def refused(self) -> pd.DataFrame:
         """The captures that could not be used, with the reason."""

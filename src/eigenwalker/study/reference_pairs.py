@@ -42,6 +42,11 @@ class ReferenceComparison:
     by_metric: pd.DataFrame
     n_people: int
 
+    def _repr_html_(self) -> str:
+        """The comparison, and a table of metrics, for notebooks."""
+        table = self.by_metric.to_html(escape=True, float_format="{:.3g}".format, na_rep="")
+        return f"{self.comparison._repr_html_()}{table}"
+
 
 def compare_with_references(
     comparison: Comparison,
