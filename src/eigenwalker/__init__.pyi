@@ -54,6 +54,7 @@ from .metric import (
 from .population import Population as Population
 from .psychophysics import (
     PerceptualMetric as PerceptualMetric,
+    crossed_logistic as crossed_logistic,
     mixed_anova as mixed_anova,
     scheffe as scheffe,
     sensitivity as sensitivity,

@@ -11,6 +11,11 @@ from .cross_validation import (
     leave_walkers_out as leave_walkers_out,
     left_out_differences as left_out_differences,
 )
+from .crossed_logistic import (
+    CrossedLogistic as CrossedLogistic,
+    CrossedModel as CrossedModel,
+    crossed_logistic as crossed_logistic,
+)
 from .dissimilarity_structure import (
     cluster_memberships as cluster_memberships,
     clusters_of_walks as clusters_of_walks,

@@ -10,9 +10,6 @@ import pandas as pd
 
 from eigenwalker.core.arguments import LARGEST, check_kind
 
-_MAX_NAMES = 6
-"""Names listed in a message."""
-
 
 def take_columns(
     table: Any,
@@ -59,7 +56,7 @@ def levels_of(column: pd.Series) -> list[Any]:
     if isinstance(column.dtype, pd.CategoricalDtype):
         used = set(column.unique())
         return [level for level in column.cat.categories if level in used]
-    return list(column.unique())
+    return column.unique().tolist()
 
 
 def cell_means(taken: pd.DataFrame) -> pd.DataFrame:
@@ -77,7 +74,7 @@ def cell_means(taken: pd.DataFrame) -> pd.DataFrame:
         others = int(empty.any(axis=1).sum()) - 1
         more = f", and {others} more observers lack cells" if others else ""
         raise ValueError(
-            f"Observer {means.index[row]!r} has no answers at the level {means.columns[column]!r}"
+            f"Observer {written(means.index[row])} has no answers at the level {written(means.columns[column])}"
             f"{more}; an ANOVA needs all cells of an observer. Leave such observers out, or use "
             "crossed_logistic(), which takes the answers there are."
         )
@@ -93,7 +90,7 @@ def groups_of(taken: pd.DataFrame, subjects: pd.Index, name: Any) -> pd.Series:
     if other.any():
         who, second = observers[row[other.argmax()]], taken["between"].iloc[other.argmax()]
         raise ValueError(
-            f"Observer {who!r} is in two groups of {name!r}, {group[who]!r} and {second!r} (line "
+            f"Observer {written(who)} is in two groups of {name!r}, {written(group[who])} and {written(second)} (line "
             f"{taken.index[other.argmax()]}); expected one. If these are two people, give them two "
             "names."
         )
@@ -101,23 +98,21 @@ def groups_of(taken: pd.DataFrame, subjects: pd.Index, name: Any) -> pd.Series:
     counts = counts[counts > 0]
     if len(counts) < 2:
         raise ValueError(
-            f"All {len(group)} observers are in one group, {counts.index[0]!r}, of {name!r}; "
+            f"All {len(group)} observers are in one group, {written(counts.index[0])}, of {name!r}; "
             "expected two groups or more."
         )
     if len(alone := counts.index[counts < 2]):
         who = group.index[(group == alone[0]).to_numpy()][0]
         raise ValueError(
-            f"The group {alone[0]!r} of {name!r} has one observer, {who!r}; expected two or more "
+            f"The group {written(alone[0])} of {name!r} has one observer, {written(who)}; expected two or more "
             "in each group, since one tells nothing of how observers differ."
         )
     return group
 
 
-def shown_names(names: Any) -> str:
-    """Return some names for a message, and how many more there are."""
-    names = [str(name) for name in names]
-    more = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
-    return ", ".join(names[:_MAX_NAMES]) + more
+def written(value: Any) -> str:
+    """Return a cell's value for a message: texts in quotes, numbers as such."""
+    return repr(value.item() if hasattr(value, "item") else value)
 
 
 def _finite_numbers(column: pd.Series, name: Any) -> pd.Series:
@@ -126,7 +121,7 @@ def _finite_numbers(column: pd.Series, name: Any) -> pd.Series:
     if wrong.any():
         row = int(wrong.to_numpy().argmax())
         raise ValueError(
-            f"Line {row + 2} of the table has {column.iloc[row]!r} in the column {name!r}; "
+            f"Line {row + 2} of the table has {written(column.iloc[row])} in the column {name!r}; "
             "expected a finite number. Correct it, or leave the line out."
         )
     return values

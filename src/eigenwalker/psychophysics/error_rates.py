@@ -6,7 +6,13 @@ import numpy as np
 import pandas as pd
 from scipy.stats import t as t_distribution
 
-from eigenwalker.psychophysics.answer_table import cell_means, groups_of, levels_of, take_columns
+from eigenwalker.psychophysics.answer_table import (
+    cell_means,
+    groups_of,
+    levels_of,
+    take_columns,
+    written,
+)
 
 
 def error_rates(
@@ -177,7 +183,7 @@ def judged(table: pd.DataFrame, **columns: str) -> pd.DataFrame:
         row = int(foreign.to_numpy().argmax())
         answer = taken["response"].iloc[row]
         raise ValueError(
-            f"Line {row + 2} of the table has the answer {answer!r} in the column "
+            f"Line {row + 2} of the table has the answer {written(answer)} in the column "
             f"{columns['response']!r}; expected one of the classes of {columns['truth']!r}, "
             f"{sorted(map(str, classes))[:6]}, or an empty cell where there was no answer. Rename "
             "keys to classes first."

@@ -9,7 +9,13 @@ import pandas as pd
 from scipy.linalg import helmert
 from scipy.stats import chi2, f as f_distribution
 
-from eigenwalker.psychophysics.answer_table import cell_means, groups_of, levels_of, take_columns
+from eigenwalker.psychophysics.answer_table import (
+    cell_means,
+    groups_of,
+    levels_of,
+    take_columns,
+    written,
+)
 
 _NO_VARIANCE = 1e-20
 """Share of the sum of squares below which observers do not vary but for rounding."""
@@ -164,7 +170,7 @@ def strata_of(taken: pd.DataFrame, *, between: str, within: str) -> Strata:
     means = cell_means(taken)
     if means.shape[1] < 2:
         raise ValueError(
-            f"All observations are at one level, {means.columns[0]!r}, of {within!r}; expected two "
+            f"All observations are at one level, {written(means.columns[0])}, of {within!r}; expected two "
             "levels or more."
         )
     group = groups_of(taken, means.index, between)
