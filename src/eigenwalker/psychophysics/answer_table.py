@@ -74,7 +74,8 @@ def cell_means(taken: pd.DataFrame) -> pd.DataFrame:
         others = int(empty.any(axis=1).sum()) - 1
         more = f", and {others} more observers lack cells" if others else ""
         raise ValueError(
-            f"Observer {written(means.index[row])} has no answers at the level {written(means.columns[column])}"
+            f"Observer {written(means.index[row])} has no answers at the level "
+            f"{written(means.columns[column])}"
             f"{more}; an ANOVA needs all cells of an observer. Leave such observers out, or use "
             "crossed_logistic(), which takes the answers there are."
         )
@@ -90,7 +91,8 @@ def groups_of(taken: pd.DataFrame, subjects: pd.Index, name: Any) -> pd.Series:
     if other.any():
         who, second = observers[row[other.argmax()]], taken["between"].iloc[other.argmax()]
         raise ValueError(
-            f"Observer {written(who)} is in two groups of {name!r}, {written(group[who])} and {written(second)} (line "
+            f"Observer {written(who)} is in two groups of {name!r}, {written(group[who])} and "
+            f"{written(second)} (line "
             f"{taken.index[other.argmax()]}); expected one. If these are two people, give them two "
             "names."
         )
@@ -98,13 +100,15 @@ def groups_of(taken: pd.DataFrame, subjects: pd.Index, name: Any) -> pd.Series:
     counts = counts[counts > 0]
     if len(counts) < 2:
         raise ValueError(
-            f"All {len(group)} observers are in one group, {written(counts.index[0])}, of {name!r}; "
+            f"All {len(group)} observers are in one group, {written(counts.index[0])}, of "
+            f"{name!r}; "
             "expected two groups or more."
         )
     if len(alone := counts.index[counts < 2]):
         who = group.index[(group == alone[0]).to_numpy()][0]
         raise ValueError(
-            f"The group {written(alone[0])} of {name!r} has one observer, {written(who)}; expected two or more "
+            f"The group {written(alone[0])} of {name!r} has one observer, {written(who)}; expected "
+            "two or more "
             "in each group, since one tells nothing of how observers differ."
         )
     return group

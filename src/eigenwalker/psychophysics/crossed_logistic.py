@@ -558,7 +558,8 @@ def _zeros_and_ones(taken: pd.DataFrame, name: Any) -> pd.DataFrame:
         place = int(wrong.to_numpy().argmax())
         answer = answered["response"].iloc[place]
         raise ValueError(
-            f"Line {answered.index[place]} of the table has {written(answer)} in the column {name!r}; "
+            f"Line {answered.index[place]} of the table has {written(answer)} in the column "
+            f"{name!r}; "
             "expected 0 or 1, such as whether the answer was wrong."
         )
     if values.nunique() < 2:

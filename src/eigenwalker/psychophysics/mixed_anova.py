@@ -170,7 +170,8 @@ def strata_of(taken: pd.DataFrame, *, between: str, within: str) -> Strata:
     means = cell_means(taken)
     if means.shape[1] < 2:
         raise ValueError(
-            f"All observations are at one level, {written(means.columns[0])}, of {within!r}; expected two "
+            f"All observations are at one level, {written(means.columns[0])}, of {within!r}; "
+            "expected two "
             "levels or more."
         )
     group = groups_of(taken, means.index, between)
