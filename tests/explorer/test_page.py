@@ -508,6 +508,18 @@ def test_a_capture_walks_on_the_page_that_is_served(browser, served, tmp_path):
     told = there.page.get_by_role("status").get_by_text("Read at 60 frames a second, in m")
     told.wait_for(timeout=90_000)
     there.page.get_by_label("Frames a second").fill("")
+    there.page.get_by_label("Unit of length").select_option(label="as the file says")
+    own = [f"pt{number:02d}" for number in range(15)]
+    walk = ew.simulate_walk(seed=6, duration_s=6).assign_coords(marker=own)
+    named = ew.write_mocap(walk, tmp_path / "own.c3d")
+    there.page.locator("#file").set_input_files(named)
+    there.page.get_by_role("alert").get_by_text("Marker names").wait_for(timeout=90_000)
+    pairs = zip(ew.JOINTS.markers, own, strict=True)
+    there.bring("names.toml", "\n".join(["[joints]", *(f'{a} = "{b}"' for a, b in pairs)]).encode())
+    there.page.get_by_text("Marker names: names.toml").wait_for()
+    there.page.locator("#file").set_input_files(named)
+    there.page.get_by_role("status").get_by_text("own.c3d walks").wait_for(timeout=90_000)
+    there.page.get_by_role("button", name="remove").click()
     there.bring("broken.c3d", b"no capture at all")
     there.page.get_by_role("alert").get_by_text("broken.c3d").wait_for(timeout=90_000)
     assert there.state()["w"] == "own"

@@ -40,6 +40,10 @@ async function openDropped({ files, folder }: DroppedFiles): Promise<void> {
     const done = notices.busy(`Reading ${name} \u2026`);
     try {
       const opened = await openFiles(bundle, session?.source ?? null, folder);
+      if (opened.kind === "names") {
+        notices.news(opened.messages.join(" "));
+        continue;
+      }
       const news = show(opened, name);
       const more = [...(opened.kind === "model" ? warnings(opened.source.model) : []), ...opened.messages];
       if (more.length > 0) notices.info([news, ...more]);
@@ -54,7 +58,7 @@ async function openDropped({ files, folder }: DroppedFiles): Promise<void> {
 }
 
 /** Show opened files; returns a sentence about them. */
-function show(opened: Opened, name: string): string {
+function show(opened: Exclude<Opened, { kind: "names" }>, name: string): string {
   if (opened.kind === "own") {
     session?.store.setOwn(opened.own);
     return `${opened.own.name} walks.`;

@@ -6,12 +6,13 @@ import type { Model, OwnWalker } from "../model/model";
 import { modelSourceOf, type ModelSource } from "../model/modelSource";
 import { find } from "../page/elements";
 import { ownWalkerOf } from "./ownWalker";
-import { fieldsSaid, hasServer, readCapture, readPopulation } from "./server";
+import { fieldsSaid, hasServer, nameMarkers, readCapture, readCaptures, readPopulation } from "./server";
 
 /** The content of files, with messages about them. */
 export type Opened = { readonly messages: readonly string[] } & (
   | { readonly kind: "model"; readonly source: ModelSource }
   | { readonly kind: "own"; readonly own: OwnWalker }
+  | { readonly kind: "names" }
 );
 
 const MAX_TEXT_BYTES = 64e6;
@@ -19,6 +20,8 @@ const POPULATION = /\.nc$/i;
 const TEXT = /\.json$/i;
 /** Limit of the files that are named one by one. */
 const MAX_NAMED = 2;
+/** Names of markers of one's own. */
+const NAMES = /\.toml$/i;
 /** Files that belong to a capture. */
 const COMPANION = /\.asf$/i;
 
@@ -37,8 +40,15 @@ export function bundleName(files: readonly File[], folder = ""): string {
 }
 
 /** Open files that belong together: the page reads them if it can, else the server. */
-export async function openFiles(files: readonly File[], source: ModelSource | null, folder = ""): Promise<Opened> {
-  const [file, ...others] = files;
+export async function openFiles(brought: readonly File[], source: ModelSource | null, folder = ""): Promise<Opened> {
+  const [names, more] = brought.filter(({ name }) => NAMES.test(name));
+  if (names && more) throw new Error(`${names.name} and ${more.name}: one file of marker names is enough.`);
+  const files = brought.filter((each) => each !== names);
+  if (names && hasServer()) nameMarkers(names);
+  const [file, ...others] = names && files.length === 0 && !hasServer() ? brought : files;
+  if (names && !file) {
+    return { kind: "names", messages: [`${names.name} names the markers of captures from now on.`] };
+  }
   if (!file) throw new Error("There is no file in that.");
   if (TEXT.test(file.name)) return openText(file, source?.model ?? null);
   const isPopulation = POPULATION.test(file.name);
@@ -48,7 +58,7 @@ export async function openFiles(files: readonly File[], source: ModelSource | nu
   }
   const captures = files.filter(({ name }) => !COMPANION.test(name));
   if (!isPopulation && captures.length <= 1) return openCapture(files, source);
-  const { model, messages } = await readPopulation(files);
+  const { model, messages } = await (isPopulation ? readPopulation(file) : readCaptures(files));
   const opened = modelSourceOf(model);
   if (isPopulation) return { kind: "model", source: opened, messages };
   const name = { captures: bundleName(captures, folder) };

@@ -12,10 +12,26 @@ const POPULATION = record({ model: {}, messages: lines });
 /** What the visitor knows of captures better than their files: frames a second, and the unit of length. */
 export const captureFields: { rate?: string; unit?: string } = {};
 
+/** The visitor's own names of markers, which go with every capture; `changed` is called when they are others. */
+export const markerNames: { file: File | null; changed: () => void } = { file: null, changed: () => undefined };
+
+export function nameMarkers(file: File | null): void {
+  markerNames.file = file;
+  markerNames.changed();
+}
+
+const withNames = (captures: readonly File[]): readonly File[] =>
+  markerNames.file ? [...captures, markerNames.file] : captures;
+
 /** A sentence about the fields where they are filled in, for messages about captures. */
 export function fieldsSaid(): string[] {
   const { rate, unit } = captureFields;
-  const said = [...(rate ? [`at ${rate} frames a second`] : []), ...(unit ? [`in ${unit}`] : [])];
+  const names = markerNames.file?.name;
+  const said = [
+    ...(rate ? [`at ${rate} frames a second`] : []),
+    ...(unit ? [`in ${unit}`] : []),
+    ...(names ? [`with the marker names of ${names}`] : []),
+  ];
   return said.length > 0 ? [`Read ${said.join(", ")}, as the fields under "Who walks" say.`] : [];
 }
 
@@ -24,14 +40,20 @@ export const hasServer = (): boolean =>
 
 /** A capture, with the files that belong to it, as a walker of a population that the server holds. */
 export const readCapture = (files: readonly File[], population: string) =>
-  answerAbout(files, CAPTURE, "walker", post("capture", { ...queryOf(files), population }, new Blob([...files])));
+  answerAbout(withNames(files), CAPTURE, "walker", (all) => post("capture", { ...queryOf(all), population }, new Blob([...all])));
 
-/** The file of a population, or many captures with or without a table of traits, as a model. */
-export const readPopulation = (files: readonly File[]) =>
-  answerAbout(files, POPULATION, "population", post("population", queryOf(files), new Blob([...files])));
+/** The file of a population as a model. */
+export const readPopulation = (file: File) =>
+  answerAbout([file], POPULATION, "population", (all) => post("population", queryOf(all), new Blob([...all])));
 
-async function answerAbout<T>(files: readonly File[], schema: Schema<T>, what: string, answer: Promise<Response>): Promise<T> {
-  const content: unknown = await (await answer).json();
+/** Many captures, with or without a table of traits, as a model. */
+export const readCaptures = (files: readonly File[]) =>
+  answerAbout(withNames(files), POPULATION, "population", (all) => post("population", queryOf(all), new Blob([...all])));
+
+async function answerAbout<T>(
+  files: readonly File[], schema: Schema<T>, what: string, send: (files: readonly File[]) => Promise<Response>,
+): Promise<T> {
+  const content: unknown = await (await send(files)).json();
   return explained(`The server's answer about ${files[0]?.name} is no ${what}`, () => checked(content, schema, "answer"));
 }
 

@@ -5,7 +5,7 @@ import { MAX_IN_CROWD, type SceneName, type State } from "../model/state";
 import { button, freshId, make } from "../page/elements";
 import { choice, pick, type Option } from "./controls";
 import { bound, group, note } from "./parts";
-import { captureFields, hasServer } from "./server";
+import { captureFields, hasServer, markerNames, nameMarkers } from "./server";
 import type { Part, Store } from "./store";
 
 /** `open` lets the visitor choose files. */
@@ -58,8 +58,28 @@ function aboutCaptures(): HTMLElement {
   rate.addEventListener("input", () => setField("rate", rate.value));
   const unit = pick("Unit of length", [{ value: "", label: "as the file says" }, ...UNITS], (value) => setField("unit", value));
   unit.show(captureFields.unit ?? "");
-  return make("div", { class: "pair" },
+  const fields = make("div", { class: "pair" },
     make("div", { class: "pick" }, make("label", { for: id }, "Frames a second"), rate), unit.element);
+  return make("div", {}, fields, ownMarkerNames());
+}
+
+/** The file that names the markers of captures, where theirs are no known ones. */
+function ownMarkerNames(): HTMLElement {
+  const input = make("input", { type: "file", accept: ".toml", hidden: true, "aria-label": "File of marker names" });
+  input.addEventListener("change", () => {
+    nameMarkers(input.files?.[0] ?? markerNames.file);
+    input.value = "";
+  });
+  const named = make("span", {});
+  const choose = button("choose a file", () => input.click(), { class: "link" });
+  const remove = button("remove", () => nameMarkers(null), { class: "link" });
+  markerNames.changed = () => {
+    named.textContent = markerNames.file ? `Marker names: ${markerNames.file.name}, ` : "Marker names of your own (.toml): ";
+    choose.hidden = markerNames.file !== null;
+    remove.hidden = markerNames.file === null;
+  };
+  markerNames.changed();
+  return make("p", { class: "note" }, named, choose, remove, ".", input);
 }
 
 function setField(field: keyof typeof captureFields, value: string): void {

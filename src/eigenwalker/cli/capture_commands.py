@@ -79,14 +79,28 @@ def _write_mapping(capture: Path, output: Path, reading: Reading) -> None:
     from eigenwalker.core.atomic_write import atomic_write
     from eigenwalker.io.read import read_mocap
     from eigenwalker.markers.mapping import mapping_to_begin_with
+    from eigenwalker.study.marker_hints import marker_hints
 
     if output.suffix.lower() != ".toml":
         raise ValueError(f"--write-mapping {output}: a mapping is a .toml file.")
     del reading["mapping"]  # it is what is begun
-    markers = [str(name) for name in read_mocap(capture, **reading).marker.values]
+    captured = read_mocap(capture, **reading)
+    hints = marker_hints(captured)
+    note = (
+        "Left and right are by the direction of walking."
+        if hints.sides_known
+        else "The markers stay where they are: left and right may be exchanged in what is guessed."
+    )
+    markers = [str(name) for name in captured.marker.values]
+    text = mapping_to_begin_with(markers, capture.name, hints.places, hints.joints, note)
     with atomic_write(output) as unfinished:
-        unfinished.write_text(mapping_to_begin_with(markers, capture.name), encoding="utf-8")
-    print(f"Mapping to be put right: {output}; then give it as --mapping {output}.")
+        unfinished.write_text(text, encoding="utf-8")
+    n_named = sum(not line.startswith("#") and " = " in line for line in text.splitlines())
+    n_near = text.count("# by its place")
+    print(
+        f"Mapping to be put right: {output}; {n_named} lines by names, {n_near} by places (take "
+        f"the # away from those that are right). Then give it as --mapping {output}."
+    )
 
 
 def _in_options(value: str | list[str]) -> str | list[str]:

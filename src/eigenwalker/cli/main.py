@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -90,7 +91,8 @@ def _run(name: str, words: list[str]) -> None:
 
         command = load_command(name)
         use_options_of(command)
-        warnings.showwarning = lambda message, *_, **__: _say(message)
+        say_once = cache(_say)
+        warnings.showwarning = lambda message, *_, **__: say_once(str(message))
         try:
             command(args=words, prog_name=f"{called_as()} {name}")
         except (ValueError, OSError) as error:

@@ -8,7 +8,9 @@ from eigenwalker.core.wording import reworded
 
 _RATE = '"Frames a second" under "Who walks" on this page ({value})'
 _UNIT = '"Unit of length" under "Who walks" on this page ({value})'
+_NAMES = '"Marker names" under "Who walks" on this page'
 FIELDS = {"rate_hz": _RATE, "default_rate_hz": _RATE, "unit": _UNIT, "default_unit": _UNIT}
+FIELDS["mapping"] = _NAMES
 """Fields of the page that give arguments of Python, which messages name."""
 _CALL = re.compile(r"\b[a-z]\w*[_.][\w.]*\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)")
 _PARTS = re.compile(r"((?<=[.!?]) |; )")

@@ -159,8 +159,18 @@ def is_mapping(path: Path) -> bool:
     return re.search(rb"(?m)^\s*\[(joints|skin)\]", beginning) is not None
 
 
-def mapping_to_begin_with(markers: Sequence[str], source: str) -> str:
-    """Return the text of a mapping for markers, with guesses, to be put right by hand."""
+def mapping_to_begin_with(
+    markers: Sequence[str],
+    source: str,
+    places: Mapping[str, str] | None = None,
+    near: Mapping[str, str] | None = None,
+    note: str = "",
+) -> str:
+    """Return the text of a mapping for markers, with guesses, to be put right by hand.
+
+    `places` says in words where each marker is, `near` which is nearest to a joint, and `note`
+    what to know of both.
+    """
     names = marker_names(tuple(markers))
     nearest = max(known_sets(), key=lambda known: known.share_found(names))
     found = {
@@ -178,7 +188,8 @@ def mapping_to_begin_with(markers: Sequence[str], source: str) -> str:
         f"# The markers of {source}: which joint or landmark is which.",
         '# A line is a marker, or several whose midpoint is meant: pelvis = ["LASI", "RASI"].',
         "# Lines that begin with # do not count. What is marked as a guess should be looked at.",
-        f"# Markers of the file: {', '.join(markers)}",
+        *(f"# {line}" for line in filter(None, [note])),
+        *_markers_in_words(markers, places or {}),
         "",
         "[joints]",
         "# Centres of joints, or markers that stand for them. Left out, they are computed.",
@@ -188,6 +199,8 @@ def mapping_to_begin_with(markers: Sequence[str], source: str) -> str:
             lines.append(f"{joint} = {_value(found['joints'][joint])}  # as {nearest.name} has it")
         elif joint in guesses and not on_skin:
             lines.append(f"{joint} = {_value([guesses[joint]])}  # guess")
+        elif not on_skin and joint in (near or {}):
+            lines.append(f"# {joint} = {_value([(near or {})[joint]])}  # by its place; is it?")
         else:
             lines.append(f'# {joint} = ""')
     lines += ["", "[skin]", "# Markers on the skin, from which the centres of joints are computed."]
@@ -198,6 +211,13 @@ def mapping_to_begin_with(markers: Sequence[str], source: str) -> str:
         )
         lines.append(known or f'# {landmark} = ""')
     return "\n".join(lines) + "\n"
+
+
+def _markers_in_words(markers: Sequence[str], places: Mapping[str, str]) -> list[str]:
+    if not places:
+        return [f"# Markers of the file: {', '.join(markers)}"]
+    lines = (f"#   {marker}: {places.get(marker, 'seldom seen')}" for marker in markers)
+    return ["# Markers of the file:", *lines]
 
 
 def _value(markers: Sequence[str]) -> str:

@@ -239,10 +239,9 @@ def _best_set(
     nearest = min(missing, key=lambda name: len(missing[name]))
     raise ValueError(
         f"No known marker set gives the joints {missing[nearest]} (the nearest is {nearest!r}). "
-        "Name the markers they are: virtual_markers(..., mapping="
-        f"{{{missing[nearest][0]!r}: ['marker', 'marker'], ...}}), one marker, or several whose "
-        "midpoint is the joint; eigenwalker info FILE --write-mapping names.toml begins a file of "
-        f"them. The capture has {_shortened(list(points))}."
+        "Name the markers that they are in a file: 'eigenwalker info FILE --write-mapping "
+        "names.toml' begins it with what their places say. Then give it: "
+        f"virtual_markers(..., mapping='names.toml'). The capture has {_shortened(list(points))}."
     )
 
 
