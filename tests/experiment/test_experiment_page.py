@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from eigenwalker.experiment.experiment_texts import sections_of
 from eigenwalker.experiment.export import export_experiment
 from eigenwalker.experiment.status import experiment_status
 
@@ -84,13 +85,24 @@ def press(page: Page, name: str) -> None:
 def answer(page: Page, key: str = "f") -> None:
     page.locator("#trials button:enabled").first.wait_for()
     page.evaluate("document.querySelector('#trials canvas').id = 'answered'")
-    page.keyboard.press(key)
+    strike(page, key)
     page.locator("#answered").wait_for(state="detached")
+
+
+def strike(page: Page, key: str) -> None:
+    """Press a key, whatever is printed on it."""
+    if key.isascii():
+        return page.keyboard.press(key)
+    strike = """([type, key]) => document.activeElement.dispatchEvent(
+        new KeyboardEvent(type, { key, bubbles: true }))"""
+    for kind in ("keydown", "keyup"):
+        page.evaluate(strike, [kind, key])
+    return None
 
 
 def rows(folder: Path, output: Path) -> list[dict[str, str]]:
     export_experiment(folder, output)
-    with next(output.glob("data/*.csv")).open(encoding="utf-8") as file:
+    with min(output.glob("data/*.csv")).open(encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
@@ -179,23 +191,133 @@ def test_without_storage_each_answer_is_sent_before_the_next_trial(
     context.close()
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (320, 640)])
-def test_the_pages_are_accessible(
-    browser: Browser, server: Server, run_command: Callable, size: tuple[int, int]
+HEBREW = {
+    "direction": "rtl",
+    "title": "מי הולך שם?",
+    "language": "שפה",
+    "agree": "קראתי ואני משתתף",
+    "instructions": "לחצו **ש** לאישה, **ג** לגבר, או געו בלחצנים.",
+    "key_female": "ש",
+    "button_female": "אישה (ש)",
+    "key_male": "ג",
+    "button_male": "גבר (ג)",
+}
+QUESTIONS = """
+[[questions]]
+name = "age"
+kind = "number"
+
+[[questions]]
+name = "hand"
+kind = "choice"
+options = ["left", "right"]
+"""
+
+
+@pytest.fixture
+def in_hebrew(small: Callable[..., Path]) -> Iterator[Server]:
+    """An experiment in two languages, with questions, on a screen that is measured."""
+    folder = small(
+        blank_s="0.05",
+        instances="1",
+        full_screen="false",
+        languages='["en", "he"]',
+        duration_s="4.0",
+    )
+    english = folder / "texts" / "en.md"
+    words = (
+        "\n\n# question_age\nAge\n\n# question_hand\nHand\n\n# option_left\nL\n\n# option_right\nR"
+    )
+    english.write_text(english.read_text(encoding="utf-8") + words, encoding="utf-8")
+    sections = sections_of(english.read_text(encoding="utf-8")) | HEBREW
+    text = "".join(f"# {name}\n{each}\n\n" for name, each in sections.items())
+    (folder / "texts" / "he.md").write_text(text, encoding="utf-8")
+    with (folder / "design.toml").open("a", encoding="utf-8") as file:
+        file.write(QUESTIONS)
+    started = Server(folder)
+    yield started
+    started.kill()
+
+
+def check(page: Page, width: int) -> None:
+    """What automatic checks of accessibility find on a page, and whether it fits."""
+    if not page.evaluate("'axe' in window"):
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run().then(({ violations }) => violations.map((v) => v.id))")
+    assert found == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def go_on_by_keys(page: Page) -> None:
+    """Go to the first button of the page by the tabulator alone, and press it."""
+    page.locator("#page .first").wait_for()
+    for _ in range(20):
+        if page.evaluate("document.activeElement.className") == "first":
+            break
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+
+
+def test_all_pages_are_accessible_and_work_by_keys_alone_on_a_narrow_screen_from_right_to_left(
+    browser: Browser, in_hebrew: Server, run_command: Callable, tmp_path: Path
 ) -> None:
-    with visit(browser, server.link(run_command), bypass_csp=True) as (_, page):
-        page.set_viewport_size({"width": size[0], "height": size[1]})
-        for name in ("I have read this", "Begin"):
-            page.get_by_role("button", name=name).wait_for()
-            page.add_script_tag(content=AXE.read_text(encoding="utf-8"))
-            found = page.evaluate("axe.run().then(({ violations }) => violations.map((v) => v.id))")
-            assert found == []
-            assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
-            page.keyboard.press("Tab")
-            page.get_by_role("button", name=name).focus()
-            page.keyboard.press("Enter")
+    with visit(browser, in_hebrew.link(run_command), bypass_csp=True) as (_, page):
+        page.set_viewport_size({"width": 320, "height": 640})
+        page.get_by_label("Language").focus()
+        page.keyboard.press("ArrowDown")
+        page.get_by_role("heading", name=HEBREW["title"]).wait_for()
+        assert page.evaluate("document.documentElement.dir") == "rtl"
+        for wanted in (HEBREW["agree"], "The frame fits my card"):
+            page.get_by_role("button", name=wanted).wait_for()
+            check(page, 320)
+            go_on_by_keys(page)
+        page.get_by_label("Distance").wait_for()
+        check(page, 320)
+        go_on_by_keys(page)
+        page.get_by_text("Please give a number").wait_for()
+        page.get_by_label("Distance").focus()
+        page.keyboard.type("40")
+        page.keyboard.press("Enter")
+        page.get_by_label("Age").wait_for()
+        check(page, 320)
+        page.get_by_label("Age").focus()
+        page.keyboard.type("33")
+        page.keyboard.press("Tab")
+        page.keyboard.press("Space")
+        go_on_by_keys(page)
+        page.get_by_role("button", name="Begin").wait_for()
+        check(page, 320)
+        go_on_by_keys(page)
         page.locator("#trials button:enabled").first.wait_for()
-        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        check(page, 320)
+        page.locator("#trials button:enabled").first.wait_for()
+        page.evaluate("document.querySelector('#trials canvas').id = 'asked'")
+        page.get_by_role("button", name="Stop", exact=True).focus()
+        page.keyboard.press("Enter")
+        page.get_by_role("dialog").wait_for()
+        strike(page, "ש")  # no answer to the trial behind it
+        check(page, 320)
+        page.keyboard.press("Escape")
+        page.locator("#asked").wait_for(state="detached")
+        for key in ("ש", "ג", "ש", "ג"):
+            answer(page, key)
+        page.get_by_text("You have finished a part").wait_for()
+        check(page, 320)
+        go_on_by_keys(page)
+        for _ in range(8):
+            answer(page, "ג")
+        page.get_by_text("every answer has arrived").wait_for()
+        check(page, 320)
+        code = page.locator("code").inner_text()
+        page.reload()
+        page.get_by_text(code).wait_for()  # the last page is there again
+    found = rows(in_hebrew.folder, tmp_path / "data")
+    assert [row["interrupted"] for row in found].count("1") == 1
+    given = [row["response"] for row in found if row["outcome"] == "answered"]
+    assert given == ["female", "male"] * 2 + ["male"] * 8
+    questions = next((tmp_path / "data").glob("**/*questions*.csv")).read_text(encoding="utf-8")
+    assert "age,33" in questions
+    assert "hand,left" in questions
 
 
 def test_the_most_similar_pair_of_four_mannequins_is_chosen_by_touch_and_by_keys(

@@ -67,6 +67,7 @@ class FiguresPlugin {
       make("div", { class: "jspsych-walker-buttons" }, ...buttons),
     );
 
+    const stage = this.jsPsych.getDisplayContainerElement();
     const log = new ShowingLog();
     const half = log.refreshMs / 2;
     const shownMs = trial.stimulus_duration ?? trial.trial_duration!;
@@ -99,7 +100,7 @@ class FiguresPlugin {
       const place = trial.keys!.indexOf(event.key.toLowerCase());
       if (place >= 0 && !event.repeat) choose(place, "key", "keyboard", timeOf(event));
     };
-    document.addEventListener("keydown", onKey, { signal: ending.signal });
+    stage.addEventListener("keydown", onKey, { signal: ending.signal });
     (isChoice ? (figures as HTMLButtonElement[]) : buttons).forEach((each, i) => {
       each.onclick = (event) => choose(i, "button", deviceOf(event), timeOf(event));
     });

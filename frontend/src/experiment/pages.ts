@@ -75,6 +75,7 @@ export class Pages {
     this.main.hidden = true;
     this.main.replaceChildren();
     this.trials.hidden = false;
-    return this.trials;
+    find("#trials h1", HTMLElement).textContent = this.text("title");
+    return find("#stage", HTMLElement);
   }
 }

@@ -9,7 +9,7 @@ import AdjustmentPlugin from "./adjustmentPlugin";
 import { itemOf, type Content, type Item } from "./answers";
 import FiguresPlugin from "./figuresPlugin";
 import type { Pages } from "./pages";
-import { expectKeys } from "./printedKeys";
+import { StageKeys } from "./printedKeys";
 import { isRight, type TrialProgress } from "./progressOfTrials";
 import type { ScreenWatch } from "./screenWatch";
 import type { Block, SessionContent, StimulusFile, Trial } from "./session";
@@ -43,7 +43,9 @@ interface Shown {
 /** Show all trials that are to be done; the promise is kept when there are none, or at a stop. */
 export async function runTrials(options: TrialsOptions): Promise<void> {
   const { pages, progress, stopping, watch, keep } = options;
-  const jsPsych = initJsPsych({ display_element: pages.showTrials(), override_safe_mode: true });
+  const stage = pages.showTrials();
+  const jsPsych = initJsPsych({ display_element: stage, override_safe_mode: true });
+  const keys = new StageKeys(stage);
   const mannequin = await mannequinFor(options);
   const goOn = (text: string): Promise<string> =>
     pages.ask([pages.title(), pages.paragraphs(text)], [["continue", "continue"]]);
@@ -52,7 +54,7 @@ export async function runTrials(options: TrialsOptions): Promise<void> {
     await watch.check();
     pages.showTrials();
     const results: Result[] = [];
-    await jsPsych.run([blank(options), oneTrial(trial, options, mannequin, (result) => results.push(result))]);
+    await jsPsych.run([blank(options), oneTrial(trial, options, { mannequin, keys }, (result) => results.push(result))]);
     jsPsych.data.reset(); // what was kept is in the outbox
     await stopping.answered;
     if (options.stopped()) return;
@@ -70,6 +72,12 @@ export async function runTrials(options: TrialsOptions): Promise<void> {
     if (isBetween || (next && next !== trial && trial.break_after)) await goOn("break");
     trial = next;
   }
+  keys.stop();
+}
+
+interface Stage {
+  readonly mannequin: MannequinPainter | null;
+  readonly keys: StageKeys;
 }
 
 /** What became of a trial. */
@@ -104,7 +112,7 @@ const step = (content: readonly Node[], seconds: number): TrialDescription => ({
 function oneTrial(
   trial: Trial,
   options: TrialsOptions,
-  mannequin: MannequinPainter | null,
+  { mannequin, keys }: Stage,
   note: (result: Result) => void,
 ): TrialDescription {
   const { progress, keep, stopping } = options;
@@ -115,7 +123,6 @@ function oneTrial(
   let watched: ReturnType<typeof watch>;
   let wasAsked = false;
   const onStop = (): void => void (wasAsked ||= stopping.isOpen);
-  let keys = (): void => {};
   const stimuli = ofStaircase === null ? trial.stimuli : [trial.stimuli[ofStaircase]!];
   const parameters = shown({ ...trial, stimuli }, block, options, mannequin, scale);
   const choices = parameters["choices"] ?? parameters["keys"];
@@ -124,14 +131,13 @@ function oneTrial(
     on_start: () => {
       progress.note({ kind: "begun", trial: trial.trial, attempt, outcome: null });
       void keep(itemOf("begun", {}, trial.trial, attempt));
-      keys = expectKeys((choices ?? []) as readonly string[]);
+      keys.expect((choices ?? []) as readonly string[]);
       document.addEventListener("focusin", onStop);
       onStop();
       watched = watch();
     },
     // jsPsych waits for this before the next trial begins
     on_finish: async (data: Shown & Content) => {
-      keys();
       onStop();
       document.removeEventListener("focusin", onStop);
       const around = watched.end();

@@ -150,25 +150,29 @@ class Service:
     def welcome(self, key: str, site: Mapping[str, str] | None = None) -> Content:
         """Return what the first page shows; nothing is used up and nothing begins."""
 
-        def find(db: sqlite3.Connection) -> tuple[Content, list[Content]]:
+        def find(db: sqlite3.Connection) -> tuple[Content, list[Content], Content]:
             link = self._link(db, key)
             observer = link["observer"] or self._known_observer(db, link, site)
-            return link, [] if observer is None else store.sessions_of(db, observer)
+            begun = [] if observer is None else store.sessions_of(db, observer)
+            over = link["observer"] and begun and begun[-1]["outcome"]
+            return link, begun, {"end": self._end_content(db, begun[-1])} if over else {}
 
-        link, begun = self.writer.do(find)
+        link, begun, end = self.writer.do(find)
         version = begun[-1]["version"] if self._under_way(begun) else self.keep_version()
         material = self.version_material(version)
         design = material.design
         texts = {name: material.texts(name) for name in design.languages}
+        state = self._state(design, begun)
         return {
             "name": design.name,
-            "state": self._state(design, begun),
+            "state": state,
             "languages": {name: each.for_page for name, each in texts.items()},
             "consent": {name: each.consent_hash for name, each in texts.items()},
             "test": link["kind"] == "preview" or link["observer_kind"] == "test",
             "personal": link["observer"] is not None,
             "phones": design.screen.phones,
             "site_parameters": design.recruiting.parameters,
+            **(end if state["name"] == "finished" else {}),
         }
 
     def start(
@@ -297,16 +301,20 @@ class Service:
             if how == "finished" and not self._all_answered(db, row):
                 raise Closed("not all answers have arrived")
             store.end_session(db, session, how)
-            recruiting = self.version_material(row["version"]).design.recruiting
-            shown = recruiting.model_dump(include={"completion_code", "return_url"})
-            return {
-                "withdrawal_code": withdrawal_code(store.secret(db), row["observer"]),
-                "n_answers": store.n_confirmed(db, session),
-                **(shown if how == "finished" else {}),
-            }
+            return self._end_content(db, self._session(db, key, session))
 
         found = self.writer.do(finish)
         return {"deleted": self._withdraw(found["observer"])} if how == "deleted" else found
+
+    def _end_content(self, db: sqlite3.Connection, row: Content) -> Content:
+        """Return what the last page of a session shows, also when it is loaded again."""
+        recruiting = self.version_material(row["version"]).design.recruiting
+        shown = recruiting.model_dump(include={"completion_code", "return_url"})
+        return {
+            "withdrawal_code": withdrawal_code(store.secret(db), row["observer"]),
+            "n_answers": store.n_confirmed(db, row["session"]),
+            **(shown if row["outcome"] == "finished" else {}),
+        }
 
     @staticmethod
     def _all_answered(db: sqlite3.Connection, row: Content) -> bool:
@@ -393,7 +401,7 @@ class Service:
         if last["outcome"] is None:
             return {"name": "under_way", "session": last["number"]}
         if last["outcome"] == "stopped" or len(begun) >= design.n_sessions:
-            return {"name": "finished", "session": last["number"]}
+            return {"name": "finished", "session": last["number"], "outcome": last["outcome"]}
         ended = datetime.fromisoformat(last["ended_utc"])
         due = ended + timedelta(hours=design.sessions.least_hours)
         latest = ended + timedelta(hours=design.sessions.most_hours)
