@@ -53,7 +53,7 @@ def test_all_faults_are_named_at_once_with_line_and_remedy() -> None:
     found = {fault.problem: lines[fault.line - 1] for fault in caught.value.faults}
     assert len(found) >= 6
     assert "write 'instances'" in next(p for p, line in found.items() if "instanses" in line)
-    assert any("greater than or equal to 1, not 0" in problem for problem in found)
+    assert any("must be 1 or more, not 0" in problem for problem in found)
     assert any("'dots', 'sticks' or 'mannequin'" in problem for problem in found)
     assert any("seed is missing" in problem for problem in found)
 

@@ -56,11 +56,36 @@ def new(
 
 
 @experiment.command()
-def check(folder: Folder) -> None:
+def stimuli(
+    folder: Folder,
+    population: Annotated[
+        Path | None, option("Population file (.nc); left out, the built-in one.")
+    ] = None,
+) -> None:
+    """Make all stimuli anew, after the design was changed."""
+    from eigenwalker.experiment.experiment_folder import remake_stimuli
+
+    _checked_folder(folder)
+    people = load_people(population, with_flagged=False)
+    with progress_bar("Making stimuli") as progress:
+        made = remake_stimuli(folder, people, progress)
+    print(f"{folder}: {len(made.walkers)} walkers, {len(made.stimulus_names())} stimuli")
+
+
+@experiment.command()
+def check(
+    folder: Folder,
+    seeds: Annotated[
+        int, typer.Option(help="How many seeds to draw all orders of.", min=1, max=100_000)
+    ] = 1,
+    order: Annotated[
+        Path | None, option("File (.csv) for the trials of all observers.", "-o", "--output")
+    ] = None,
+) -> None:
     """Say all that can be known before anyone is invited: faults, order, balance, length."""
     from eigenwalker.experiment.check import check_experiment
 
-    print(check_experiment(_checked_folder(folder)))
+    print(check_experiment(_checked_folder(folder), n_seeds=seeds, order=order))
 
 
 @experiment.command()

@@ -25,7 +25,7 @@ NumberOfTrials = Annotated[int, Field(ge=1, le=2000)]
 class Part(BaseModel):
     """A part of a design, which refuses words that it does not know."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
 
 
 class Walkers(Part):

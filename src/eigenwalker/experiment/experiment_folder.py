@@ -14,8 +14,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eigenwalker.experiment.design import Design
-from eigenwalker.experiment.design_file import read_design
-from eigenwalker.experiment.experiment_texts import Texts, missing_texts, read_texts, template
+from eigenwalker.experiment.design_file import (
+    BadDesign,
+    Fault,
+    design_text,
+    fault_at,
+    lines_of,
+    parse_design,
+    read_design,
+)
+from eigenwalker.experiment.experiment_texts import (
+    Texts,
+    missing_texts,
+    read_texts,
+    template,
+    wrong_texts,
+)
 from eigenwalker.experiment.manipulations import (
     CARICATURE,
     MANIPULATIONS,
@@ -33,6 +47,7 @@ from eigenwalker.experiment.stimulus_bundle import (
     stimulus_bundle,
     stimulus_piece,
 )
+from eigenwalker.experiment.walker_faults import walker_faults
 
 if TYPE_CHECKING:
     from eigenwalker.population.population import Population
@@ -47,6 +62,7 @@ DESIGNS = (
     *("same_different", "odd_one_out", "adjustment"),
 )
 """Ready to run, beside `MANIPULATIONS` and `CARICATURE`."""
+_ANEW = "make them anew: eigenwalker experiment stimuli {}"
 TEXTS_OF = {
     "choice": "troje2002",
     "rating": "wdp2002",
@@ -133,28 +149,77 @@ class Material:
         )
 
     def faults(self) -> list[str]:
-        """Return what is missing beside the design, each with what to do."""
+        """Return all that is wrong, each with where it is and what to do."""
         found: list[str] = []
         try:
-            found += [
-                f"{STIMULI}/{name}.json is missing; make a new folder of this design: "
-                f"experiment new FOLDER --design {self.folder / DESIGN}"
-                for name in self.stimulus_names()
-                if not self.stimulus_path(name).is_file()
+            design: Design | None = self.design
+        except BadDesign as error:
+            found, design = str(error).splitlines(), error.without
+        if design is None:
+            return found
+        try:
+            wrong = self._design_faults(design)
+        except (OSError, KeyError, TypeError, json.JSONDecodeError):
+            found.append(f"{PEOPLE} is missing or damaged; {_ANEW.format(self.folder)}")
+        else:
+            found += [f"{DESIGN}, {fault}" for fault in wrong]
+            found += self._stimulus_faults() if not found else []
+        for language in design.languages:
+            found += self._text_faults(design, language)
+        return [*dict.fromkeys(found)]
+
+    def _design_faults(self, design: Design) -> list[Fault]:
+        """What the design asks of the walkers that they cannot give."""
+        lines = lines_of(design_text(self.folder / DESIGN))
+        faults = [fault_at(*conflict, lines) for conflict in walker_faults(design, self.people)]
+        return sorted(faults, key=lambda fault: fault.line)
+
+    def _stimulus_faults(self) -> list[str]:
+        changed = self._changed_since_made()
+        if changed:
+            what = ", ".join(changed)
+            return [
+                f"{STIMULI}/ were made for another design ({what}); {_ANEW.format(self.folder)}"
             ]
-        except (OSError, KeyError, ValueError) as error:
-            found.append(str(error) if isinstance(error, ValueError) else f"{PEOPLE} is missing")
-        for language in self.design.languages:
-            path = f"{TEXTS}/{language}.md"
-            try:
-                lacking = missing_texts(self.design, self.texts(language))
-            except OSError:
-                found.append(f"{path} is missing; write it, or take {language!r} out of languages")
-            except ValueError:
-                found.append(f"{path} is not in UTF-8; save it as UTF-8")
-            else:
-                found += [f"{path} lacks the section '# {name}'; add it" for name in lacking]
-        return found
+        names = self.stimulus_names()
+        lacking = [name for name in names if not self.stimulus_path(name).is_file()]
+        if not lacking:
+            return []
+        which = ", ".join(f"{STIMULI}/{name}.json" for name in lacking[:3])
+        more = f" and {len(lacking) - 3} more" if len(lacking) > 3 else ""
+        return [f"{which}{more} missing; {_ANEW.format(self.folder)}"]
+
+    def _changed_since_made(self) -> list[str]:
+        """What in the design is not as it was when the stimuli were made."""
+        made = self.people.get("made_for")
+        if made is None:
+            return []
+        now = recipe(self.design)
+        before, after = made["picture"], now["picture"]
+        found = [
+            f"{name} is {after[name]}, was {before.get(name)}"
+            for name in after
+            if after[name] != before.get(name)
+        ]
+        return found + [
+            f"condition {name!r}"
+            for name, condition in now["conditions"].items()
+            if condition != made["conditions"].get(name)
+        ]
+
+    def _text_faults(self, design: Design, language: str) -> list[str]:
+        path = f"{TEXTS}/{language}.md"
+        try:
+            texts = self.texts(language)
+        except OSError:
+            return [f"{path} is missing; write it, or take {language!r} out of languages"]
+        except ValueError:
+            return [f"{path} is not in UTF-8; save it as UTF-8"]
+        lacking = missing_texts(design, texts)
+        return [
+            *(f"{path} lacks the section '# {name}'; add it" for name in lacking),
+            *(f"{path}: {problem}" for problem in wrong_texts(design, texts)),
+        ]
 
     def hash(self) -> str:
         """Return the hash of design, texts and stimuli: the version of the experiment."""
@@ -187,6 +252,14 @@ class Material:
         unfinished.rename(folder)
 
 
+def recipe(design: Design) -> dict[str, Any]:
+    """Return what the stimuli of a design are made from, but walkers and views."""
+    picture = design.picture.model_dump(mode="json", exclude={"view_deg", "both_signs"})
+    screen = design.screen.model_dump(mode="json", include={"viewing_distance_mm", "px_per_cm"})
+    conditions = {each.name: each.model_dump(mode="json") for each in design.shown}
+    return {"picture": picture | screen, "conditions": conditions}
+
+
 def new_experiment(
     folder: Path,
     design_name: str,
@@ -197,42 +270,74 @@ def new_experiment(
     progress: Callable[[int, int], None] | None = None,
 ) -> Material:
     """Make the folder of an experiment: design, texts, and all stimuli."""
-    text, texts = _design_text(design_name)
+    text = _design_text(design_name)
     if folder.exists() and any(folder.iterdir()):
         raise ValueError(f"{folder} is not empty; name a new folder.")
-    (folder / TEXTS).mkdir(parents=True, exist_ok=True)
     text = text.replace("{seed}", str(seed))
     if walkers is not None:
-        text = _NUMBER.sub(f"number = {walkers}", text)
+        text = _with_walkers(text, walkers)
+    people = people_of(population)
+    design = parse_design(text, design_name)
+    if conflicts := walker_faults(design, people):
+        lines = lines_of(text)
+        faults = [fault_at(where, problem, lines) for where, problem in conflicts]
+        raise BadDesign(design_name, faults)
+    (folder / TEXTS).mkdir(parents=True, exist_ok=True)
     (folder / DESIGN).write_text(text, encoding="utf-8")
-    (folder / TEXTS / "en.md").write_text(template(texts), encoding="utf-8")
-    people = {
-        "walkers": population.names,
-        "provenance": dict(population.provenance),
-        **walker_scores(population),
-    }
-    (folder / PEOPLE).write_text(json.dumps(people) + "\n", encoding="utf-8")
+    tasks = [TEXTS_OF[block.task] for block in design.blocks]
+    (folder / TEXTS / "en.md").write_text(template(design, tasks), encoding="utf-8")
     material = Material(folder)
     write_stimuli(material, population, progress)
     return material
 
 
-def _design_text(name: str) -> tuple[str, str]:
-    """Return the text of a design by its name or file, and the name of its texts."""
+def _with_walkers(text: str, number: int) -> str:
+    """Return the text of a design with another number of walkers."""
+    if _NUMBER.search(text):
+        return _NUMBER.sub(f"number = {number}", text, count=1)
+    return text.rstrip() + f"\n\n[walkers]\nnumber = {number}\n"
+
+
+def people_of(population: Population) -> dict[str, Any]:
+    """Return what is kept of a population beside the stimuli."""
+    return {
+        "walkers": population.names,
+        "provenance": dict(population.provenance),
+        "traits": trait_poles(population),
+        **walker_scores(population),
+    }
+
+
+def trait_poles(population: Population) -> dict[str, list[str]]:
+    """Return the negative and the positive pole of each trait that has an axis."""
+    from eigenwalker.analysis.contrast import trait_contrast
+
+    found: dict[str, list[str]] = {}
+    for name in map(str, population.traits):
+        try:
+            contrast = trait_contrast(population, name)
+        except ValueError:
+            continue
+        found[name] = [contrast.negative, contrast.positive]
+    return found
+
+
+def _design_text(name: str) -> str:
+    """Return the text of a design by its name or file."""
     folder = files("eigenwalker.experiment").joinpath("designs")
     if name.endswith(".toml"):
-        design = read_design(Path(name))
-        task = design.blocks[0].task
-        return Path(name).read_text(encoding="utf-8-sig"), TEXTS_OF[task]
+        if not Path(name).is_file():
+            raise ValueError(f"--design {name}: there is no such file.")
+        return design_text(Path(name))
     if name in DESIGNS:
-        return folder.joinpath(f"{name}.toml").read_text(encoding="utf-8"), name
+        return folder.joinpath(f"{name}.toml").read_text(encoding="utf-8")
     kind, _, which = name.partition(":")
     found = CARICATURE if name == "caricature" else MANIPULATIONS.get(which)
     if found is None or (kind != "manipulation" and name != "caricature"):
         known = [*DESIGNS, "caricature", *(f"manipulation:{each}" for each in MANIPULATIONS)]
         raise ValueError(f"--design {name!r} is not known; choose from {', '.join(known)}.")
     frame = folder.joinpath("manipulation.toml").read_text(encoding="utf-8")
-    return manipulation_design(frame, which or name, found), "troje2002"
+    return manipulation_design(frame, which or name, found)
 
 
 def walker_scores(population: Population) -> dict[str, Any]:
@@ -259,14 +364,38 @@ def write_stimuli(
     population: Population,
     progress: Callable[[int, int], None] | None = None,
 ) -> None:
-    """Write the stimulus files that a design needs."""
+    """Write the stimulus files that a design needs, and what they were made from."""
     from eigenwalker.experiment.condition_stimuli import ConditionStimuli
 
-    (material.folder / STIMULI).mkdir(exist_ok=True)
+    people = {**people_of(population), "made_for": recipe(material.design)}
+    (material.folder / PEOPLE).write_text(json.dumps(people) + "\n", encoding="utf-8")
+    folder = material.folder / STIMULI
+    folder.mkdir(exist_ok=True)
     stimuli = ConditionStimuli(material.design, population)
-    everyone = [*material.walkers, None]
+    everyone = [*shown_walkers(material.design, len(population)), None]
+    made: set[str] = set()
     for done, walker in enumerate(everyone):
         if progress is not None:
             progress(done, len(everyone))
         for name, stimulus in stimuli.of(walker):
             material.stimulus_path(name).write_text(stimulus.to_json(), encoding="utf-8")
+            made.add(f"{name}.json")
+    for path in folder.glob("*.json"):
+        if path.name not in made:
+            path.unlink()
+
+
+def remake_stimuli(
+    folder: Path,
+    population: Population,
+    progress: Callable[[int, int], None] | None = None,
+) -> Material:
+    """Make all stimuli of an experiment anew, as its design is now."""
+    text = design_text(folder / DESIGN)
+    design = parse_design(text, DESIGN)
+    if conflicts := walker_faults(design, people_of(population)):
+        lines = lines_of(text)
+        raise BadDesign(DESIGN, [fault_at(*conflict, lines) for conflict in conflicts])
+    material = Material(folder)
+    write_stimuli(material, population, progress)
+    return Material(folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.resources import files
@@ -80,10 +81,57 @@ def read_texts(folder: Path, language: str) -> Texts:
     return Texts(language, {**common, **own} if language == "en" else own)
 
 
-def template(name: str) -> str:
-    """Return the English texts of a design, to be edited and translated."""
-    own = _TEXTS.joinpath(f"{name}.en.md").read_text(encoding="utf-8")
-    return own + "\n" + _TEXTS.joinpath("common.en.md").read_text(encoding="utf-8")
+def template(design: Design, names: Sequence[str]) -> str:
+    """Return the English texts of a design, to be edited and translated.
+
+    The texts of its tasks follow each other; words of the design that have no text yet stand for
+    themselves.
+    """
+    common = _TEXTS.joinpath("common.en.md").read_text(encoding="utf-8")
+    first, *others = [
+        _TEXTS.joinpath(f"{name}.en.md").read_text(encoding="utf-8")
+        for name in dict.fromkeys(names)
+    ]
+    text = first + "\n" + common
+    known = sections_of(text)
+    of_others = {name: body for other in others for name, body in sections_of(other).items()}
+    keys = _keys([key for block in design.blocks for key in getattr(block, "choices", [])], known)
+    for name in missing_texts(design, Texts("en", known)):
+        text += f"\n# {name}\n{of_others.get(name) or keys.get(name) or _plain(name)}\n"
+    return text
+
+
+def _keys(choices: Sequence[str], known: Mapping[str, str]) -> dict[str, str]:
+    """Return a key and a button for each choice: its first letter that is free."""
+    found: dict[str, str] = {}
+    taken = {known[f"key_{name}"].lower() for name in choices if f"key_{name}" in known}
+    for name in dict.fromkeys(choices):
+        letters = [each for each in (*name.lower(), *"123456789") if each.isalnum()]
+        if f"key_{name}" not in known:
+            key = next(each for each in letters if each not in taken)
+            taken.add(key)
+            words = _plain(f"button_{name}")
+            found |= {f"key_{name}": key, f"button_{name}": f"{words} ({key.upper()})"}
+    return found
+
+
+def _plain(name: str) -> str:
+    """Return the words of a name, without the kind of text that it begins with."""
+    return name.partition("_")[2].replace("_", " ") or name
+
+
+def wrong_texts(design: Design, texts: Texts) -> list[str]:
+    """Return what is wrong with texts that are there: keys of which one means two answers."""
+    wrong: list[str] = []
+    for block in design.blocks:
+        choices = getattr(block, "choices", [])
+        keys = [texts.sections.get(f"key_{name}", "").lower() for name in choices]
+        if len(keys) == 2 and keys[0] and keys[0] == keys[1]:
+            names = " and ".join(f"'# key_{name}'" for name in choices)
+            wrong.append(f"{names} are the same key {keys[0]!r}; change one")
+    if texts.sections.get("direction", "ltr") not in ("ltr", "rtl"):
+        wrong.append("'# direction' must be ltr or rtl")
+    return [*dict.fromkeys(wrong)]
 
 
 def missing_texts(design: Design, texts: Texts) -> list[str]:

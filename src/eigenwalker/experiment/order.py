@@ -18,7 +18,9 @@ from eigenwalker.experiment.design import (
     Figures,
     OddOneOut,
     Rating,
+    SameOrDifferent,
     SimilarPair,
+    n_figures,
     turn,
 )
 from eigenwalker.stimulus.random_streams import permutation, uniforms
@@ -193,7 +195,7 @@ class _Block:
                 drawn = self._settings(self.block)
             case OddOneOut() if self.block.all_differ:
                 drawn = self._all_different(self.block)
-            case Figures():
+            case SameOrDifferent() | OddOneOut():
                 drawn = self._alike_and_not(self.block)
             case Choice() | Rating():
                 drawn = self._single_walkers(self.block)
@@ -362,7 +364,7 @@ class _Block:
             for some, each, sign in zip(groups, shown, signs, strict=False)
         ]
 
-    def _alike_and_not(self, block: Figures) -> list[Trial]:
+    def _alike_and_not(self, block: SameOrDifferent | OddOneOut) -> list[Trial]:
         """Walkers alike but for one: another person, or the same person in another condition."""
         conditions = self.design.shown_in(block)
         pairs = [*combinations(conditions, 2)] if block.differ == "conditions" else []
@@ -373,7 +375,8 @@ class _Block:
         odd = isinstance(block, OddOneOut)
         differ = [True] * size if odd else self.draws.halves((True, False), size)
         of_kind = {True: self.draws.decks(kinds), False: self.draws.decks(kinds)}
-        places = self.draws.halves(range(block.figures), size) if odd else [0] * size
+        number = n_figures(block)
+        places = self.draws.halves(range(number), size) if odd else [0] * size
         trials: list[Trial] = []
         for two, other, sign, place in zip(walkers, differ, signs, places, strict=False):
             one, another = self.draws.shuffled(next(of_kind[other]))
@@ -381,14 +384,13 @@ class _Block:
                 usual, unlike = (two[0], one), (two[0], another if other else one)
             else:
                 usual, unlike = (two[0], one), (two[1] if other else two[0], one)
-            number = block.figures if isinstance(block, OddOneOut) else 2
             shown = [usual] * number
             shown[place] = unlike
             trial = self._figures(block, shown, sign)
-            if odd:
+            if isinstance(block, OddOneOut):
                 trial["correct"] = place
             else:
-                trial["correct"] = block.choices[int(other)]  # type: ignore[attr-defined]
+                trial["correct"] = block.choices[int(other)]
             trials.append(trial)
         return trials
 

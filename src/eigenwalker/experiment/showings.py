@@ -135,7 +135,7 @@ def _walker(trial: Row, names: Sequence[str]) -> str | None:
     """Return the one walker that a trial shows."""
     if not trial["walkers"]:
         return "average"
-    return names[trial["walkers"][0]] if len(trial["walkers"]) == 1 else None
+    return str(names[trial["walkers"][0]]) if len(trial["walkers"]) == 1 else None
 
 
 def _texts(right: Any) -> list[str]:
