@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from importlib.resources import files
+from pathlib import Path
 
 import pytest
 
+from eigenwalker.experiment.balance import imbalances
 from eigenwalker.experiment.design import Design
 from eigenwalker.experiment.design_file import BadDesign, parse_design
 from eigenwalker.experiment.experiment_folder import DESIGNS
@@ -17,6 +20,7 @@ from eigenwalker.experiment.order import (
     shown_walkers,
     trials_for_page,
 )
+from eigenwalker.experiment.walker_faults import walker_faults
 
 
 def text_of(name: str, seed: int = 1) -> str:
@@ -201,3 +205,87 @@ def test_catch_trials_are_among_the_others_and_have_a_right_answer() -> None:
     others = [trial for trial in trials if not trial.get("catch")]
     assert Counter(trial["view_deg"] for trial in others) == {90.0: 5, -90.0: 5}
     assert all(t["correct"] == classes["sex"][t["walkers"][0]] for t in others)
+
+
+def documented_designs() -> list[str]:
+    """The examples of the documentation, each completed by the least that a design says."""
+    page = (Path(__file__).parents[2] / "docs" / "experiments.md").read_text(encoding="utf-8")
+    least, *others = re.findall(r"```toml\n(.*?)```", page, flags=re.DOTALL)
+    head, block = least.split("[[blocks]]")
+    designs = [least]
+    for other in others:
+        blocks = "" if "[[blocks]]" in other else f"[[blocks]]{block}"
+        designs.append(f"{head}{blocks}\n{other}")
+    return designs
+
+
+@pytest.mark.parametrize("text", documented_designs())
+def test_the_examples_of_the_documentation_have_no_faults(text: str) -> None:
+    made = parse_design(text)
+    assert not walker_faults(made, PEOPLE)
+    for session in range(made.n_sessions):
+        trials = session_trials(made, range(40), group="all", place=0, session=session)
+        assert not imbalances(made, trials)
+
+
+PEOPLE = {
+    "walkers": [f"walker {number}" for number in range(40)],
+    "classes": {"sex": ["female", "male"] * 20},
+    "traits": {"sex": ["female", "male"], "weight_kg": ["light", "heavy"]},
+}
+
+
+FAULTS = [
+    ("troje2002", "[pace]", "[paces]", "paces is an unknown word; write 'pace'"),
+    ("troje2002", "blank_s = 3.0", 'blank_s = "3"', "blank_s of [pace] must be a number, not '3'"),
+    ("troje2002", "instances = 2", "instances = 2.5", "must be a whole number, not 2.5"),
+    ("troje2002", "[[blocks]]", "[blocks]", "is written as [[blocks]]"),
+    ("troje2002", "[pace]", "[[pace]]", "pace must be written as [pace]"),
+    ("troje2002", "version = 1", "version = 2", "write version = 1"),
+    ("troje2002", 'task = "choice"', 'task = "chioce"', "choose from choice, rating"),
+    ("troje2002", "# number = 40", "number = 41", "write 40 or less"),
+    ("troje2002", "instances = 2", "trials = 50", "there are 40 trials of 40 walkers"),
+    ("troje2002", "instances = 1", "trials = 31", "write a multiple of 2"),
+    ("wdp2002", "steps = 6", "steps = 6\nfeedback = true", "take feedback out"),
+    ("wdp2002", "least_hours = 0.0", "least_hours = 800.0", "must be below most_hours"),
+    ("prazak2010", "number = 21", "number = 3", "4 different walkers at once; there are 3"),
+    ("detection", "trials = 60", "trials = 61", "write an even number"),
+    ("detection", "[5, 10, 20, 40, 80]", "[80, 5]", "from the easiest level"),
+    ("odd_one_out", "trials = 60", "trials = 61", "write a multiple of 3"),
+    ("adjustment", 'trait = "sex"', 'trait = "charm"', "no trait 'charm'; known are sex"),
+    ("adjustment", "lowest = -6.0", "lowest = 7.0", "write less than 6"),
+]
+
+
+@pytest.mark.parametrize(("name", "before", "after", "words"), FAULTS)
+def test_a_fault_is_named_with_what_to_do(name: str, before: str, after: str, words: str) -> None:
+    text = text_of(name)
+    assert before in text
+    try:
+        conflicts = walker_faults(parse_design(text.replace(before, after)), PEOPLE)
+        problems = [problem for _, problem in conflicts]
+    except BadDesign as error:
+        problems = [str(error)]
+    assert any(words in problem for problem in problems), problems
+
+
+def test_ranges_and_conflicts_are_found_in_one_reading() -> None:
+    text = text_of("detection").replace("start = 0", "start = 9").replace("_s = 1.0", "_s = -1.0")
+    with pytest.raises(BadDesign) as caught:
+        parse_design(text)
+    assert [fault.line for fault in caught.value.faults] == [
+        text.splitlines().index(line) + 1 for line in ("start = 9", "blank_s = -1.0")
+    ]
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_orders_of_a_hundred_seeds_are_balanced_and_differ(name: str) -> None:
+    made = design(name)
+    walkers = shown_walkers(made, 40)
+    orders: set[str] = set()
+    for seed in range(100):
+        drawn = made.model_copy(update={"seed": seed})
+        trials = session_trials(drawn, walkers, group=made.groups[0].name, place=0)
+        assert not imbalances(drawn, trials)
+        orders.add(str(trials))
+    assert len(orders) == 100

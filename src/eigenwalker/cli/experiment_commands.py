@@ -199,9 +199,27 @@ def simulate(
     folder: Folder,
     observers: Annotated[int, typer.Option(help="How many.", min=1, max=10_000)] = 24,
     seed: Seed = 1,
+    sensitivity: Annotated[
+        float, typer.Option(help="d' a standard deviation along the trait.", min=0.01, max=100)
+    ] = 1.5,
+    view_loss: Annotated[
+        float, typer.Option(help="Share of it that is lost in profile.", min=0, max=0.99)
+    ] = 0.5,
+    bias: Annotated[float, typer.Option(help="Spread of biases, in d'.", min=0, max=10)] = 0.3,
+    lapse: Annotated[float, typer.Option(help="Share of answers by chance.", min=0, max=1)] = 0.02,
+    missed: Annotated[
+        float, typer.Option(help="Share of showings without an answer.", min=0, max=0.9)
+    ] = 0.01,
 ) -> None:
     """Have simulated observers answer; they are marked, and count in no group."""
-    print(f"Truth: {_do(folder, 'simulate', number=observers, seed=seed)}")
+    model = {
+        "sensitivity": sensitivity,
+        "view_loss": view_loss,
+        "bias_sd": bias,
+        "lapse": lapse,
+        "missed": missed,
+    }
+    print(f"Truth: {_do(folder, 'simulate', number=observers, seed=seed, model=model)}")
 
 
 def _serve(

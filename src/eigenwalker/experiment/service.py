@@ -139,11 +139,12 @@ class Service:
         """Take answers of a file, and say of each what became of it."""
         return self.writer.do(lambda db: take_items(db, content))
 
-    def simulate(self, number: int, seed: int) -> str:
+    def simulate(self, number: int, seed: int, model: Mapping[str, float] | None = None) -> str:
         """Add simulated observers with all their answers; return the file of the truth."""
+        from eigenwalker.experiment.observer_model import ObserverModel
         from eigenwalker.experiment.simulated_observers import simulate_observers
 
-        return str(simulate_observers(self, number, seed))
+        return str(simulate_observers(self, number, seed, ObserverModel(**(model or {}))))
 
     # --------------------------------------------------------------------------------- for pages
 
