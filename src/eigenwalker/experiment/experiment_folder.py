@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 DESIGN, TEXTS, STIMULI, PEOPLE = "design.toml", "texts", "stimuli", "walkers.json"
 ANSWERS, VERSIONS, BACKUPS = "answers.sqlite", "versions", "backups"
-MAX_KEPT = 2000
+MAX_IN_MEMORY = 2000
 """Stimuli of a version that a server has in memory, some 10 kB each."""
 _NUMBER = re.compile(r"(?m)^(# )?number = \d+")
 DESIGNS = (
@@ -118,7 +118,7 @@ class Material:
     def stimuli(self, names: Collection[str]) -> Bundle:
         """Return stimuli as one JSON; each file is read once."""
         for name in set(names) - set(self._pieces):
-            if len(self._pieces) >= MAX_KEPT:
+            if len(self._pieces) >= MAX_IN_MEMORY:
                 self._pieces.clear()
             text = self.stimulus_path(name).read_text(encoding="utf-8")
             self._pieces[name] = stimulus_piece(name, text)
