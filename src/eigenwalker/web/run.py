@@ -27,6 +27,8 @@ DEFAULT_PORT = 8640
 """Taken where it is free, so that a bookmarked address still leads to the page."""
 NO_ROOM = "The server has no room for this, or may not write into its folder."
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
+KEEP_ALIVE_S = 75
+"""Longer than proxies and observers wait between two requests: none meets a closing connection."""
 MAX_CONCURRENT = 50
 """Requests; more are answered with 503."""
 
@@ -138,6 +140,7 @@ def run(
         app,
         log_level="warning",
         server_header=False,
+        timeout_keep_alive=KEEP_ALIVE_S,
         proxy_headers=False,
         timeout_graceful_shutdown=1,
         limit_concurrency=max_concurrent,
