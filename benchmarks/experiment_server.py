@@ -313,7 +313,9 @@ def trace(folder: Path) -> None:
         return
     log = folder.parent / "strace.txt"
     calls = "trace=pwrite64,write,fdatasync,fsync,sendto,sendmsg,writev"
-    server = Server(folder, prefix=["strace", "-D", "-f", "-s", "300", "-e", calls, "-o", str(log)])
+    server = Server(
+        folder, prefix=["strace", "-D", "-f", "-s", "5000", "-e", calls, "-o", str(log)]
+    )
     server.start()
     observers = [Observer(key, server) for key in server.command("invite", number=20)]
 
@@ -329,23 +331,30 @@ def trace(folder: Path) -> None:
 
 def confirmations_before_flush(lines: list[str]) -> dict[str, int]:
     """Return how many confirmations a trace has, and how many came before their flush."""
+    names = {
+        name
+        for line in lines
+        if '"confirmed' in line.replace("\\", "")
+        for name in re.findall(r"[A-Za-z0-9_-]{22}", line)
+    }
     written: dict[str, int] = {}
-    flushed, early, confirmed, unfinished = 0, 0, 0, {}
+    unfinished: dict[str, int] = {}
+    flushed, early, confirmed = -1, 0, 0
     for number, line in enumerate(lines):
         thread = line.split()[0]
         if "pwrite64(" in line:  # the log of the database
-            written |= dict.fromkeys(re.findall(r"[A-Za-z0-9_-]{22}", line), number)
-        elif "fdatasync(" in line or "fsync(" in line:
+            written |= dict.fromkeys((n for n in names - written.keys() if n in line), number)
+        elif "sync(" in line:
             if "unfinished" in line:
                 unfinished[thread] = number
             else:
                 flushed = number
-        elif "resumed" in line and thread in unfinished and "sync" in line:
+        elif "sync resumed" in line:
             flushed = unfinished.pop(thread)
         elif '"confirmed' in line.replace("\\", ""):
-            for name in re.findall(r"[A-Za-z0-9_-]{22}", line.partition("confirmed")[2]):
+            for name in re.findall(r"[A-Za-z0-9_-]{22}", line):
                 confirmed += 1
-                early += not written.get(name, number) < flushed < number
+                early += not written.get(name, number) < flushed
     return {"confirmations": confirmed, "before their flush": early}
 
 
