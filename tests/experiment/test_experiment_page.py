@@ -345,3 +345,104 @@ def test_the_most_similar_pair_of_four_mannequins_is_chosen_by_touch_and_by_keys
     first, second = found
     assert (first["chosen_1"], first["chosen_2"]) == (first["a"], first["d"])
     assert (second["chosen_1"], second["chosen_2"]) == (second["b"], second["c"])
+
+
+SOON = """const real = window.setTimeout;
+window.setTimeout = (call, ms, ...rest) => real(call, ms > 100000 ? 300 : ms, ...rest);"""
+"""Two minutes are over soon."""
+
+LEFT = """new Promise((done) => {
+    const opening = indexedDB.open("eigenwalker-experiment");
+    opening.onsuccess = () => {
+        const database = opening.result;
+        const counting = database.transaction("items").objectStore("items").count();
+        counting.onsuccess = () => (database.close(), done(counting.result));
+    };
+})"""
+"""How many items are in the outbox of this machine."""
+
+
+def test_a_session_ends_without_a_network_and_the_next_observer_of_the_machine_sends_what_is_left(
+    browser: Browser, server: Server, run_command: Callable, tmp_path: Path
+) -> None:
+    links = [server.link(run_command) for _ in range(2)]
+    with visit(browser, links[0]) as (context, page):
+        page.add_init_script(SOON)
+        page.goto(links[0])
+        press(page, "I have read this")
+        press(page, "Begin")
+        answer(page)
+        context.set_offline(True)
+        for _ in range(3):
+            answer(page, "m")
+        press(page, "Continue")
+        for _ in range(8):
+            answer(page)
+        page.get_by_text("Still on this computer: 2").wait_for()
+        with page.expect_download() as download:
+            press(page, "Save my answers as a file")
+        download.value.save_as(tmp_path / "answers.json")
+        page.close()
+        context.set_offline(False)
+        other = context.new_page()
+        other.set_default_timeout(10_000)
+        other.goto(links[1])
+        press(other, "I have read this")
+        press(other, "Begin")
+        answer(other)
+        for _ in range(50):
+            if other.evaluate(LEFT) == 0:
+                break
+            other.wait_for_timeout(100)
+        other.get_by_role("button", name="Stop", exact=True).click()
+        press(other, "keep what I gave")
+        other.get_by_text("You stopped").wait_for()
+    found = [row for row in rows(server.folder, tmp_path / "data") if row["observer"] == "1"]
+    assert [row["trial"] for row in found if row["outcome"] == "answered"] == [
+        str(n) for n in range(1, 13)
+    ]
+    code, said, problems = run_command(
+        "experiment", "rescue", server.folder, tmp_path / "answers.json"
+    )
+    assert code == 0, problems
+    assert "already" in said or "had" in said
+
+
+def test_zoom_and_leaving_full_screen_are_asked_about(
+    browser: Browser, small: Callable[..., Path], run_command: Callable, tmp_path: Path
+) -> None:
+    started = Server(small(blank_s="0.05", instances="1"))
+    try:
+        with visit(browser, started.link(run_command)) as (context, page):
+            press(page, "I have read this")
+            page.locator("#card-size").focus()
+            page.keyboard.press("ArrowRight")
+            card = page.locator(".card").bounding_box()
+            press(page, "fits my card")
+            page.get_by_label("Distance").fill("60")
+            press(page, "Continue")
+            press(page, "Begin")
+            page.locator("#trials button:enabled").first.wait_for()
+            size = page.locator("#trials canvas").bounding_box()
+            assert card is not None
+            assert size is not None
+            wanted = 512 * (card["width"] / 8.56) * 60 / (38 * 57)
+            assert size["width"] == pytest.approx(wanted, rel=0.01)
+            answer(page)
+            page.evaluate("document.exitFullscreen()")
+            answer(page)
+            press(page, "Go on in this window")
+            devices = context.new_cdp_session(page)
+            screen = {"width": 900, "height": 700, "deviceScaleFactor": 1.5, "mobile": False}
+            devices.send("Emulation.setDeviceMetricsOverride", screen)
+            answer(page)
+            press(page, "Tell the size again")
+            press(page, "I have no card")
+            press(page, "I do not know")
+            page.locator("#trials button:enabled").first.wait_for()
+            size = page.locator("#trials canvas").bounding_box()
+            assert size is not None
+            assert size["width"] == pytest.approx(512, abs=1)
+            answer(page)
+    finally:
+        started.kill()
