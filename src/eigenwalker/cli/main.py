@@ -129,13 +129,15 @@ def load_command(name: str) -> Any:
     """Return the command of that name, as click runs it; only its own module is imported."""
     import typer
 
+    from eigenwalker.cli.option_values import checked_values
+
     command = _command_object(name)
     if not isinstance(command, typer.Typer):
         function, command = command, typer.Typer(rich_markup_mode=None, add_completion=False)
         command.command(name)(function)
     command = typer.main.get_command(command)
     command.context_settings["help_option_names"] = ["-h", "--help"]
-    return command
+    return checked_values(command)
 
 
 def _explain_unknown(word: str) -> int:
