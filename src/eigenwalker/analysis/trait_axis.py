@@ -113,7 +113,8 @@ def trait_axis(
     part : str
         What the discriminant uses: ``"all"``, ``"structure"``, ``"dynamics"``, ``"p1+p2"``.
     n_components : int
-        Eigenwalkers to span the space with; fewer where the walkers span fewer.
+        Eigenwalkers to span the space with. Of the usual 10, fewer where the walkers span fewer;
+        other numbers are as many as they span at most.
     kind : {"discriminant", "mean_difference"}
         What predicts the trait best, or what varies with it; see `direction`.
     units : {"sd", "raw", "classmean"}
@@ -142,6 +143,11 @@ def trait_axis(
     contrast = trait_contrast(population, trait)
     columns = population.layout.columns(part)
     span = strongest_span(population.X[np.ix_(contrast.rows, columns)], n_components)
+    if (n_spanned := len(span.eigenwalkers)) < n_components != N_EIGENWALKERS:
+        raise ValueError(
+            f"n_components={n_components} is more than these {len(contrast.rows)} walkers span; "
+            f"give 1 to {n_spanned}."
+        )
     return axis_within(span, population, contrast, columns, kind=kind, units=units)
 
 

@@ -17,6 +17,7 @@ from eigenwalker.analysis._task import rows_of_groups, task_of
 from eigenwalker.analysis.discriminant_weights import Order
 from eigenwalker.analysis.jackknife import correlation
 from eigenwalker.analysis.walker_space import Scale
+from eigenwalker.core.arguments import generator
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.progress import Progress, ticked
 
@@ -274,7 +275,7 @@ def _permuted_labels(
     """Targets as they are, then in random orders: shape (walker, 1 + permutation)."""
     if n_permutations < 0:
         raise ValueError(f"n_permutations={n_permutations} is too few; give 0 or more.")
-    rng = np.random.default_rng(random_state)
+    rng = generator(random_state)
     _, first, group = np.unique(
         np.arange(len(r)) if groups is None else np.asarray(groups),
         return_index=True,

@@ -34,6 +34,16 @@ def _options(
 ) -> None: ...
 
 
+def _check(reading: Reading) -> None:
+    """Read the mapping, and refuse values that no capture could be read with."""
+    from eigenwalker.io.read import checked_arguments
+    from eigenwalker.markers.mapping import as_mapping
+
+    checked_arguments(**{k: v for k, v in reading.items() if k not in ("subject", "mapping")})
+    if reading["mapping"] is not None:
+        reading["mapping"] = as_mapping(reading["mapping"]).as_dict()
+
+
 def reads_captures(command: Callable[..., None], default: str = "") -> Callable[..., None]:
     """Return a command with these options in place of its parameter ``reading``, a dict of them.
 
@@ -47,6 +57,7 @@ def reads_captures(command: Callable[..., None], default: str = "") -> Callable[
         reading = {name: values.pop(name) for name in options}
         rate_and_unit = {"rate_hz": reading.pop("rate"), "unit": reading.pop("unit")}
         reading |= {f"{default}{name}": value for name, value in rate_and_unit.items()}
+        _check(reading)
         command(**values, reading=reading)
 
     own, hints = inspect.signature(command).parameters, get_type_hints(command, include_extras=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eigenwalker.cli.options import progress_bar
-from eigenwalker.cli.stimulus_command import moved_along_traits, transforms_typed
+from eigenwalker.cli.stimulus_command import moved_along_traits, then_typed, transforms_typed
 from eigenwalker.population.draw_people import draw_people
 from eigenwalker.stimulus.animation import Animation, animated
 from eigenwalker.stimulus.make import make_stimulus
@@ -37,8 +37,7 @@ def write_crowd(
             )
             if options["start"] is None:
                 made = made.then("start", phase_deg=float(phase))
-            for name, parameters in transforms_typed(options, population):
-                made = made.then(name, **parameters)
+            made = then_typed(made, transforms_typed(options, population))
             if options["duration"] is None:
                 made = made.whole_strides(options["strides"] or 1)
             closed = output.suffix.lower() == ".glb"

@@ -93,11 +93,22 @@ def _run(name: str, words: list[str]) -> None:
         use_options_of(command)
         say_once = cache(_say)
         warnings.showwarning = lambda message, *_, **__: say_once(str(message))
+        warnings.filterwarnings("ignore", ".* encountered in ", RuntimeWarning)  # of numpy
         try:
             command(args=words, prog_name=f"{called_as()} {name}")
-        except (ValueError, OSError) as error:
+        except (ValueError, OSError, TypeError) as error:
+            if isinstance(error, TypeError) and not _is_of_an_argument(error):
+                raise
             _say(error)
             sys.exit(EXIT_FAILED)
+
+
+def _is_of_an_argument(error: TypeError) -> bool:
+    """Return whether a check of an argument raised an error, not a mistake of the program."""
+    frame = error.__traceback__
+    while frame is not None and frame.tb_next is not None:
+        frame = frame.tb_next
+    return frame is not None and frame.tb_frame.f_globals["__name__"].endswith("core.arguments")
 
 
 def called_as() -> str:

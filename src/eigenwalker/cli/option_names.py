@@ -14,10 +14,14 @@ ARGUMENTS = {
     "default_unit": "--unit {value}",
     "duration_s": "--duration {value}",
     "eye_distance_mm": "--eye-distance {value}",
+    "elevation_deg": "--elevation {value}",
     "form": "--form {value}",
+    "format": "--captures-as {value}",
+    "information": "--information {value}",
     "kind": "--kind {value}",
     "low_pass_hz": "--low-pass {value}",
     "mapping": "--mapping names.toml",
+    "n_people": "--crowd {value}",
     "n_clusters": "--clusters {value}",
     "n_components": "--components {value}",
     "n_harmonics": "--harmonics {value}",
@@ -29,6 +33,8 @@ ARGUMENTS = {
     "subject": "--subject {value}",
     "part": "--part {value}",
     "rate_hz": "--rate {value}",
+    "seed": "--seed {value}",
+    "sex_effect": "--sex-effect {value}",
     "up": "--up {value}",
     "skeleton": "--skeleton {value}",
     "rest_pose": "--rest-pose {value}",
@@ -46,13 +52,15 @@ PLACES = {
     "stimulus.display.width_px": "--size (width)",
     "stimulus.display.height_px": "--size (height)",
     "stimulus.display.style": "--style",
-    "stimulus.display.dot_px": "size of dots (px)",
-    "stimulus.display.px_per_mm": "size of the walker (px per mm)",
+    "stimulus.display.dot_px": "--dot-px",
     "stimulus.display.viewing_distance_mm": "--distance",
     "stimulus.display.px_per_cm": "--px-per-cm",
 }
 """Options that give parts of a stimulus."""
-_TRANSFORM = re.compile(r"stimulus\.transforms\[\d+\] \((\w+)\)\.?")
+_TRANSFORM = re.compile(r"stimulus\.transforms\[\d+\] \((\w+)\)(?:\.(\w+))?")
+_ONE_NUMBER = {"speed": "factor", "start": "phase_deg", "freeze": "time_s"}
+"""Transforms whose option is one number, which has this name in files."""
+_WALKER = re.compile(r"stimulus\.figures\[\d+\]\.walker\.(\w+)")
 _PERSONS = re.compile(r"take population\.with_persons\('(.*?)'\)")
 _of_this_command: dict[str, str] = {}
 
@@ -64,12 +72,26 @@ def use_options_of(command: Any) -> None:
     _of_this_command.update({k: v for k, v in ARGUMENTS.items() if v.split()[0] in options})
 
 
+def _typed(text: str) -> str:
+    """Return a text as it is typed, between quotation marks where a shell needs them."""
+    return text if shlex.quote(text) == text else repr(text)
+
+
+def _option_of(found: re.Match[str]) -> str:
+    """Return the option of a transform, and which of its parameters a problem is about."""
+    option = f"--{found[1].replace('_', '-')}"
+    if found[2] is None or _ONE_NUMBER.get(found[1]) == found[2]:
+        return option
+    return f"{option} {found[2]}"
+
+
 def in_options(sentence: str) -> str:
     """Return a sentence that names options where it names arguments that the command has."""
     if sentence.startswith(next(iter(PLACES))):  # one made of options, not of a file
         for place, option in PLACES.items():
             sentence = sentence.replace(place, option)
-        sentence = _TRANSFORM.sub(lambda found: f"--{found[1].replace('_', '-')} ", sentence)
+        sentence = _WALKER.sub(r"the walker moved so far has no possible \1", sentence)
+        sentence = _TRANSFORM.sub(_option_of, sentence)
     sentence = sentence.replace("take population.without_flags()", "give --with-flagged")
     sentence = _PERSONS.sub(lambda found: f"give --person {shlex.quote(found[1])}", sentence)
-    return reworded(sentence, _of_this_command)
+    return reworded(sentence, _of_this_command, written=_typed)

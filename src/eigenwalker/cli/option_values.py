@@ -60,7 +60,7 @@ def _problem(text: str, types: set[Any]) -> str:
     """Return what is wrong with a text where one of these types is due; empty if nothing is."""
     expected = "a whole number" if int in types else "a number" if float in types else ""
     if not text.strip():
-        return f"expected {expected or 'a value'}, got nothing; leave the option out, or give one."
+        return f"expected {expected or 'a value'}, got nothing."
     if not expected:
         return ""
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -67,6 +68,7 @@ KeepSize = Annotated[
     option("Keep people's size; otherwise it is divided out, as in Troje (2002).", "--keep-size"),
 ]
 OpenPage = Annotated[bool, option("Open the page if there is a screen.", "--open/--no-open")]
+MOST_SDS = 100
 Seed = Annotated[int, option("The same seed gives the same people.")]
 
 
@@ -107,26 +109,34 @@ def is_published(path: Path | None) -> bool:
     return path is not None and path.suffix.lower() in (".json", ".mat")
 
 
-def parse_trait_steps(text: str) -> tuple[str, float]:
+def parse_trait_steps(text: str, option: str = "--trait") -> tuple[str, float]:
     """Return trait and standard deviations of ``sex=+3`` or ``style=feminine:masculine=2``."""
     trait, _, number = text.rpartition("=")
     try:
         steps = float(number)
     except ValueError:
         steps = math.nan
-    if not (trait and math.isfinite(steps)):
+    several = re.split(r"[\s,;]+", text.strip())
+    if len(several) > 1 and all("=" in one for one in several):
+        each = " ".join(f"{option} {one}" for one in several)
+        raise ValueError(f"{option} {text!r}: expected one trait; write {each}.")
+    if not (trait and abs(steps) <= MOST_SDS):
         raise ValueError(
-            f"{text!r} does not say how far; write a trait and standard deviations: sex=+3."
+            f"{option} {text!r}: expected a trait and standard deviations, {MOST_SDS} at most, as "
+            "in sex=+3."
         )
     return trait, steps
 
 
 def trait_axes(
-    population: Population, texts: Sequence[str] | None, **axis_options: Any
+    population: Population, texts: Sequence[str] | None, option: str = "--trait", **how: Any
 ) -> list[tuple[TraitAxis, float]]:
     """Return the axis of each ``--trait``, and the standard deviations along it."""
-    steps = [parse_trait_steps(text) for text in texts or ()]
-    return [(_axis(population, trait, **axis_options), each) for trait, each in steps]
+    steps = [parse_trait_steps(text, option) for text in texts or ()]
+    traits = [trait for trait, _ in steps]
+    if twice := [trait for trait in traits if traits.count(trait) > 1]:
+        raise ValueError(f"{option} {twice[0]} is given twice; give it once.")
+    return [(_axis(population, trait, **how), each) for trait, each in steps]
 
 
 @cache

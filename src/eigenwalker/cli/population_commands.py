@@ -174,6 +174,9 @@ def simulate(
     )
 
     check_output(output, "people.nc")
+    check_choice(captures_as, ("c3d", "trc", "csv"), "--captures-as")
+    if captures is None and captures_as != "c3d":
+        raise ValueError("--captures-as is for --captures FOLDER; give it too.")
     people = {"n_women": women, "n_men": men, "seed": seed, "sex_effect": sex_effect}
     with progress_bar("Simulating") as progress:
         population = simulate_population(**people)

@@ -14,7 +14,7 @@ Options may be typed in any order. They are applied in this one: who walks (``--
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -40,6 +40,13 @@ from eigenwalker.cli.options import (
     start_vector,
     trait_axes,
 )
+from eigenwalker.cli.stimulus_options import (
+    check_of_a_file,
+    check_sizes,
+    check_together,
+    named,
+    typed_options,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -52,6 +59,8 @@ if TYPE_CHECKING:
     from eigenwalker.stimulus.stimulus import Stimulus
     from eigenwalker.study.process_capture import CaptureResult
 
+NO_STIMULUS = "This is no stimulus: "
+"""How a stimulus begins to say what is wrong with it; `in_options` names the options."""
 Texts = list[str] | None
 """Texts as typed, ``seed=3,keep=structure``, once or several times."""
 
@@ -171,7 +180,7 @@ def stimulus(
 
     Options act in one order, however they are typed: body, time, space, dots, noise, as listed.
     """
-    options = dict(locals())
+    options = {**locals(), "typed": set(typed_options(context))}
     if conditions is not None:
         from eigenwalker.cli.stimulus_set import write_set
 
@@ -185,12 +194,10 @@ def stimulus(
     if crowd is not None:
         from eigenwalker.cli.crowd import write_crowd
 
-        _check_how(options)
+        check_together(options, output)
         _check_crowd(options, output)
         people_there = load_people(people, with_flagged)
-        write_crowd(
-            people_there, output, {**options, "keep_size": True}, _rig_choices(options, output)
-        )
+        write_crowd(people_there, output, {**options, "keep_size": True}, _rig_choices(options))
         return
     made, rig = _made(options, film)
     with progress_bar("Writing") as progress:
@@ -219,8 +226,9 @@ def _made(
 
     output, people, strides = options["output"], options["people"], options["strides"]
     check_suffix(output)
-    rig = _rig_choices(options, output)
-    _check_how(options)
+    rig = _rig_choices(options)
+    check_together(options, output)
+    check_sizes(options)
     if people is not None and people.suffix.lower() == ".json" and not looks_like_bml(people):
         made, population = _of_a_stimulus(options), None
     else:
@@ -228,37 +236,22 @@ def _made(
         options["as_rig"] = output.suffix.lower() in (".bvh", ".glb")
         made = _of_a_population(population, options)
     steps = list(transforms_typed(options, population))
-    for name, parameters in [step for step in steps if step[0] not in OF_THE_DISPLAY]:
-        made = made.then(name, **parameters)
+    made = then_typed(made, [step for step in steps if step[0] not in OF_THE_DISPLAY])
     made = _on_screen(made, options)
-    for name, parameters in [step for step in steps if step[0] in OF_THE_DISPLAY]:
-        made = made.then(name, **parameters)
+    made = then_typed(made, [step for step in steps if step[0] in OF_THE_DISPLAY])
     if strides or (film and options["duration"] is None):
         made = made.whole_strides(strides)
     return made, rig
 
 
-def _check_how(options: dict[str, Any]) -> None:
-    strides = options["strides"]
-    if strides is not None and (strides < 1 or options["duration"] is not None):
-        raise ValueError(f"--strides {strides}: expected 1 or more, in place of --duration.")
-    how = tuple(options[name] for name in ("kind", "part", "components"))
-    if not (options["trait"] or options["morph_to"]) and how != ("discriminant", "all", 10):
-        raise ValueError("--kind, --part and --components say how --trait moves; give --trait too.")
-
-
-def _rig_choices(options: dict[str, Any], output: Path) -> RigChoices:
-    """How a rig is written; refused for files that hold none."""
+def _rig_choices(options: dict[str, Any]) -> RigChoices:
+    """How a rig is written."""
     from eigenwalker.cli.options import check_choice
     from eigenwalker.stimulus.rig_choices import RigChoices
 
     names = {"skeleton": "skeleton", "rest_pose": "rest_pose", "in_place": "in_place",
              "rig_unit": "unit", "up": "up"}  # fmt: skip
     choices = RigChoices(**{field: options[name] for name, field in names.items()})
-    suffixes = (".bvh", ".glb") if options["crowd"] is None else (".glb", "")
-    if choices != RigChoices() and output.suffix.lower() not in suffixes:
-        typed = [f"--{name.replace('_', '-')}" for name in names]
-        raise ValueError(f"{', '.join(typed)} are for .bvh and .glb; {output} holds no rig.")
     check_choice(choices.skeleton, ("plain", "mixamo", "unreal", "unity"), "--skeleton")
     check_choice(choices.rest_pose, ("t", "a"), "--rest-pose")
     check_choice(choices.unit or "cm", ("cm", "m"), "--rig-unit")
@@ -270,21 +263,44 @@ def _on_screen(made: Stimulus, options: dict[str, Any]) -> Stimulus:
     """The stimulus with its walker and its dots as large as asked for."""
     from dataclasses import replace
 
-    from eigenwalker.stimulus.dot_size import with_dots
+    from eigenwalker.stimulus.dot_size import degrees_in_px, with_dots
 
-    for name, most in {"height_deg": 180, "dot_deg": 180, "dot_px": None, "dot_mm": None,
-                       "distance": None, "px_per_cm": None}.items():  # fmt: skip
-        size, limit = options[name], "" if most is None else f" and below {most}"
-        if size is not None and not 0 < size < (most or math.inf):
-            typed = f"--{name.replace('_', '-')}"
-            raise ValueError(f"{typed}: expected a number above 0{limit}, got {size:g}.")
     screen = {"viewing_distance_mm": options["distance"], "px_per_cm": options["px_per_cm"]}
     sizes = {name: options[f"dot_{name}"] for name in ("px", "deg", "mm")}
-    if options["height_deg"] is not None:
-        made = made.sized(options["height_deg"], **screen)
+    if (height := options["height_deg"]) is not None:
+        high = degrees_in_px(replace(made.display, **screen), height, "height_deg")
+        if high > MOST_PX:
+            raise ValueError(
+                f"--height-deg {height:g} is {high:.0f} px high at this --distance and "
+                f"--px-per-cm; expected up to {MOST_PX} px."
+            )
+        made = made.sized(height, **screen)
     elif sizes["deg"] is not None or sizes["mm"] is not None or "deg" in (options["blur"] or ""):
         made = replace(made, display=replace(made.display, **screen))
-    return replace(made, display=with_dots(made.display, **sizes))
+    display = with_dots(made.display, **sizes)
+    if display.dot_px > MOST_DOT_PX:
+        typed = next(f"--dot-{name} {size:g}" for name, size in sizes.items() if size is not None)
+        raise ValueError(
+            f"{typed} is a dot of {display.dot_px:g} px; expected up to {MOST_DOT_PX}."
+        )
+    return replace(made, display=display)
+
+
+def then_typed(made: Stimulus, steps: Iterable[tuple[str, dict[str, Any]]]) -> Stimulus:
+    """The stimulus with more transforms; what is wrong with one names its option."""
+    for name, parameters in steps:
+        try:
+            made = made.then(name, **parameters)
+        except (ValueError, TypeError) as error:
+            if str(error).startswith(NO_STIMULUS):
+                raise
+            option = named(["show" if "show" in parameters else name])
+            raise ValueError(f"{option}: {error}") from error
+    return made
+
+
+MOST_PX, MOST_DOT_PX = 8192, 1000
+"""Of pictures and dots, as a stimulus file has them."""
 
 
 def _check_crowd(options: dict[str, Any], output: Path) -> None:
@@ -298,9 +314,6 @@ def _check_crowd(options: dict[str, Any], output: Path) -> None:
         raise ValueError(
             f"--crowd writes one .glb, or a folder of .bvh files; {output} is neither."
         )
-    for name in ("start_from", "information"):
-        if options[name] not in ("", "average"):
-            raise ValueError(f"--{name.removeprefix('start_')} is for one walker, not for --crowd.")
 
 
 MAX_PEOPLE = 1000
@@ -325,13 +338,6 @@ def _of_a_population(population: Population, options: dict[str, Any]) -> Stimulu
     )
 
 
-POPULATION_ONLY = (
-    *("trait", "start_from", "information", "morph_to", "size", "eye_distance", "crowd"),
-    "keep_size",
-)
-"""Options that a stimulus file does not take."""
-
-
 def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     """The stimulus of a file with another duration, rate or style; its view stays."""
     from dataclasses import replace
@@ -339,10 +345,7 @@ def _of_a_stimulus(options: dict[str, Any]) -> Stimulus:
     from eigenwalker.cli.stimulus_provenance import of_a_file
     from eigenwalker.stimulus.stimulus import Stimulus
 
-    for name in POPULATION_ONLY:
-        if options[name] and options[name] != "average":
-            file, name = options["people"].name, name.removeprefix("start_").replace("_", "-")
-            raise ValueError(f"--{name} is for populations; {file} is a stimulus.")
+    check_of_a_file(options)
     made = Stimulus.load(options["people"])
     timing = {"duration_s": options["duration"], "rate_hz": options["rate"]}
     timing = {name: value for name, value in timing.items() if value is not None}
@@ -404,11 +407,16 @@ N_OWN_HARMONICS = 6
 
 
 def moved_along_traits(
-    population: Population, vector: np.ndarray, traits: Texts, options: dict[str, Any]
+    population: Population,
+    vector: np.ndarray,
+    traits: Texts,
+    options: dict[str, Any],
+    option: str = "--trait",
 ) -> np.ndarray:
     """Return features moved along traits, and print how far that is."""
-    axis_options = {name: options[name] for name in ("kind", "part")}
-    axes = trait_axes(population, traits, n_components=options["components"], **axis_options)
+    axis_options: dict[str, Any] = {name: options[name] for name in ("kind", "part")}
+    axis_options["n_components"] = options["components"]
+    axes = trait_axes(population, traits, option, **axis_options)
     vector = vector + sum(steps * axis.step for axis, steps in axes)
     for axis, steps in [] if options.get("quiet") else axes:
         print(_position_line(population, axis, vector, steps))
@@ -457,7 +465,9 @@ def transforms_typed(
             continue
         if name == "morph_to":
             assert population is not None
-            vector = moved_along_traits(population, population.average, value, options)
+            vector = moved_along_traits(
+                population, population.average, value, options, "--morph-to"
+            )
             yield "morph", {"walker": population.walker(vector)}
         elif name in ("occlude", "show"):
             yield "occlude", {"parts" if name == "occlude" else "show": value.split("/")}
@@ -489,7 +499,9 @@ MOST_SWING = 100
 """As much as `gain` takes."""
 OF_THE_DISPLAY = ("blur", "mask")
 """Transforms that go by the size in which the walker is shown."""
-SPECIAL_PARAMETERS = ("parts", "signal_to_noise", "dots_per_m2")
+SPECIAL_PARAMETERS = {"mask": ("signal_to_noise", "dots_per_m2")} | dict.fromkeys(
+    ("gain", "delay", "perturb"), ("parts",)
+)
 """Texts of transforms that are not fields of theirs."""
 
 
@@ -497,16 +509,19 @@ def _parameters(option: str, text: str) -> dict[str, Any]:
     """Return the parameters of ``seed=3,box=400/1500``; a name may lack its unit."""
     from eigenwalker.stimulus.schema import TRANSFORMS
 
-    known = [*TRANSFORMS[option].parameter_names(), *SPECIAL_PARAMETERS]
+    typed = named([option])
+    known = [*TRANSFORMS[option].parameter_names(), *SPECIAL_PARAMETERS.get(option, ())]
     parameters: dict[str, Any] = {}
     for pair in text.split(","):
         name, equals, value = pair.strip().partition("=")
         full = [k for k in known if k == name] or [k for k in known if k.startswith(f"{name}_")]
         if not equals or len(full) != 1:
             raise ValueError(
-                f"--{option.replace('_', '-')} {text}: expected name=value, with names among "
-                f"{known}, got {pair!r}."
+                f"{typed} {text}: expected name=value, with names among {', '.join(known)}, got "
+                f"{pair!r}."
             )
+        if full[0] in parameters:
+            raise ValueError(f"{typed} {text}: {full[0]} is given twice; give it once.")
         values = [_value(part) for part in value.split("/")]
         several = len(values) > 1 or full[0] in ("markers", "parts")
         parameters[full[0]] = values if several else values[0]
@@ -516,11 +531,16 @@ def _parameters(option: str, text: str) -> dict[str, Any]:
 def _blob(text: str) -> dict[str, Any]:
     """Return the size of blobs: ``12px``, ``0.4deg``, or ``20`` mm on a walker of usual height."""
     number = text.lower().removesuffix("px").removesuffix("deg").removesuffix("mm")
+    unit = text.lower().removeprefix(number)
     try:
         size = float(number)
     except ValueError:
-        raise ValueError(f"--blur {text}: expected a size, as in 12px, 0.4deg or 20mm.") from None
-    unit = text.lower().removeprefix(number)
+        size = math.nan
+    most = 90 if unit == "deg" else 10_000
+    if not 0 < size < most:
+        raise ValueError(
+            f"--blur {text}: expected a size above 0 and below {most}, as in 12px, 0.4deg or 20mm."
+        )
     return {f"sd_{'usual_mm' if unit in ('', 'mm') else unit}": size}
 
 
@@ -553,6 +573,9 @@ def _value(text: str) -> Any:
 
 def _size(text: str) -> tuple[int, int]:
     width, _, height = text.lower().partition("x")
-    if not (width.isdigit() and height.isdigit()):
-        raise ValueError(f"--size {text}: expected width and height in pixels, as in 512x512.")
-    return int(width), int(height)
+    sizes = [int(side) if side.isdecimal() else 0 for side in (width, height)]
+    if not all(16 <= size <= MOST_PX for size in sizes):
+        raise ValueError(
+            f"--size {text}: expected width and height in pixels, 16 to {MOST_PX}, as in 512x512."
+        )
+    return sizes[0], sizes[1]

@@ -83,7 +83,7 @@ def walker_line(about: Mapping[str, str]) -> str:
     columns = [about.get(name, "").split("; ") for name in ("trait", "standard_deviations")]
     poles = about.get("towards", "").split("; ")
     parts = [
-        f"{trait} {steps} SD towards {pole}"
+        f"{trait} {steps.lstrip('+-')} SD towards {pole}"
         for trait, steps, pole in zip(*columns, poles, strict=True)
         if trait
     ]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from eigenwalker.cli.options import progress_bar, sized_people
 from eigenwalker.cli.outputs import files_beside
+from eigenwalker.cli.stimulus_options import typed_options
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,7 +83,7 @@ def _rows(context: typer.Context, cells: pd.DataFrame, table: Path, folder: Path
 
     # click's UsageError, wherever typer has click from:
     refusals: Any = typer.BadParameter.__bases__
-    typed = _typed(context)
+    typed = typed_options(context)
     columns = _options_of(context.command, [str(name) for name in cells], table)
     named = next((name for name in map(str, cells) if name.lower() in NAMES), None)
     lines, files = cells.attrs["line"], set[str]()
@@ -106,22 +107,12 @@ def _rows(context: typer.Context, cells: pd.DataFrame, table: Path, folder: Path
             own = context.command.make_context(str(context.info_name), words, parent=context.parent)
         except refusals as error:
             raise ValueError(f"{where}: {error.format_message()}") from error
-        options = {**own.params, **typed, **_typed(own), "output": file, "conditions": None}
+        options = {**own.params, **typed, **typed_options(own), "output": file, "conditions": None}
         options |= {name: list(v) or None for name, v in options.items() if isinstance(v, tuple)}
         for name in ("people", "mapping"):
             options[name] = options[name] and Path(options[name])
-        options["quiet"] = True
+        options |= {"quiet": True, "typed": {*typed, *typed_options(own)} - {"conditions"}}
         yield _Row(file, options, f"{where} ({file.name})")
-
-
-def _typed(context: Any) -> dict[str, Any]:
-    """Return the options that are not left out."""
-    source = context.get_parameter_source
-    return {
-        name: value
-        for name, value in context.params.items()
-        if (where := source(name)) is not None and where.name != "DEFAULT"
-    }
 
 
 def _options_of(command: Any, headings: list[str], table: Path) -> dict[str, Any]:

@@ -111,6 +111,14 @@ def check_labels(values: ArrayLike, name: str) -> np.ndarray:
     return as_floats(labels, name) if labels.dtype == np.longdouble else labels
 
 
+def generator(seed: Any, name: str = "random_state", *stream: int) -> np.random.Generator:
+    """Return a generator, or the one of a seed; with `stream`, one of several of that seed."""
+    try:
+        return np.random.default_rng([*np.atleast_1d(seed).tolist(), *stream] if stream else seed)
+    except (ValueError, TypeError) as error:
+        raise type(error)(f"{name}={seed!r:.60} is no seed; give a whole number from 0.") from error
+
+
 def as_floats(values: ArrayLike, expected: str) -> np.ndarray:
     """Return real numbers as float64; raise a TypeError if they are something else."""
     try:

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
-_VALUE = r"\"[^\"]*\"|'[^']*'|\.\.\.|[\w+-]+(?:\.\d+)?"
+_VALUE = (
+    r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'|\.\.\.|\([^()]*\)|\[[^\[\]]*\]"
+    r"|[\w+-]+(?:\.\d+)?(?:e[+-]?\d+)?"
+)
 _CALL = re.compile(rf"\b[a-z_]+\(\.\.\., (?P<name>\w+)=(?P<value>{_VALUE}|[^()]*)\)")
 _ARGUMENT = re.compile(rf"\b(?P<name>[a-z_]+)=(?P<value>{_VALUE})")
 EXAMPLES = {"rate_hz": "30", "unit": "mm"}
 """Values to show where the sentence leaves them open, as in ``rate_hz=...``."""
 
 
-def reworded(sentence: str, arguments: Mapping[str, str], python: str = "in Python, ") -> str:
+def reworded(
+    sentence: str,
+    arguments: Mapping[str, str],
+    python: str = "in Python, ",
+    written: Callable[[str], str] = str,
+) -> str:
     """Return a sentence in which arguments are named as they are given here.
 
     `arguments` has a text for each, with ``{value}`` in it where it takes one. A call with another
-    argument stays as it is, after `python`.
+    argument stays as it is, after `python`. `written` turns texts into words as they are typed.
 
     Examples
     --------
@@ -26,10 +35,15 @@ def reworded(sentence: str, arguments: Mapping[str, str], python: str = "in Pyth
     """
 
     def here(found: re.Match[str], otherwise: str) -> str:
-        value = found["value"].strip("'\"")
-        value = EXAMPLES.get(found["name"], "") if value == "..." else value
         known = arguments.get(found["name"])
-        return otherwise if known is None else known.format(value=value).strip()
+        if known is None:
+            return otherwise
+        value = found["value"]
+        if value == "...":
+            value = EXAMPLES.get(found["name"], "")
+        elif value[:1] in ("'", '"'):
+            value = written(ast.literal_eval(value))
+        return known.format(value=value).strip()
 
     sentence = _CALL.sub(lambda found: here(found, f"{python}{found[0]}"), sentence)
     return _ARGUMENT.sub(lambda found: here(found, found[0]), sentence)

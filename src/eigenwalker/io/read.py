@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import xarray as xr
 
@@ -86,6 +85,10 @@ SUFFIXES = tuple(dict.fromkeys(suffix for reader in READERS for suffix in reader
 """Suffixes of files that may be captures."""
 
 
+MOST_HZ = 1_000_000
+"""No camera is faster."""
+
+
 def read_mocap(
     path: str | os.PathLike[str],
     *,
@@ -152,22 +155,32 @@ def read_mocap(
     that name in '.'; check the path.
     """
     path = Path(path)
+    given = checked_arguments(unit, rate_hz, default_unit, default_rate_hz, partial)
     content = as_utf8(read_bytes(path))
-    check_choice(partial, ("refuse", "keep"), "partial")
-    file = CaptureFile(
-        path,
-        content,
-        unit=_checked_unit("unit", unit),
-        rate_hz=_checked_rate("rate_hz", rate_hz),
-        default_unit=_checked_unit("default_unit", default_unit),
-        default_rate_hz=_checked_rate("default_rate_hz", default_rate_hz),
-        keep_partial=partial == "keep",
-    )
+    file = CaptureFile(path, content, **given)
     for reader in READERS:
         if reader.looks_like(content):
             trajectories = reader.read(file)
             return trajectories if subject is None else _of_subject(trajectories, subject)
     raise _unknown_file(file)
+
+
+def checked_arguments(
+    unit: str | None = None,
+    rate_hz: float | None = None,
+    default_unit: str | None = None,
+    default_rate_hz: float | None = None,
+    partial: str = "refuse",
+) -> dict[str, Any]:
+    """Return the arguments of `read_mocap` as a `CaptureFile` takes them; refuse wrong ones."""
+    check_choice(partial, ("refuse", "keep"), "partial")
+    return {
+        "unit": _checked_unit("unit", unit),
+        "rate_hz": _checked_rate("rate_hz", rate_hz),
+        "default_unit": _checked_unit("default_unit", default_unit),
+        "default_rate_hz": _checked_rate("default_rate_hz", default_rate_hz),
+        "keep_partial": partial == "keep",
+    }
 
 
 def _of_subject(trajectories: xr.DataArray, subject: str) -> xr.DataArray:
@@ -177,8 +190,9 @@ def _of_subject(trajectories: xr.DataArray, subject: str) -> xr.DataArray:
     names = [str(name) for name in trajectories.marker.values]
     own = [i for i, name in enumerate(names) if name.rpartition(":")[0] == subject]
     if not own:
-        known = subjects(names) or [trajectories.attrs.get("subject", "")]
-        raise ValueError(f"subject={subject!r} is not in the capture; give one of {known}.")
+        known = [name for name in subjects(names) or [trajectories.attrs.get("subject")] if name]
+        advice = f"give one of {known}" if known else "it names nobody: leave this out"
+        raise ValueError(f"subject={subject!r} is not in the capture; {advice}.")
     markers = [names[i].rpartition(":")[2] for i in own]
     chosen = trajectories.isel(marker=own)
     chosen["marker"] = markers
@@ -194,8 +208,11 @@ def _checked_unit(argument: str, unit: str | None) -> Unit | None:
 
 
 def _checked_rate(argument: str, rate_hz: float | None) -> float | None:
-    if rate_hz is not None and not 0 < rate_hz < math.inf:
-        raise ValueError(f"{argument}={rate_hz} is no frame rate; give frames a second, above 0.")
+    if rate_hz is not None and not 0 < rate_hz <= MOST_HZ:
+        raise ValueError(
+            f"{argument}={rate_hz:g} is no frame rate; give frames a second, above 0 and up to "
+            f"{MOST_HZ}."
+        )
     return rate_hz
 
 

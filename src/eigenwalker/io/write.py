@@ -142,7 +142,8 @@ def write_mocap(
     if path.suffix.lower() == ".bvh":
         write = partial(write_bvh, skeleton=skeleton, rest_pose=rest_pose)
     elif (skeleton, rest_pose) != ("plain", "t"):
-        raise ValueError(f"skeleton and rest_pose are for .bvh; {path.name!r} has no bones.")
+        typed = f"skeleton={skeleton!r}" if skeleton != "plain" else f"rest_pose={rest_pose!r}"
+        raise ValueError(f"{typed} is for .bvh; {path.name!r} has no bones.")
     if isinstance(trajectories, Walker):
         walk = _sampled_walk(trajectories, n_strides, duration_s, rate_hz or RATE_HZ)
     elif (n_strides, duration_s, rate_hz) != (None, None, None):

@@ -132,6 +132,8 @@ def read_mapping(path: Path) -> MarkerMapping:
         data = tomllib.loads(text)
     except OSError as error:
         raise ValueError(f"The mapping {path} could not be read: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"The mapping {path} is no text in UTF-8; write it as TOML.") from error
     except (ValueError, RecursionError) as error:
         raise ValueError(
             f"The mapping {path} is no TOML: {str(error).rstrip('.')}. A line is such as "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eigenwalker.core.arguments import generator
 from eigenwalker.population.population import Population
 
 
@@ -15,5 +16,5 @@ def draw_people(population: Population, n_people: int, *, random_state: int) -> 
     """
     rows = population.without_flags().X
     deviations = (rows - rows.mean(axis=0)) / np.sqrt(max(len(rows) - 1, 1))
-    draws = np.random.default_rng(random_state).standard_normal((n_people, len(rows)))
+    draws = generator(random_state).standard_normal((n_people, len(rows)))
     return population.average + draws @ deviations

@@ -121,8 +121,11 @@ class FeatureLayout:
             "timing": [name for name in self.blocks if name in ("frequency", "phases")],
         }
         chosen: set[int] = set()
-        for name in part.split("+"):
-            for block in gathered.get(name.strip(), [name.strip()]):
+        names = [name.strip() for name in part.split("+")]
+        if twice := {name for name in names if names.count(name) > 1}:
+            raise ValueError(f"The part {part!r} names {min(twice)!r} twice; name it once.")
+        for name in names:
+            for block in gathered.get(name, [name]):
                 if block not in self.blocks:
                     raise ValueError(
                         f"There is no part {block!r}; there are {[*gathered, *self.blocks]}, and "

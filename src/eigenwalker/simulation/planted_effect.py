@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from eigenwalker.core.arguments import check_choice, check_numbers
+from eigenwalker.core.arguments import check_choice, check_numbers, generator
 from eigenwalker.core.fourier import harmonic_basis
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories
@@ -90,7 +90,7 @@ def random_effect(
     (True, False)
     """
     check_choice(part, ("structure", "dynamics"), "part")
-    rng = np.random.default_rng([seed, 77])
+    rng = generator(seed, "seed", 77)
     shape = (_N_JOINTS, 3) if part == "structure" else (4, _N_JOINTS, 3)
     direction = rng.standard_normal(shape)
     direction[..., [JOINTS.index(f"{side}_ankle") for side in ("left", "right")], 2] = 0

@@ -8,6 +8,7 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
+from eigenwalker.core.arguments import generator
 from eigenwalker.simulation.person import PARAMETERS, PEOPLE, average_person, check_parameters
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -15,6 +16,10 @@ Effects = Mapping[str, Mapping[str, float]]
 EFFECTS: Effects = MappingProxyType(PEOPLE["effects"])
 """What traits do to parameters, in standard deviations of the parameter."""
 TRAITS = ("sex", "age_years", "weight_kg", "height_mm", "happy", "nervous")
+
+
+MOST_PEOPLE = 1_000_000
+MOST_EFFECT = 100
 
 
 def draw_people(
@@ -80,8 +85,8 @@ def draw_people(
     >>> people["sex"].tolist()
     ['female', 'female', 'male']
     """
-    _check(n_women, n_men, effects)
-    rng = np.random.default_rng(seed)
+    _check(n_women, n_men, sex_effect, effects)
+    rng = generator(seed, "seed")
     n_people = n_women + n_men
     scores, rated = {"sex": np.repeat([-0.5, 0.5], [n_women, n_men])}, {}
     for trait, (_, _, lowest, highest) in PEOPLE["scales"].items():
@@ -160,11 +165,14 @@ def _balanced(
     return balanced, rest
 
 
-def _check(n_women: int, n_men: int, effects: Effects) -> None:
-    if min(n_women, n_men) < 0 or n_women + n_men == 0:
+def _check(n_women: int, n_men: int, sex_effect: float, effects: Effects) -> None:
+    if min(n_women, n_men) < 0 or not 1 <= n_women + n_men <= MOST_PEOPLE:
         raise ValueError(
-            f"n_women={n_women} and n_men={n_men} make no group of people; ask for one or more."
+            f"n_women={n_women} and n_men={n_men} make no group of people; give 1 to {MOST_PEOPLE} "
+            "in all."
         )
+    if not abs(sex_effect) <= MOST_EFFECT:
+        raise ValueError(f"sex_effect={sex_effect:g} is too large; give {MOST_EFFECT} at most.")
     if unknown := sorted(set(effects) - set(EFFECTS)):
         raise ValueError(f"No trait is called {unknown}; effects are of {sorted(EFFECTS)}.")
     check_parameters(name for sizes in effects.values() for name in sizes)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from eigenwalker.core.arguments import generator
 from eigenwalker.core.skeleton import JOINTS
 from eigenwalker.core.trajectories import check_trajectories, label_trajectories
 from eigenwalker.gait.events import HEEL_STRIKE, TOE_OFF
@@ -117,7 +118,7 @@ def simulate_walk(
     """
     _check(duration_s, rate_hz, noise_mm, gap_share, markers, sex)
     check_parameters(parameters)
-    streams = (np.random.default_rng([*np.atleast_1d(seed).tolist(), n]) for n in range(5))
+    streams = (generator(seed, "seed", n) for n in range(5))
     person_rng, stride_rng, noise_rng, skin_rng, gap_rng = streams
     if person is None:
         person = _anyone(person_rng, sex, over_ground=route is not None)

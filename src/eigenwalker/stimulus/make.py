@@ -103,6 +103,8 @@ def make_stimulus(
     several = [figures] if isinstance(figures, Walker | xr.DataArray | Figure) else list(figures)
     for item in several:
         check_kind(item, kinds, expected)
+    if not -90 <= float(check_numbers(elevation_deg, "elevation_deg")) <= 90:
+        raise ValueError(f"elevation_deg={elevation_deg:g} is no elevation; give -90 to 90.")
     given["figures"] = several[0] if len(several) == 1 else several
     whole = [_beginning(item, phase_deg) for item in several]
     if not whole:

@@ -101,7 +101,8 @@ def _markers(given: Parameters, dots: tuple[str, ...]) -> list[str]:
     if wanted is not None:
         chosen = [wanted] if isinstance(wanted, str) else list(wanted)
         if unknown := [part for part in chosen if part not in groups and part not in dots]:
-            raise ValueError(f"There are no parts {unknown}; there are {[*groups, *dots]}.")
+            known = ", ".join(dict.fromkeys([*groups, *dots]))
+            raise ValueError(f"There is no part {unknown[0]!r}; there are {known}.")
         named = {name for part in chosen for name in groups.get(part, (part,))}
         return [dot for dot in dots if dot in named]
     named = given.pop("markers")
@@ -157,7 +158,10 @@ def _mask(situation: Situation, given: Parameters) -> Parameters:
         "centre_mm": moving.middle.round(3).tolist(),
         **given,
     }
-    for name in {"signal_to_noise", "dots_per_m2"} & given.keys():
+    numbers = {"number", "signal_to_noise", "dots_per_m2"} & given.keys()
+    if len(numbers) > 1:
+        raise ValueError(f"The number of dots is given as {sorted(numbers)}; give one of them.")
+    for name in numbers - {"number"}:
         if not 0 < float(check_numbers(given[name], name)) < np.inf:
             raise ValueError(f"{name}={given[name]!r} must be above 0.")
     if "signal_to_noise" in given:
