@@ -51,7 +51,7 @@ def test_steps_that_lead_nowhere_are_refused_by_all(
     monkeypatch.chdir(tmp_path)
     code, _, errors = run_command(command, option, f"sex={number}")
     assert code == EXIT_FAILED
-    assert f"'sex={number}' does not say how far" in errors
+    assert f"{option} 'sex={number}' does not say how far" in errors
     assert "invalid value" not in errors
 
 

@@ -153,7 +153,7 @@ def test_every_command_that_writes_is_guarded():
         (["fit", "{folder}", "-o", "{folder}/x.nc", "--traits", "{t}", "--table", "{t}"],
          "is read"),
         (["stimulus", "-o", "stim"], r"has no suffix; name a file that ends in .*\.json"),
-        (["stimulus", "-o", ""], r"names no file to write; name a file that ends in .*\.json"),
+        (["stimulus", "-o", ""], "expected a value, got nothing"),
         (["stimulus", "-o", "."], r"names no file to write"),
         (["stimulus", "-o", "{t}"], "not made by eigenwalker stimulus"),
         (["synthesize", "-o", "{t}"], "not made by eigenwalker stimulus"),

@@ -94,7 +94,7 @@ def test_a_command_names_its_own_options(tmp_path, run_command) -> None:
     _, _, errors = run_command("stimulus", "--from", braces, "-o", tmp_path / "a.json")
     assert f"eigenwalker convert {braces} walk.c3d --rate" in errors
     _, _, errors = run_command("stimulus", "--size", "3x300", "-o", tmp_path / "a.json")
-    assert "--size (width): expected a number from 16, got 3." in errors
+    assert "--size 3x300: expected width and height in pixels, 16 to 8192" in errors
     _, _, errors = run_command("stimulus", "--limb-dots", "seed=-1", "-o", tmp_path / "a.json")
     assert "--limb-dots seed: expected a number from 0, got -1" in errors
     _, _, errors = run_command("simulate", "--women", -3, "-o", tmp_path / "a.nc")

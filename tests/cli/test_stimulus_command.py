@@ -41,7 +41,7 @@ def test_options_act_in_one_order_however_they_are_typed(run):
 def test_a_file_says_what_was_done_and_the_terminal_too(run):
     typed = ("--trait", "sex=3", "--information", "structure", "--from", "4", "-o", "one.json")
     _, said, _ = run(*typed)
-    assert "sex +3 SD towards male" in said
+    assert "sex 3 SD towards male" in said
     assert "structure only, from walker 4 of the population" in said
     about = Stimulus.load("one.json").provenance
     expected = {
@@ -60,7 +60,7 @@ def test_a_file_says_what_was_done_and_the_terminal_too(run):
     assert len(about["population_sha256"]) == 64
     assert about["program"].startswith("eigenwalker ")
     _, said, _ = run("one.json", "--invert", "-o", "two.json")
-    assert "sex +3 SD towards male" in said
+    assert "sex 3 SD towards male" in said
     about = Stimulus.load("two.json").provenance
     assert about["command"].endswith("; then eigenwalker stimulus one.json --invert -o two.json")
     assert about["made_from"].startswith("one.json, sha256 ")
@@ -101,7 +101,7 @@ def test_a_random_start_is_stated_and_the_same_for_all_walkers(run):
         phases.add(Stimulus.load("a.json").transforms[0]["phase_deg"])
     assert len(phases) == 1
     assert 0 < phases.pop() < 360
-    assert "expected degrees, or seed=3" in run("--start", "random")[2]
+    assert "expected degrees, or 'seed=3'" in run("--start", "random")[2]
 
 
 def test_every_transform_can_be_typed(run):
@@ -217,25 +217,46 @@ def test_a_crowd_is_people_who_differ_and_come_again_with_the_seed(run):
     (["--trait", "sex"], "does not say how far"),
     (["--from", "99"], "a walker from 0 to 39"),
     (["--from", "nobody.c3d"], "--from nobody.c3d"),
-    (["--information", "some"], "choose 'full', 'structure' or 'dynamics'"),
+    (["--information", "some"], "--information some is not known"),
     (["--size", "big"], "width and height"),
+    (["--size", "3x300"], "16 to 8192"),
+    (["--view", "abc"], "'--view': expected a number, got 'abc'"),
+    (["--view", "1", "--view", "2"], "'--view': it is given twice"),
+    (["--trait", "sex=1", "--components", "1000"], "--components 1000 is more than"),
+    (["--trait", "sex=1", "--part", "p1+p1"], "names 'p1' twice"),
+    (["--trait", "sex=3,weight=2"], "write --trait sex=3 --trait weight=2"),
+    (["--trait", "sex=1", "--trait", "sex=2"], "--trait sex is given twice"),
+    (["--elevation", "200"], "--elevation 200 is no elevation"),
+    (["--mapping", "names.toml"], "--mapping names markers of a capture"),
+    (["--seed", "2"], "--seed is for --crowd"),
+    (["--distance", "300"], "--distance is for sizes in degrees"),
+    (["--dot-px", "3", "--dot-mm", "1"], "--dot-px and --dot-mm are both given"),
+    (["--dot-mm", "900"], "--dot-mm 900 is a dot of 3420 px"),
+    (["--height-deg", "179"], "px high at this --distance"),
+    (["--gain", "foo=1"], "names among markers, factor, axes, parts, got"),
+    (["--scramble", "seed=1,seed=2"], "seed is given twice"),
+    (["--mask", "number=3,signal_to_noise=2,seed=1"], "--mask: The number of dots is given as"),
+    (["--mask", "dots_per_m2=abc,seed=1"], "--mask: dots_per_m2 must be real numbers"),
+    (["--blur", "1e308deg"], "--blur 1e308deg: expected a size above 0 and below 90"),
+    (["--show", "nose"], "--show: There is no part 'nose'"),
+    (["--freeze", "1e6"], "--freeze: expected a number up to 100000"),
     (["-o", "stim.avi"], "must end in one of"),
     (["--part", "structure"], "give --trait too"),
-    (["--strides", "0"], "expected 1 or more"),
+    (["--strides", "0"], "--strides 0: expected 1 to 1000"),
     (["--crowd", "3", "-o", "crowd.bvh"], "a folder of .bvh files"),
     (["--crowd", "0", "-o", "crowd.glb"], "1 to 1000 people"),
     (["--skeleton", "biped", "-o", "a.bvh"], "choose from"),
     (["--in-place", "-o", "a.json"], "holds no rig"),
-    (["--strides", "1", "--duration", "2"], "in place of --duration"),
+    (["--strides", "1", "--duration", "2"], "--strides and --duration are both given"),
     (["--mask", "signal_to_noise=0,seed=1"], "signal_to_noise=0 must be above 0"),
     (["--mask", "dots_per_m2=-1,seed=1"], "dots_per_m2=-1 must be above 0"),
     (["--height-deg", "0"], "--height-deg: expected a number above 0 and below 180, got 0"),
-    (["--height-deg", "nan"], "--height-deg: expected a number above 0"),
-    (["--dot-px", "-1"], "--dot-px: expected a number above 0, got -1"),
-    (["--dot-px", "1e6"], "size of dots (px): expected a number up to 1000"),
+    (["--height-deg", "nan"], "'--height-deg': expected a number, got 'nan'"),
+    (["--dot-px", "-1"], "--dot-px: expected a number above 0 and below 1000, got -1"),
+    (["--dot-px", "1e6"], "--dot-px: expected a number above 0 and below 1000, got 1e+06"),
     (["--px-per-cm", "0", "--height-deg", "5"], "eigenwalker: --px-per-cm: expected"),
-    (["--arm-swing", "nan"], "--arm-swing: expected a number up to 100, got nan"),
-    (["--from", ""], "--from : expected 'average'"),
+    (["--arm-swing", "nan"], "'--arm-swing': expected a number, got 'nan'"),
+    (["--from", ""], "'--from': expected a value, got nothing"),
     (["--crowd", "2", "--seed", "-1", "-o", "crowd.glb"], "--seed -1: expected a whole number"),
 ])  # fmt: skip
 def test_what_is_typed_wrong_is_said_in_a_sentence(run, words, complaint):

@@ -21,6 +21,7 @@ from eigenwalker.core.arguments import generator
 from eigenwalker.core.blas_threads import one_blas_thread
 from eigenwalker.core.progress import Progress, ticked
 
+MOST_PERMUTATIONS = 100_000
 RandomState = int | np.random.Generator | None
 
 
@@ -273,8 +274,11 @@ def _permuted_labels(
     r: np.ndarray, groups: ArrayLike | None, n_permutations: int, random_state: RandomState
 ) -> np.ndarray:
     """Targets as they are, then in random orders: shape (walker, 1 + permutation)."""
-    if n_permutations < 0:
-        raise ValueError(f"n_permutations={n_permutations} is too few; give 0 or more.")
+    if not 0 <= n_permutations <= MOST_PERMUTATIONS:
+        few = "few" if n_permutations < 0 else "many"
+        raise ValueError(
+            f"n_permutations={n_permutations} is too {few}; give 0 to {MOST_PERMUTATIONS}."
+        )
     rng = generator(random_state)
     _, first, group = np.unique(
         np.arange(len(r)) if groups is None else np.asarray(groups),

@@ -32,6 +32,7 @@ def info(
     from eigenwalker.study.inspect import file_facts, inspect_file
     from eigenwalker.study.messages import inspection_in_words
 
+    _check_info(file, reading, as_json=as_json, begins_mapping=write_mapping is not None)
     if write_mapping is not None:
         _write_mapping(file, write_mapping, reading)
         return
@@ -73,6 +74,22 @@ def convert(
         raise ValueError("--mapping has no effect on markers: add --joints, or write .bvh.")
     written = write_mocap(walk, output, skeleton=skeleton, rest_pose=rest_pose)
     print(f"Written: {written}")
+
+
+def _check_info(file: Path, reading: Reading, *, as_json: bool, begins_mapping: bool) -> None:
+    """Refuse options that would have no effect."""
+    if begins_mapping and (as_json or reading["mapping"]):
+        idle = "--json" if as_json else "--mapping"
+        raise ValueError(f"{idle} has no effect with --write-mapping; leave one of them out.")
+    if file.suffix.lower() == ".nc" and any(reading[name] for name in reading if name != "partial"):
+        from eigenwalker.population.population_file import looks_like_population
+
+        if file.is_file() and looks_like_population(file):
+            idle = next(each for name, each in OPTIONS.items() if reading[name])
+            raise ValueError(f"{idle} is for captures; {file.name} is a population.")
+
+
+OPTIONS = {"unit": "--unit", "rate_hz": "--rate", "subject": "--subject", "mapping": "--mapping"}
 
 
 def _write_mapping(capture: Path, output: Path, reading: Reading) -> None:

@@ -46,7 +46,6 @@ ANSWERS = (
     "CSV of observers' answers (observer, a, b, c, d, chosen_1, chosen_2): fit the metric's "
     "weights to them."
 )
-FILE_SUFFIXES = {".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".pdf", ".png", ".svg", ".txt"}
 
 
 @partial(reads_captures, default="default_")
@@ -89,7 +88,6 @@ def compare(
     given |= {option: reading[name] for option, name in _OF_CAPTURES.items()}
     options = {name for name, value in given.items() if value not in (None, "refuse")}
     _check_options(first, second, options)
-    _check_output(output)
     if clusters is not None and clusters < 1:
         raise ValueError(f"--clusters {clusters}: expected 1 or more.")
     from eigenwalker.psychophysics.weights_file import load_metric
@@ -153,16 +151,6 @@ def _check_two(first: Path, second: Path) -> None:
 def _refuse(options: set[str], reason: str) -> None:
     if options:
         raise ValueError(f"{min(options)} {reason}.")
-
-
-def _check_output(output: Path | None) -> None:
-    if output is None:
-        return
-    if output.suffix.lower() in {POPULATION, *FILE_SUFFIXES} and not output.exists():
-        raise ValueError(
-            f"-o {output} is called like a file; name a folder. The report with its pictures, "
-            "and tables as CSV, are written into it."
-        )
 
 
 def _compare_two(

@@ -140,7 +140,7 @@ def load_command(name: str) -> Any:
     """Return the command of that name, as click runs it; only its own module is imported."""
     import typer
 
-    from eigenwalker.cli.option_values import checked_values
+    from eigenwalker.cli.option_check import checked_values
 
     command = _command_object(name)
     if not isinstance(command, typer.Typer):

@@ -25,6 +25,7 @@ ARGUMENTS = {
     "n_clusters": "--clusters {value}",
     "n_components": "--components {value}",
     "n_harmonics": "--harmonics {value}",
+    "n_jobs": "--jobs {value}",
     "n_men": "--men {value}",
     "n_strides": "--strides {value}",
     "n_permutations": "--permutations {value}",
@@ -39,6 +40,7 @@ ARGUMENTS = {
     "skeleton": "--skeleton {value}",
     "rest_pose": "--rest-pose {value}",
     "size_px": "--size {value}",
+    "trait_from_name": "--trait-from-name {value}",
     "unit": "--unit {value}",
 }
 """Options that give arguments of Python, which messages name."""
@@ -65,11 +67,16 @@ _PERSONS = re.compile(r"take population\.with_persons\('(.*?)'\)")
 _of_this_command: dict[str, str] = {}
 
 
+OTHER_NAMES = {"trait_from_name": "--person-from-name {value}"}
+"""Options that give the same argument in other commands."""
+
+
 def use_options_of(command: Any) -> None:
     """Let messages name the options of a command, which is about to run."""
     options = {name for each in command.params for name in each.opts}
     _of_this_command.clear()
-    _of_this_command.update({k: v for k, v in ARGUMENTS.items() if v.split()[0] in options})
+    for names in (OTHER_NAMES, ARGUMENTS):
+        _of_this_command.update({k: v for k, v in names.items() if v.split()[0] in options})
 
 
 def _typed(text: str) -> str:

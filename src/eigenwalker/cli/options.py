@@ -122,8 +122,8 @@ def parse_trait_steps(text: str, option: str = "--trait") -> tuple[str, float]:
         raise ValueError(f"{option} {text!r}: expected one trait; write {each}.")
     if not (trait and abs(steps) <= MOST_SDS):
         raise ValueError(
-            f"{option} {text!r}: expected a trait and standard deviations, {MOST_SDS} at most, as "
-            "in sex=+3."
+            f"{option} {text!r} does not say how far; write a trait and standard deviations, "
+            f"{MOST_SDS} at most: sex=+3."
         )
     return trait, steps
 
@@ -196,11 +196,17 @@ def check_choice(value: str, known: Collection[str], option: str) -> None:
         raise ValueError(f"{option} {value!r} is not known; choose from {list(known)}.")
 
 
-def check_folder(output: Path) -> None:
-    """Refuse an output that is a file, or is below one, where a folder is to be written."""
+FILE_SUFFIXES = {".csv", ".gif", ".html", ".jpg", ".json", ".mp4", ".nc", ".pdf", ".png", ".svg",
+                 ".txt"}  # fmt: skip
+
+
+def check_folder(output: Path, option: str = "-o") -> None:
+    """Refuse an output that is a file, is called like one, or is below one, for a folder."""
+    if output.suffix.lower() in FILE_SUFFIXES and not output.exists():
+        raise ValueError(f"{option} {output} is called like a file; name a folder to write into.")
     above = next(each for each in (output, *output.absolute().parents) if each.exists())
     if not above.is_dir():
-        raise ValueError(f"-o {output}: expected a folder to write into; {above} is a file.")
+        raise ValueError(f"{option} {output}: expected a folder to write into; {above} is a file.")
 
 
 def check_output(path: Path, example: str, option: str = "-o") -> None:

@@ -79,7 +79,8 @@ def guarded(command: Any, name: str) -> Any:
             values["output"] = Path("stimuli" if is_set else DEFAULTS[name])
         named = {each: Path(values[each]) for each in written if values.get(each) is not None}
         for parameter, output in named.items():
-            _check_name(output, name, is_folder=_is_folder(output, name, parameter, values))
+            is_folder = _is_folder(output, name, parameter, values)
+            _check_name(output, name, is_folder=is_folder, option=_option(parameter))
         outputs = [*named.values(), *files_beside(named.get(OUTPUT), name)]
         given = (value for key, value in values.items() if key not in written)
         inputs = [path for value in given for path in _paths(value)]
@@ -153,7 +154,11 @@ def _remove_older(output: Path, before: Mapping[str, list[int]], made_by: str) -
             (output / name).unlink()
 
 
-def _check_name(output: Path, name: str, *, is_folder: bool) -> None:
+def _option(parameter: str) -> str:
+    return "-o" if parameter == OUTPUT else f"--{parameter.replace('_', '-')}"
+
+
+def _check_name(output: Path, name: str, *, is_folder: bool, option: str) -> None:
     """Refuse names that are no file or folder of their own."""
     makes_stimuli = name in DEFAULTS
     what = "a file or a folder of its own"
@@ -162,9 +167,9 @@ def _check_name(output: Path, name: str, *, is_folder: bool) -> None:
 
         what = f"a file that ends in {', '.join(filter(None, SUFFIXES))}"
     if output in (Path(), Path("..")) or str(output) in ("/", "~"):
-        raise ValueError(f"-o {str(output)!r} names no file to write; name {what}.")
+        raise ValueError(f"{option} {str(output)!r} names no file to write; name {what}.")
     if is_folder:
-        check_folder(output)
+        check_folder(output, option)
         return
     with_slash = any(
         word.endswith(("/", os.sep)) and Path(word.rpartition("=")[2]) == output

@@ -555,7 +555,7 @@ def _phase_deg(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise ValueError(f"--start {text}: expected degrees, or seed=3.") from None
+        raise ValueError(f"--start {text}: expected degrees, or 'seed=3'.") from None
 
 
 def _value(text: str) -> Any:

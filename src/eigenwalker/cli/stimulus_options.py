@@ -66,11 +66,11 @@ def check_together(options: dict[str, Any], output: Path) -> None:
         if not has_effect and (idle := [name for name in names if name in typed]):
             raise ValueError(f"{named(idle[:1])} {reason}.")
     for one, other in (("strides", "duration"), ("dot_px", "dot_deg"), ("dot_px", "dot_mm"),
-                       ("dot_deg", "dot_mm"), ("reverse", "freeze")):  # fmt: skip
+                       ("dot_deg", "dot_mm")):  # fmt: skip
         if {one, other} <= typed:
             raise ValueError(f"{named((one, other))} are both given; give one of them.")
-    if not 1 <= (options["strides"] or 1) <= MOST_STRIDES:
-        raise ValueError(f"--strides {options['strides']}: expected 1 to {MOST_STRIDES}.")
+    if (strides := options["strides"]) is not None and not 1 <= strides <= MOST_STRIDES:
+        raise ValueError(f"--strides {strides}: expected 1 to {MOST_STRIDES}.")
     if has_rig and (idle := [name for name in PICTURE if name in typed]):
         print(f"eigenwalker: {output} is no picture: {named(idle)} has no effect.", file=sys.stderr)
 

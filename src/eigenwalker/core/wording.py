@@ -11,7 +11,7 @@ _VALUE = (
     r"|[\w+-]+(?:\.\d+)?(?:e[+-]?\d+)?"
 )
 _CALL = re.compile(rf"\b[a-z_]+\(\.\.\., (?P<name>\w+)=(?P<value>{_VALUE}|[^()]*)\)")
-_ARGUMENT = re.compile(rf"\b(?P<name>[a-z_]+)=(?P<value>{_VALUE})")
+_ARGUMENT = re.compile(rf"(?<![\w'\"])(?P<name>[a-z_]+)=(?P<value>{_VALUE})")
 EXAMPLES = {"rate_hz": "30", "unit": "mm"}
 """Values to show where the sentence leaves them open, as in ``rate_hz=...``."""
 
@@ -25,7 +25,8 @@ def reworded(
     """Return a sentence in which arguments are named as they are given here.
 
     `arguments` has a text for each, with ``{value}`` in it where it takes one. A call with another
-    argument stays as it is, after `python`. `written` turns texts into words as they are typed.
+    argument stays as it is, after `python`, and so does what stands between quotation marks:
+    that is what somebody typed, or is to type. `written` turns texts into words as they are typed.
 
     Examples
     --------

@@ -154,7 +154,10 @@ def read_bml_axes(path: str | os.PathLike[str]) -> BmlModel:
     tables = _tables(content)
     if tables is None:
         raise UnreadableFile(
-            path.name, f"a list {_MEAN_KEY!r} of {_N_NUMBERS} numbers", "none", "is it the file?"
+            path.name,
+            f"published walkers, with a list {_MEAN_KEY!r} of {_N_NUMBERS} numbers",
+            "JSON of another kind",
+            "name such a file, or a population (.nc)",
         )
     axes = {axis: _table(tables[key], key, path) for axis, key in _KEYS.items() if key in tables}
     model = BmlModel(_table(tables[_MEAN_KEY], _MEAN_KEY, path), axes)

@@ -69,7 +69,8 @@ def name_persons(traits: pd.DataFrame, column: str | None) -> pd.DataFrame:
         if len(same) == 1:
             return name_persons(traits, same[0])
         names = [str(name) for name in traits if name not in ("file", "flag")]
-        raise ValueError(f"There is no column {column!r} to name persons; there are {names}.")
+        known = f"there are {names}" if names else "nothing but their files is known of the walks"
+        raise ValueError(f"There is no column {column!r} to name persons; {known}.")
     if column == PERSON:
         return traits
     return traits.drop(columns=PERSON, errors="ignore").rename(columns={column: PERSON})

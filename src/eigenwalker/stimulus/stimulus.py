@@ -281,6 +281,7 @@ class Stimulus:
             raise UnreadableFile(path.name, "a stimulus in UTF-8", "other bytes") from None
         except ValueError as error:
             problem = str(error).rstrip(".").removeprefix("This is no stimulus: ")
+            problem = problem.removeprefix("This is no JSON of a stimulus: ")
             got = f"a file that is none ({problem})"
             raise UnreadableFile(path.name, "a stimulus", got, "make it again") from None
 
@@ -305,6 +306,8 @@ def _parsed(text: str) -> Any:
         return json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_refuse_twice)
     except RecursionError:
         raise ValueError("A stimulus is not nested that deeply.") from None
+    except json.JSONDecodeError as error:
+        raise ValueError(f"This is no JSON of a stimulus: line {error.lineno} is none.") from None
     except ValueError as error:
         raise ValueError(f"This is no JSON of a stimulus: {error}.") from None
 

@@ -233,14 +233,20 @@ def traits_of_names(names: pd.Series, pattern: str) -> pd.DataFrame:
     try:
         compiled = re.compile(unicodedata.normalize("NFC", pattern))
     except re.error as error:
-        raise ValueError(f"{pattern!r} is no regular expression: {error}.") from error
+        raise ValueError(
+            f"trait_from_name={pattern!r} is no regular expression: {error.msg}, after "
+            f"{error.pos} letters."
+        ) from error
     if not compiled.groupindex:
         raise ValueError(
-            f"{pattern!r} has no named group; write for instance 'walk_(?P<style>[a-z]+)_'."
+            f"trait_from_name={pattern!r} has no named group; write for instance "
+            "'walk_(?P<style>[a-z]+)_'."
         )
     matches = [compiled.search(unicodedata.normalize("NFC", name)) for name in names]
     if not any(matches):
-        raise ValueError(f"{pattern!r} matches no file name; the first is {names.iloc[0]!r}.")
+        raise ValueError(
+            f"trait_from_name={pattern!r} matches no file name; the first is {names.iloc[0]!r}."
+        )
     traits = pd.DataFrame(
         [match.groupdict() if match else dict.fromkeys(compiled.groupindex) for match in matches]
     )

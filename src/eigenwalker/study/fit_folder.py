@@ -250,6 +250,11 @@ def outcomes_in_processes(
     outcome_of: Callable[[CaptureResult], tuple[Any, dict[str, Any]]],
 ) -> Iterator[tuple[Any, dict[str, Any]]]:
     """Process captures in parallel; where the system ends a process, some one by one."""
+    low_pass_hz = settings.get("low_pass_hz")
+    if low_pass_hz is not None and not 0 < low_pass_hz < np.inf:
+        raise ValueError(f"low_pass_hz={low_pass_hz:g} is no cut-off; give one above 0, such as 6.")
+    if n_jobs == 0:
+        raise ValueError("n_jobs=0 does nothing; give 1 or more, or -1 for all cores.")
     done = 0
     n_processes = min(joblib.effective_n_jobs(n_jobs), len(names))
     while done < len(names):

@@ -116,11 +116,12 @@ def predict_captures(
     form = {"form": first.form, "n_harmonics": len(first.harmonics) // 2}
     folder = Path(os.path.commonpath([path.parent for path in paths]))
     names = [str(path.relative_to(folder)) for path in paths]
+    inside = pd.Series([Path(name).as_posix() for name in names])
+    persons_known = _persons_known(model, inside, trait_from_name)
     outcomes = outcomes_in_processes(
         folder, names, form | reading, n_jobs, partial(_placed, population)
     )
     vectors, rows = zip(*ticked(outcomes, len(names), progress), strict=True)
-    inside = pd.Series([Path(name).as_posix() for name in names])
     one_folder = len({name.parent for name in named.values()}) == 1 or isinstance(files, str | Path)
     written = [path.as_posix() for path in named.values()]
     table = pd.DataFrame({FILE: inside if one_folder else written})
@@ -131,7 +132,7 @@ def predict_captures(
         predicted = model.predict(np.stack([vectors[number] for number in placed]))
         table = table.join(predicted.set_axis(placed))
         table["error"] = np.where(table["status"] == "refused", np.nan, model.error)
-    table["person_known"] = _persons_known(model, inside, trait_from_name)
+    table["person_known"] = persons_known
     table.loc[table["status"] == "refused", "person_known"] = ""
     return Predictions(model, table.assign(reason=reason))
 
@@ -185,7 +186,9 @@ def _persons_known(model: TraitModel, files: pd.Series, pattern: str | None) -> 
     learnt = set() if population.persons is None else set(population.persons) - {""}
     if pattern:
         who = persons_of(traits_of_names(files, pattern))
-        return [""] * len(files) if who is None else [p if p in learnt else "" for p in who]
+        if who is None:
+            raise ValueError(f"trait_from_name={pattern!r} has no group 'person'; name one so.")
+        return [p if p in learnt else "" for p in who]
     by_name = {name.rpartition("/")[2]: name for name in population.names}
     known = []
     for file in files:

@@ -51,9 +51,13 @@ def _check(command: Any, types: dict[str, set[Any]], ctx: Any, args: list[str]) 
         once = parameter.param_type_name == "option" and not parameter.multiple and texts
         if once and order.count(parameter) > 1:
             raise typer.BadParameter("it is given twice; give it once.", ctx, parameter)
+        low, high = (getattr(parameter, end, None) for end in ("min", "max"))
         for text in texts:
             if problem := _problem(text, types.get(parameter.name, set())):
                 raise typer.BadParameter(problem, ctx, parameter)
+            if low is not None and high is not None and not low <= float(text) <= high:
+                expected = f"expected a number from {low} to {high}, got {text!r}."
+                raise typer.BadParameter(expected, ctx, parameter)
 
 
 def _problem(text: str, types: set[Any]) -> str:
