@@ -11,13 +11,20 @@ PAGE := hatch_build.py $(wildcard frontend/src/*/*) frontend/package-lock.json f
 LOWEST_PYTHON ?= $(firstword $(foreach p,python3.11 python3.12 python3,$(if $(shell $p -c "import sys, venv, ensurepip; print((3, 11) <= sys.version_info < (3, 13) or '')" 2>/dev/null | grep True),$p)))
 LOWEST_TESTS ?= tests/core/test_kinematics.py tests/cli/test_options.py tests/io/test_bvh.py tests/io/test_c3d.py tests/plotting/test_walker_films.py tests/population/test_population.py tests/datasets/test_downloads.py tests/metric/test_loops.py tests/analysis/test_walker_space.py tests/study/test_process_capture.py tests/stimulus/test_stimulus_file.py tests/explorer/test_model.py
 
-.PHONY: demo test lint lowest newest bench clean
+# Tests wait for browsers and servers, so there may be more of them at a time than there are cores;
+# sums of small matrices are slower with a thread a core.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 3 / 2)
+tests newest lowest: export OMP_NUM_THREADS ?= 1
+
+.PHONY: demo test tests lint lowest newest bench clean
 
 demo: .venv/installed
 	$(BIN)/eigenwalker demo
 
-test: .venv/installed-dev lint
-	$(BIN)/pytest -q -n auto --dist loadscope
+test: lint tests
+
+tests: .venv/installed-dev
+	$(BIN)/pytest -q -n $(WORKERS) --dist loadscope
 
 lint: .venv/installed-dev
 	$(BIN)/ruff check .
@@ -28,9 +35,10 @@ lint: .venv/installed-dev
 # As the tests of a fresh clone, in an environment that was made before.
 newest: .venv/bin/python
 	$(BIN)/python -m pip install --quiet --upgrade --upgrade-strategy eager -e ".[dev]"
-	$(BIN)/pytest -q -n auto --dist loadscope
+	$(BIN)/pytest -q -n $(WORKERS) --dist loadscope
 
-lowest: .venv-lowest/installed
+# The pages come with the other installation.
+lowest: .venv-lowest/installed .venv/installed-dev
 	PYTHONPATH=src .venv-lowest/bin/python -m pytest -q -n 2 --dist loadscope -W default -p no:cacheprovider $(LOWEST_TESTS)
 
 .venv-lowest/installed: pyproject.toml .ci/lowest.py

@@ -7,8 +7,10 @@ import os
 import shutil
 import sys
 import tempfile
+import threading
 import warnings
 from collections.abc import Callable, Iterator
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,16 +25,51 @@ from eigenwalker.core.trajectories import sampling_rate
 from eigenwalker.core.walker import Form, Walker
 from eigenwalker.simulation.walk import simulate_walk
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
     from eigenwalker.metric import PreparedClip
 
 _KERNELS = sorted((Path(__file__).parents[1] / "src" / "eigenwalker" / "metric").glob("*.py"))
-_VERSION = hashlib.sha256(b"".join(path.read_bytes() for path in _KERNELS)).hexdigest()[:16]
+_CODE = hashlib.sha256(b"".join(path.read_bytes() for path in _KERNELS)).hexdigest()[:16]
+_MADE_BY = f"{version('numba')}-{sys.implementation.cache_tag}"
 os.environ.setdefault(
-    "NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"eigenwalker-kernels-{_VERSION}")
+    "NUMBA_CACHE_DIR", str(Path(tempfile.gettempdir()) / f"eigenwalker-kernels-{_CODE}-{_MADE_BY}")
 )  # numba keeps a function's code when another that it calls, in another file, has changed
+
+
+def _compile_in_turn() -> None:
+    """Let processes that test at the same time compile in turn: the next finds it in the cache."""
+    if fcntl is None:
+        return
+    from numba.core.dispatcher import Dispatcher  # loads numba: after its cache is set
+
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    folder.mkdir(parents=True, exist_ok=True)
+    file = os.open(folder / "turn", os.O_RDWR | os.O_CREAT)  # open as long as the process lives
+    turn, depth = threading.RLock(), [0]
+    compile_one = Dispatcher.compile
+
+    def in_turn(self: Dispatcher, signature: object) -> object:
+        with turn:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            depth[0] += 1
+            try:
+                return compile_one(self, signature)
+            finally:
+                depth[0] -= 1
+                if not depth[0]:
+                    fcntl.flock(file, fcntl.LOCK_UN)
+
+    Dispatcher.compile = in_turn
+
+
+_compile_in_turn()
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "data"
 
@@ -49,7 +86,7 @@ def captures() -> Path:
 @pytest.fixture(scope="session")
 def mannequins() -> dict[str, PreparedClip]:
     """21 of the built-in people, ready to be compared, on the neutral mannequin."""
-    from eigenwalker.datasets import load_population  # loads numba: after its cache is set
+    from eigenwalker.datasets import load_population
     from eigenwalker.metric import prepare, retarget
 
     walkers = load_population().walkers[:21]

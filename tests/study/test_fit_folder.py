@@ -236,7 +236,9 @@ def test_a_process_ended_by_the_system_costs_its_own_capture_alone(folder, monke
         return made(where, name, *others)
 
     monkeypatch.setattr(fitting, "_outcome", killed)
-    found = fit_folder(folder, n_jobs=2)
+    names = pd.DataFrame({"file": ["female_1.c3d", "men/male_4.c3d", "men/male_5.c3d"]})
+    found = fit_folder(folder, traits=names, n_jobs=2)
     reasons = found.refused.set_index("file")["reason"]
-    assert reasons.index.tolist() == ["female_1.c3d", "female_2.c3d", "men/male_4.c3d"]
-    assert reasons.str.contains("memory runs out").tolist() == [False, False, True]
+    assert reasons.index.tolist() == ["female_1.c3d", "men/male_4.c3d"]
+    assert reasons.str.contains("memory runs out").tolist() == [False, True]
+    assert found.files.set_index("file")["status"]["men/male_5.c3d"] == "used"
