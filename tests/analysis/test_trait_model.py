@@ -36,13 +36,30 @@ def test_new_walkers_are_told_as_those_left_out_are(people, new) -> None:
 
 def test_planted_outliers_are_far_and_ordinary_walks_are_not(people, new) -> None:
     model = trait_model(people, "sex")
-    assert model.predict(new)["far"].sum() <= 2
+    ordinary = model.predict(new)
+    assert ordinary["far"].sum() <= 2
+    assert (ordinary["far"] == (ordinary["typicality"] <= 0.05)).all()
     frequency, structure = (people.layout.columns(part) for part in ("frequency", "p0"))
     fast, odd = new.copy(), new.copy()
-    fast[:, frequency] += 9 * people.X[:, frequency].std()
+    fast[:, frequency] = people.average[frequency] + 3 * people.X[:, frequency].std()
     odd[:, structure] += 4 * (odd[:, structure] - people.average[structure])
-    assert model.predict(fast)["far_in"].tolist() == ["frequency"] * 20
+    found = model.predict(fast)
+    assert found["far"].all()
+    assert (found["far_in"] == "frequency").sum() >= 18
     assert model.predict(odd)["far"].mean() > 0.9
+    torn = np.random.default_rng(0).permuted(people.X, axis=0)  # no feature goes with another
+    assert model.predict(torn)["far"].mean() > 0.3
+
+
+def test_few_walkers_call_few_ordinary_walks_far(people, new) -> None:
+    few = people.select([0, 1, 2, 3, 20, 21, 22, 23])
+    model = trait_model(few, "height")
+    vectors = np.stack([few.vector(people.walkers[row]) for row in [*range(5, 19), *range(25, 39)]])
+    assert model.predict(vectors)["far"].sum() <= 3
+    vectors[:, few.layout.columns("frequency")] += (
+        6 * few.X[:, few.layout.columns("frequency")].std()
+    )
+    assert model.predict(vectors)["far"].mean() > 0.9
 
 
 def test_several_classes_are_told_as_a_whole(people, new) -> None:

@@ -88,3 +88,16 @@ def test_files_of_several_folders_are_called_as_they_were_named(folder, tmp_path
     files = [folder / "none.c3d", tmp_path / "none.c3d"]
     told = ew.study.predict_captures(simulate_population(4, 4, seed=4), "sex", files, n_jobs=1)
     assert told.table["file"].tolist() == [path.as_posix() for path in files]
+
+
+def test_a_capture_that_is_one_of_the_population_is_said_to_be(
+    folder, tmp_path, run_command
+) -> None:
+    people = simulate_population(4, 4, seed=4)
+    result = ew.study.process_capture(folder / "S1_a.c3d")
+    walkers = [people.walker(people.vector(result.walker)), *people.walkers[1:]]
+    path = ew.Population(walkers, people.traits, people.correspondence).save(tmp_path / "p.nc")
+    code, printed, errors = run_command("predict", path, folder / "S1_a.c3d", "--jobs", 1)
+    assert code == 0
+    assert "this capture" in printed
+    assert "themselves among the walkers learnt from" in errors

@@ -24,6 +24,10 @@ from eigenwalker.study.fit_folder import outcomes_in_processes, status_of
 from eigenwalker.study.messages import error_to_expect
 from eigenwalker.study.process_capture import CaptureResult
 
+SAME = 1e-6
+"""Distance in standard deviations below which a walk is one of those learnt from."""
+ITSELF = "this capture"
+"""Who is known of a capture that is itself among the walkers learnt from."""
 MOST_WAITED_FOR = 150
 """Walkers of whom a page learns while somebody waits."""
 
@@ -41,8 +45,8 @@ class Predictions:
         ``status`` ("used", "flagged" or "refused"); ``prediction`` and
         the other columns of `TraitModel.predict`; ``error``, that of the model on walkers left out:
         a share, or of a number the RMSE in its unit; ``person_known``, a person of the walkers
-        learnt from who walks here too, if that can be seen from the name; ``reason``, why it is
-        flagged or refused.
+        learnt from who walks here too, if that can be seen from the name, or "this capture" if it
+        is itself one of them; ``reason``, why it is flagged or refused.
 
     See Also
     --------
@@ -134,6 +138,9 @@ def predict_captures(
         table["error"] = np.where(table["status"] == "refused", np.nan, model.error)
     table["person_known"] = persons_known
     table.loc[table["status"] == "refused", "person_known"] = ""
+    if placed:
+        same = table["distance"] < SAME
+        table.loc[same, "distance"], table.loc[same, "person_known"] = 0.0, ITSELF
     return Predictions(model, table.assign(reason=reason))
 
 
@@ -152,6 +159,8 @@ def prediction_lines(population: Population, vector: np.ndarray) -> list[str]:
     row = model.predict(vector).iloc[0]
     value = f"{row['prediction']:.4g}" if model.is_number else str(row["prediction"])
     lines = [f"Predicted {model.trait}: {value}. {error_to_expect(model)}"]
+    if row["distance"] < SAME:
+        lines.append("This capture is one of the population: what is predicted was learnt from it.")
     if row["far"]:
         lines.append(
             f"This walk is far from all walkers learnt from (in {row['far_in']}): do not rely on "
