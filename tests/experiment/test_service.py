@@ -148,14 +148,23 @@ def test_a_session_that_is_not_due_says_when(small: Callable[..., Path]) -> None
 
 
 def test_a_changed_design_leaves_sessions_under_way_as_they_are(service: Service) -> None:
-    one, other = service.invite(2)
+    one, other, late = service.invite(3)
     before = begin(service, one)
     path = service.folder / DESIGN
-    path.write_text(path.read_text("utf-8").replace("duration_s = 7.0", "duration_s = 6.0"))
-    assert begin(service, one)["picture"]["duration_s"] == before["picture"]["duration_s"] == 7.0
-    assert begin(service, other)["picture"]["duration_s"] == 6.0
+    text = path.read_text("utf-8")
+    path.write_text(text.replace("blank_s = 3.0", "blank_s = 2.0"))
+    assert begin(service, one)["pace"]["blank_s"] == before["pace"]["blank_s"] == 3.0
+    assert begin(service, other)["pace"]["blank_s"] == 2.0
+    versions = [service.page_version(key) for key in (one, other, new_key())]
+    assert len(set(versions)) == 3
+    assert versions[2] is None
+    for version in versions[:2]:
+        assert "<head>" in str(service.page(str(version)))
     path.write_text("this is no design", encoding="utf-8")
-    assert begin(service, one)["picture"]["duration_s"] == 7.0
+    assert begin(service, one)["pace"]["blank_s"] == 3.0
+    path.write_text(text.replace("duration_s = 7.0", "duration_s = 6.0"))  # of other stimuli
+    assert Material(service.folder).faults()[0].startswith("stimuli/ were made for another design")
+    assert begin(service, late)["picture"]["duration_s"] == 7.0
 
 
 def test_who_withdraws_is_gone_by_the_code_of_the_last_page(service: Service) -> None:

@@ -4,7 +4,7 @@ import { find, make, messageOf } from "../page/elements";
 import { randomName } from "./answers";
 import { missingInBrowser } from "./browserCheck";
 import { endContent } from "./lastPage";
-import { linkOf, ownKeyOf, rememberOwnKey } from "./link";
+import { isReloaded, linkOf, ownKeyOf, pageVersion, rememberOwnKey } from "./link";
 import { Outbox } from "./outbox";
 import { Pages } from "./pages";
 import * as server from "./server";
@@ -40,6 +40,10 @@ async function main(): Promise<void> {
   const own = (await outbox.note(link.key, "own key")) ?? ownKeyOf(link);
   const waiting = (): void => pages.show(pages.paragraph("no_server"));
   const welcome = await server.persist(() => server.welcome(own ?? link.key, link.site), waiting);
+  const isOwn = own !== null && own !== link.key;
+  if (pageVersion && welcome.page && welcome.page !== pageVersion && (isReloaded || isOwn)) {
+    return location.replace(`/s/${own ?? link.key}`); // a session goes on with the page it began with
+  }
   let language = languageOf(welcome);
   pages.speak(language, welcome.languages[language]!);
   find("#mark", HTMLElement).hidden = !welcome.test;

@@ -13,11 +13,15 @@ export interface Link {
 const isLink = (value: unknown): value is Link =>
   typeof value === "object" && value !== null && "key" in value && typeof value.key === "string";
 
+/** The version of the experiment whose page this is, and whether the tab was loaded anew. */
+export const pageVersion = document.querySelector<HTMLMetaElement>('meta[name="version"]')?.content ?? null;
+export const isReloaded = !location.pathname.startsWith("/s/");
+
 export function linkOf(): Link | null {
   const key = /^\/s\/([A-Za-z0-9_-]+)$/.exec(location.pathname)?.[1];
   if (!key) return isLink(history.state) ? history.state : null;
   const link: Link = { key, site: Object.fromEntries([...new URLSearchParams(location.search)].slice(0, 10)) };
-  history.replaceState(link, "", "/");
+  history.replaceState(link, "", pageVersion ? `/v/${pageVersion}` : "/");
   return link;
 }
 

@@ -61,6 +61,8 @@ export interface End {
 
 export interface Welcome {
   readonly name: string;
+  /** The version whose page shows the session. */
+  readonly page?: string;
   readonly state: State;
   readonly languages: Readonly<Record<string, Texts>>;
   readonly consent: Readonly<Record<string, string>>;

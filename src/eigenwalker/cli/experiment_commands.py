@@ -290,6 +290,7 @@ class _Pages:
         self.welcome, self.start = service.welcome, service.start
         self.stimuli, self.end = service.stimuli, service.end
         self.lab_page = service.lab_page
+        self.page_version, self.page = service.page_version, service.page
         self._submit, self._received = service.submit_answers, received
 
     async def answers(self, key: str, session: int, items: Any) -> Any:

@@ -35,6 +35,7 @@ from eigenwalker.experiment.manipulations import (
     MANIPULATIONS,
     manipulation_design,
 )
+from eigenwalker.experiment.observer_page import observer_page
 from eigenwalker.experiment.order import (
     Trial,
     session_trials,
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from eigenwalker.population.population import Population
 
 DESIGN, TEXTS, STIMULI, PEOPLE = "design.toml", "texts", "stimuli", "walkers.json"
+OBSERVER_PAGE = "page.html"
 ANSWERS, VERSIONS, BACKUPS = "answers.sqlite", "versions", "backups"
 MAX_IN_MEMORY = 2000
 """Stimuli of a version that a server has in memory, some 10 kB each."""
@@ -222,11 +224,12 @@ class Material:
         ]
 
     def hash(self) -> str:
-        """Return the hash of design, texts and stimuli: the version of the experiment."""
+        """Return the hash of design, texts, stimuli and page: the version of the experiment."""
         whole = hashlib.sha256()
         for path in self._paths():
             content = (self.folder / path).read_bytes()
             whole.update(f"{path}\0{len(content)}\0".encode() + content)
+        whole.update(observer_page(self.design).encode())
         return whole.hexdigest()
 
     def state(self) -> list[tuple[str, int, int]]:
@@ -242,13 +245,14 @@ class Material:
         yield from (f"{STIMULI}/{name}.json" for name in sorted(self.stimulus_names()))
 
     def copy_to(self, folder: Path) -> None:
-        """Copy design, texts and stimuli into a folder, which appears whole or not at all."""
+        """Copy all, with the page as it is, into a folder, which appears whole or not at all."""
         unfinished = folder.with_name(f".{folder.name}.part")
         shutil.rmtree(unfinished, ignore_errors=True)
         for path in self._paths():
             target = unfinished / path
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(self.folder / path, target)
+        (unfinished / OBSERVER_PAGE).write_text(observer_page(self.design), encoding="utf-8")
         unfinished.rename(folder)
 
 

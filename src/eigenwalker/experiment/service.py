@@ -14,7 +14,7 @@ from typing import Any
 from eigenwalker.experiment import store
 from eigenwalker.experiment.answer_writer import AnswerWriter
 from eigenwalker.experiment.backup import forget_in_copies
-from eigenwalker.experiment.experiment_folder import DESIGN, VERSIONS, Material
+from eigenwalker.experiment.experiment_folder import DESIGN, OBSERVER_PAGE, VERSIONS, Material
 from eigenwalker.experiment.lab_page import lab_page
 from eigenwalker.experiment.link_keys import hash_of, keyed_hash, new_key, same, withdrawal_code
 from eigenwalker.experiment.order import trials_for_page
@@ -73,6 +73,8 @@ class Service:
         try:
             state = material.state()
             if not freeze and self._current[0] == state:
+                return self._current[1]
+            if self._current[1] and material.faults():
                 return self._current[1]
             version = material.hash()
         except (ValueError, OSError):  # it is being edited: new sessions get what was there
@@ -148,6 +150,29 @@ class Service:
 
     # --------------------------------------------------------------------------------- for pages
 
+    def page_version(self, key: str) -> str | None:
+        """Return the version whose page a link shows: that of the session under way, or the newest.
+
+        None for a key that opens nothing, so that the page says so.
+        """
+
+        def find(db: sqlite3.Connection) -> list[Content]:
+            link = self._link(db, key)
+            return store.sessions_of(db, link["observer"]) if link["observer"] else []
+
+        try:
+            begun = self.writer.do(find)
+        except (NotAllowed, Gone):
+            return None
+        version = begun[-1]["version"] if self._under_way(begun) else self.keep_version()
+        return version[:16]
+
+    def page(self, version: str) -> str | None:
+        """Return the page as it was when a version was made."""
+        path = self.folder / VERSIONS / version / OBSERVER_PAGE
+        known = len(version) == 16 and version.isalnum() and path.is_file()
+        return path.read_text(encoding="utf-8") if known else None
+
     def welcome(self, key: str, site: Mapping[str, str] | None = None) -> Content:
         """Return what the first page shows; nothing is used up and nothing begins."""
 
@@ -166,6 +191,7 @@ class Service:
         state = self._state(design, begun)
         return {
             "name": design.name,
+            "page": version[:16],
             "state": state,
             "languages": {name: each.for_page for name, each in texts.items()},
             "consent": {name: each.consent_hash for name, each in texts.items()},

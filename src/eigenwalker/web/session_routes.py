@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
+from functools import lru_cache
 from typing import Annotated, Any, Literal, Protocol
 
 from fastapi import Depends, FastAPI, HTTPException, Request
@@ -55,6 +57,8 @@ class Sessions(Protocol):
     async def answers(self, key: str, session: int, items: Sequence[Any]) -> Any: ...  # noqa: D102
     def end(self, key: str, session: int, how: str) -> Any: ...  # noqa: D102
     def lab_page(self, key: str) -> str: ...  # noqa: D102
+    def page_version(self, key: str) -> str | None: ...  # noqa: D102
+    def page(self, version: str) -> str | None: ...  # noqa: D102
 
 
 class _Body(BaseModel):
@@ -126,7 +130,8 @@ def session_app(
     """Return the application that serves an experiment.
 
     ======================== ====================================================================
-    ``GET /s/KEY``           the page; opening it uses nothing up
+    ``GET /s/KEY``           the page of the link's version; opening it uses nothing up
+    ``GET /v/VERSION``       the same page, for a reload
     ``GET /lab/KEY``         the page of the lab
     ``POST /api/welcome``    the texts, and whether a session can begin or is under way
     ``POST /api/start``      begins a session, or goes on
@@ -149,12 +154,28 @@ def session_app(
     for error, status in {**refusals, TooMany: 429}.items():
         app.add_exception_handler(error, _refuse_with(status))
 
-    pages = page.encode(), gzip.compress(page.encode(), mtime=0)
+    @lru_cache(maxsize=8)
+    def page_of(version: str | None) -> tuple[bytes, bytes]:
+        """The page of a version, which it names, as it is and compressed."""
+        found = None if version is None else sessions.page(version)
+        text = page if found is None else found
+        if version is not None and found is not None:
+            text = text.replace("<head>", f'<head><meta name="version" content="{version}">', 1)
+        return text.encode(), gzip.compress(text.encode(), mtime=0)
 
     @app.api_route("/s/{key}", methods=["GET", "HEAD"])
+    def show_page(key: str, request: Request) -> Response:
+        version = sessions.page_version(key[:100])
+        return _compressed(request, *page_of(version), "text/html", ISOLATED)
+
+    @app.api_route("/v/{version}", methods=["GET", "HEAD"])
+    def show_version(version: str, request: Request) -> Response:
+        known = version if re.fullmatch("[0-9a-f]{16}", version) else None
+        return _compressed(request, *page_of(known), "text/html", ISOLATED)
+
     @app.api_route("/", methods=["GET", "HEAD"])
-    def show_page(request: Request) -> Response:
-        return _compressed(request, *pages, "text/html", ISOLATED)
+    def show_newest(request: Request) -> Response:
+        return _compressed(request, *page_of(None), "text/html", ISOLATED)
 
     @app.get("/lab/{key}")
     def show_lab_page(key: str) -> HTMLResponse:
