@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,7 +11,14 @@ import pytest
 
 import eigenwalker as ew
 from eigenwalker.experiment.answer_writer import AnswerWriter
-from eigenwalker.experiment.experiment_folder import ANSWERS, DESIGN, new_experiment
+from eigenwalker.experiment.design_file import parse_design
+from eigenwalker.experiment.experiment_folder import (
+    ANSWERS,
+    DESIGN,
+    PEOPLE,
+    new_experiment,
+    recipe,
+)
 from eigenwalker.experiment.service import Service
 
 
@@ -44,6 +52,9 @@ def small(templates: Callable[[str], Path], tmp_path: Path) -> Callable[..., Pat
             ]
             text = "\n".join(lines) + "\n"
         (folder / DESIGN).write_text(text, encoding="utf-8")
+        people = json.loads((folder / PEOPLE).read_text(encoding="utf-8"))
+        people["made_for"] = recipe(parse_design(text))  # the stimuli pass for those of the design
+        (folder / PEOPLE).write_text(json.dumps(people), encoding="utf-8")
         return folder
 
     return make
