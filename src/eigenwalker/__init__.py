@@ -12,7 +12,8 @@ from eigenwalker._version import __version__ as __version__
 _ALIASES = {
     *("assess", "direction", "jackknife_curves", "loop"),
     *("motion_map", "read_walkers_mat", "register"),
-    *("crossed_logistic", "mixed_anova", "scheffe", "sensitivity", "spearman_critical"),
+    *("agreement", "crossed_logistic", "difference_table", "fit_choice_model", "mixed_anova"),
+    *("psychometric", "scheffe", "sensitivity", "spearman_critical"),
 }
 """Names of rooms that also work from the top, and are not listed there."""
 

@@ -54,8 +54,12 @@ from .metric import (
 from .population import Population as Population
 from .psychophysics import (
     PerceptualMetric as PerceptualMetric,
+    agreement as agreement,
     crossed_logistic as crossed_logistic,
+    difference_table as difference_table,
+    fit_choice_model as fit_choice_model,
     mixed_anova as mixed_anova,
+    psychometric as psychometric,
     scheffe as scheffe,
     sensitivity as sensitivity,
     spearman_critical as spearman_critical,

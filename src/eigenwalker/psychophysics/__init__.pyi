@@ -1,3 +1,5 @@
+from .agreement import Agreement as Agreement, agreement as agreement
+from .choice_model import ChoiceModel as ChoiceModel, fit_choice_model as fit_choice_model
 from .conditional_logit import (
     ChoiceFit as ChoiceFit,
     bootstrap_choices as bootstrap_choices,
@@ -15,6 +17,11 @@ from .crossed_logistic import (
     CrossedLogistic as CrossedLogistic,
     CrossedModel as CrossedModel,
     crossed_logistic as crossed_logistic,
+)
+from .difference_table import (
+    TriangleInequalities as TriangleInequalities,
+    difference_table as difference_table,
+    triangle_inequalities as triangle_inequalities,
 )
 from .dissimilarity_structure import (
     cluster_memberships as cluster_memberships,
@@ -35,6 +42,7 @@ from .perceptual_metric import (
     Weights as Weights,
     non_negative_fit as non_negative_fit,
 )
+from .psychometric import PsychometricFits as PsychometricFits, psychometric as psychometric
 from .rank_correlation import (
     RankCorrelation as RankCorrelation,
     rank_correlation as rank_correlation,
