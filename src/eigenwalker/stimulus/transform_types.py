@@ -95,7 +95,9 @@ def _first_paragraph(schema: dict[str, Any]) -> None:
 class Part(BaseModel):
     """A part of a stimulus file."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, json_schema_extra=_first_paragraph)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, defer_build=True, json_schema_extra=_first_paragraph
+    )
 
     @model_validator(mode="before")
     @classmethod
