@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -160,7 +161,15 @@ def test_steps_along_traits_of_its_population_are_those_of_the_tables(published,
 def test_tables_are_walkers_to_every_command_and_no_stimulus(tmp_path, made_up, run_command):
     tables = _write(tmp_path, made_up)
     code, said, _ = run_command("stimulus", tables, "--trait", "sex=2", "-o", tmp_path / "s.json")
-    assert (code, "sex: 2 standard deviations towards male" in said) == (0, True)
+    assert (code, "sex: 2 standard deviations towards male, along the published axis." in said) == (
+        0,
+        True,
+    )
+    assert "times the usual" not in said  # there are no single walkers
+    assert "Walker: sex +2 SD towards male, published axis, part all" in said
+    code, said, _ = run_command("info", tables)
+    assert code == 0
+    assert re.search(r"kind +population", said)
     assert run_command("stimulus", tmp_path / "s.json", "-o", tmp_path / "s.svg")[0] == 0
     code, said, _ = run_command("demo", tables, "-o", tmp_path / "page", "--no-open")
     assert (code, "walkers are too few to tell sex from gait" in said) == (0, True)

@@ -10,6 +10,7 @@ import pytest
 import eigenwalker as ew
 from eigenwalker.datasets import bibtex
 from eigenwalker.datasets.downloads import collections
+from eigenwalker.report.words import CITE
 
 NAMES = ["eigenwalker", "bml", "moler", *collections()]
 CFF = (Path(__file__).parents[2] / "CITATION.cff").read_text(encoding="utf-8")
@@ -37,6 +38,14 @@ def test_the_citation_file_is_that_of_this_version_and_names_the_same_papers() -
     titles = [title.replace("{", "").replace("}", "")
               for title in re.findall(r"title = \{(.*)\}", bibtex())]  # fmt: skip
     assert [title for title in titles if title not in CFF and "booktitle" not in title] == []
+
+
+def test_the_program_has_a_year_and_reports_cite_papers_as_the_command_does() -> None:
+    entries = {entry.partition(",")[0]: entry for entry in bibtex().split("\n\n")}
+    assert "year = {2026}" in entries["@software{eigenwalker"]
+    place = re.search(r"howpublished = \{(.*)\}", entries["@misc{prazak2010perception"])
+    assert place is not None
+    assert CITE["prazak2010"].endswith(f"{place[1]}.")
 
 
 def test_a_data_set_that_is_unknown_is_refused_with_those_that_are() -> None:

@@ -17,7 +17,13 @@ import pytest
 
 from eigenwalker.cli.exit_codes import EXIT_FAILED
 from eigenwalker.datasets import downloads
-from eigenwalker.datasets.downloads import Collection, PublishedFile, collections, fetch_captures
+from eigenwalker.datasets.downloads import (
+    Collection,
+    PublishedFile,
+    collections,
+    fetch_captures,
+    own_copies,
+)
 from eigenwalker.io import UnitGuessed, read_mocap
 
 WALKS = {"walk 1.c3d": b"one walk" * 1000, "walk_2.c3d": b"another", "LICENSE": b"Be kind."}
@@ -224,6 +230,9 @@ def test_list_names_what_there_is(run):
     for name, collection in collections().items():
         assert f"{name} " in said
         assert collection.licence in said
+    for own in own_copies().values():
+        assert f"{own['file']}: {own['about']}" in said
+        assert own["use"] in said
 
 
 # ---------------------------------------------------------------- the collections themselves

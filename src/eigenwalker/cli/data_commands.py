@@ -20,13 +20,20 @@ data = typer.Typer(
 
 @data.command("list")
 def list_collections() -> None:
-    """List the collections, with size and licence."""
-    from eigenwalker.datasets.downloads import collections
+    """List the collections, with size and licence, and walkers that you may have a copy of."""
+    from eigenwalker.datasets.downloads import collections, own_copies
 
     print("name          files       MB  licence       what")
     for name, each in sorted(collections().items()):
         print(f"{name:<13}{len(each.files):>6}{each.size_mb:>9g}  {each.licence:<13} {each.about}")
         print(f"{'':<13}good for {each.good_for}")
+    print(
+        "\nPublished walkers that are not fetched, for your own copy (cite: eigenwalker cite NAME):"
+    )
+    for name, each in own_copies().items():
+        print(f"{name:<13}{each['file']}: {each['about']}; {each['licence']}")
+        print(f"{'':<13}good for {each['good_for']}")
+        print(f"{'':<13}{each['use']}")
 
 
 @data.command()

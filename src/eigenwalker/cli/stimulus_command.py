@@ -374,7 +374,7 @@ def _walker(population: Population, options: dict[str, Any]) -> Walker | Figure:
     if own is not None:
         return _own_figure(population, own, start, vector)
     if options["trait"] and not options.get("quiet"):
-        _print_plausibility(population, vector)
+        _print_plausibility(population, vector, is_published(options["people"]))
     if options["information"]:
         return with_information(population, vector, options["information"])
     return population.walker(vector)
@@ -419,7 +419,7 @@ def moved_along_traits(
     axes = trait_axes(population, traits, option, **axis_options)
     vector = vector + sum(steps * axis.step for axis, steps in axes)
     for axis, steps in [] if options.get("quiet") else axes:
-        print(_position_line(population, axis, vector, steps))
+        print(_position_line(population, axis, vector, steps, is_published(options["people"])))
     if (
         axes
         and not options.get("quiet")
@@ -430,29 +430,36 @@ def moved_along_traits(
 
 
 def _position_line(
-    population: Population, axis: TraitAxis, vector: np.ndarray, steps: float
+    population: Population,
+    axis: TraitAxis,
+    vector: np.ndarray,
+    steps: float,
+    published: bool = False,
 ) -> str:
     contrast = axis.contrast
     pole = contrast.positive if steps >= 0 else contrast.negative
+    moved = f"{contrast.trait}: {abs(steps):g} standard deviations towards {pole}"
+    if published:
+        return f"{moved}, along the published axis."
     place = float(axis.positions(vector[None])[0])
     walkers = axis.positions(population.X[contrast.rows])
     beyond = "beyond all walkers, who reach" if abs(place) > abs(walkers).max() else "walkers reach"
-    return (
-        f"{contrast.trait}: {abs(steps):g} standard deviations towards {pole}, to {place:+.1f}; "
-        f"{beyond} {walkers.min():+.1f} to {walkers.max():+.1f}."
-    )
+    return f"{moved}, to {place:+.1f}; {beyond} {walkers.min():+.1f} to {walkers.max():+.1f}."
 
 
-def _print_plausibility(population: Population, vector: np.ndarray) -> None:
+def _print_plausibility(
+    population: Population, vector: np.ndarray, published: bool = False
+) -> None:
     from eigenwalker.analysis.plausibility import plausibility
 
     result = plausibility(population, vector)
-    limbs = (f"{name} {100 * change:+.0f} %" for name, change in result.limb_change.items())
-    print(
-        f"Distance from the average walker: {result.position.distance:.1f} times the usual "
-        f"({result.position.percentile:.0f} % of the walkers are nearer).\n"
-        f"Limbs: {', '.join(limbs)}"
-    )
+    limbs = (f"{name} {100 * change:+z.0f} %" for name, change in result.limb_change.items())
+    if not published:  # where there are no single walkers to be near to
+        print(
+            f"Distance from the average walker: {result.position.distance:.1f} times the usual "
+            f"({result.position.percentile:.0f} % of the walkers are nearer)."
+        )
+    print(f"Limbs: {', '.join(limbs)}")
 
 
 def transforms_typed(

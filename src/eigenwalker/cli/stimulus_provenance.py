@@ -43,9 +43,9 @@ def of_a_walker(population: Population, options: dict[str, Any]) -> dict[str, st
                 for contrast, (_, sds) in zip(contrasts, steps, strict=True)
             ),
             "morph_to": "; ".join(options["morph_to"] or ()),
-            "kind": options["kind"],
+            "kind": "published" if is_published(path) else options["kind"],
             "part": options["part"],
-            "components": str(options["components"]),
+            "components": "" if is_published(path) else str(options["components"]),
             "adjust": "; ".join(options.get("adjust") or ()) or "nothing",
         }
     about |= {"source": about["population"], "command": command()}
@@ -88,9 +88,8 @@ def walker_line(about: Mapping[str, str]) -> str:
         if trait
     ]
     if parts:
-        parts.append(
-            f"{about['kind']} axis of {about['components']} eigenwalkers, part {about['part']}"
-        )
+        of = f" of {about['components']} eigenwalkers" if "components" in about else ""
+        parts.append(f"{about['kind']} axis{of}, part {about['part']}")
     if about["information"] != "full":
         parts.append(f"{about['information']} only")
     return "Walker: " + ", ".join([*parts, f"from {about['started_from']}"])

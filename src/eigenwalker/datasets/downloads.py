@@ -87,6 +87,12 @@ def collections() -> dict[str, Collection]:
     }
 
 
+def own_copies() -> dict[str, dict[str, str]]:
+    """Return published walkers that are read from a user's own copy: what each is good for."""
+    text = (files("eigenwalker.datasets") / "own_copies.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
 def collection_named(name: str) -> Collection:
     """Return the collection of that name, or say which there are."""
     if name not in collections():

@@ -12,6 +12,9 @@ import pandas as pd
 import xarray as xr
 
 from eigenwalker.core.trajectories import sampling_rate
+from eigenwalker.datasets.bml import looks_like_bml
+from eigenwalker.datasets.built_in import load_population
+from eigenwalker.io.errors import UnreadableFile
 from eigenwalker.io.read import read_mocap
 from eigenwalker.population.population import Population, flags_of
 from eigenwalker.population.population_file import looks_like_population
@@ -39,7 +42,8 @@ def inspect_file(path: str | Path, **reading: Any) -> dict[str, Fact]:
     Parameters
     ----------
     path : str or Path
-        A capture of any format that `read_mocap` reads, or a population (``.nc``).
+        A capture of any format that `read_mocap` reads, a population (``.nc``), or published
+        walkers, which are a population too.
     **reading
         As `read_mocap` takes them, such as ``unit`` and ``rate_hz``; and ``mapping``, as
         `virtual_markers` takes it.
@@ -78,7 +82,20 @@ def file_facts(path: Path, **reading: Any) -> dict[str, object]:
     with suppress(OSError):  # reading it gives the reason
         if path.is_file() and looks_like_population(path):
             return _of_population(Population.load(path))
+    if (published := _published(path)) is not None:
+        return _of_population(published)
     return _of_capture(path, **reading)
+
+
+def _published(path: Path) -> Population | None:
+    """Return the walkers of a publication in a file (BML tables, Moler's walkers.mat), if any."""
+    if not path.is_file() or path.suffix.lower() not in (".json", ".mat"):
+        return None
+    if path.suffix.lower() == ".json" and not looks_like_bml(path):
+        return None
+    with suppress(UnreadableFile):  # a capture, perhaps
+        return load_population(path)
+    return None
 
 
 def _of_population(population: Population) -> dict[str, object]:
