@@ -18,6 +18,7 @@ import c3d
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import HealthCheck, settings
 
 from eigenwalker.cli import main as cli
 from eigenwalker.core.skeleton import JOINTS
@@ -70,6 +71,9 @@ def _compile_in_turn() -> None:
 
 
 _compile_in_turn()
+
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")  # how long an example takes depends on what else runs
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "data"
 
