@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import eigenwalker as ew
 from eigenwalker.analysis import classify_several, trait_model
 from eigenwalker.population.population import Population
 from eigenwalker.simulation import simulate_population
@@ -65,6 +66,7 @@ def test_few_walkers_call_few_ordinary_walks_far(people, new) -> None:
 def test_several_classes_are_told_as_a_whole(people, new) -> None:
     found = classify_several(people, "kind")
     assert found.classes == ("a", "b", "c")
+    assert ew.classify(people, "kind").confusion.equals(found.confusion)
     assert found.confusion.to_numpy().sum() == 40
     assert found.errors == 40 - np.diag(found.confusion).sum()
     assert found.confused.loc[0, ["one", "other"]].tolist() == ["a", "b"]  # nothing tells them

@@ -11,13 +11,14 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 import pandas as pd
 
-from eigenwalker.analysis.contrast import Contrast, trait_contrast
+from eigenwalker.analysis.contrast import Contrast, has_several_classes, trait_contrast
 from eigenwalker.analysis.jackknife import (
     JackknifeCurves,
     RegressionCurves,
     jackknife_curves,
     regression_curves,
 )
+from eigenwalker.analysis.several_classes import SeveralClasses, classify_several
 from eigenwalker.analysis.validation import (
     NestedPredictions,
     RandomState,
@@ -255,8 +256,8 @@ def classify(
     n_permutations: int = 200,
     random_state: RandomState = 0,
     progress: Progress | None = None,
-) -> Classification:
-    """Return how well two classes can be told apart, from everything and from parts.
+) -> Classification | SeveralClasses:
+    """Return how well classes can be told apart: two from everything and from parts, more at once.
 
     Where the population names persons with several walks, a person's walks are left out together;
     errors count walks.
@@ -267,10 +268,12 @@ def classify(
         Its flagged walkers are left out.
     trait : str
         A trait of two classes, ``"sex"``, or two of its classes, ``"style=feminine:masculine"``.
+        One of more classes, ``"style"``, is classified as `classify_several` does, with which
+        classes are confused, from everything and without permutations.
     inputs : sequence of Input
         What to classify from; parts that the population lacks are skipped.
     n_permutations : int
-        Permuted traits to compare with.
+        Permuted traits to compare with, of two classes.
     random_state : int or numpy.random.Generator
         Seed of the permutations, or their generator.
     progress : callable, optional
@@ -278,7 +281,7 @@ def classify(
 
     Returns
     -------
-    Classification
+    Classification or SeveralClasses
 
     Raises
     ------
@@ -301,6 +304,8 @@ def classify(
     >>> int(found.table()["errors"].item()) < 20
     True
     """
+    if has_several_classes(population, trait):
+        return classify_several(population, trait, progress=progress)
     contrast = trait_contrast(population, trait)
     if not contrast.two_classes:
         raise ValueError(

@@ -1,5 +1,7 @@
 """Whether a walk is far from all walks that are known."""
 
+# scipy has no types:
+# pyright: reportMissingTypeStubs=false, reportUnknownVariableType=false
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -7,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from scipy.special import stdtr
 
 from eigenwalker.population.population import Population
 
@@ -100,8 +103,11 @@ class Oddness:
                 known, values = self.known[:, columns][:, 0], vectors[:, columns][:, 0]
                 found[part] = 2 * self._beyond(known, values, both=True) / _OF_NUMBERS
             else:
-                known, values = np.log(self.distances[part]), np.log(new[part])
-                found[part] = self._beyond(known.to_numpy(), values.to_numpy()) / _OF_DISTANCES
+                known, values = (
+                    np.log(self.distances[part].to_numpy()),
+                    np.log(new[part].to_numpy()),
+                )
+                found[part] = self._beyond(known, values) / _OF_DISTANCES
         return pd.DataFrame(found)
 
     def _beyond(self, known: np.ndarray, values: np.ndarray, *, both: bool = False) -> np.ndarray:
@@ -109,11 +115,9 @@ class Oddness:
 
         With `both`, that it is as far on the same side of their mean.
         """
-        from scipy.stats import t
-
         scale = max(float(known.std(ddof=1)), _LEAST) * np.sqrt(1 + 1 / self.n_persons)
         score = (values - known.mean()) / scale
-        return t.sf(np.abs(score) if both else score, max(self.n_persons - 1, 1))
+        return stdtr(max(self.n_persons - 1, 1), -np.abs(score) if both else -score)
 
 
 def _distances(

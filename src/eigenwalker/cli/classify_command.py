@@ -144,11 +144,14 @@ def model_names(people: Path | None) -> dict[str, str]:
 
 
 def _classify(population: Population, trait: str, **settings: Any) -> Classification | Regression:
-    from eigenwalker.analysis.classification import classify, regress
+    """Return how well two classes, or a number, are told."""
+    from eigenwalker.analysis.classification import Classification, Regression, classify, regress
     from eigenwalker.analysis.contrast import trait_contrast
 
     predict = classify if trait_contrast(population, trait).two_classes else regress
-    return predict(population, trait, **settings)
+    result = predict(population, trait, **settings)
+    assert isinstance(result, Classification | Regression)  # several classes are not asked for here
+    return result
 
 
 def _print_result(result: Classification | Regression, population: Population) -> None:
