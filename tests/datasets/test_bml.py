@@ -166,7 +166,7 @@ def test_tables_are_walkers_to_every_command_and_no_stimulus(tmp_path, made_up, 
         True,
     )
     assert "times the usual" not in said  # there are no single walkers
-    assert "Walker: sex +2 SD towards male, published axis, part all" in said
+    assert "Walker: sex 2 SD towards male, published axis, part all" in said
     code, said, _ = run_command("info", tables)
     assert code == 0
     assert re.search(r"kind +population", said)
