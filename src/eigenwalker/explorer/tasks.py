@@ -42,12 +42,20 @@ def _task(function: Callable[[Path, Answer], Answer]) -> Callable[[str], bytes]:
             try:
                 answer = function(Path(folder), settings)
             except ValueError as error:
-                raise ValueError(in_fields(str(error))) from error
+                raise ValueError(_without_folder(in_fields(str(error)), folder)) from error
         if "messages" in answer:
-            answer["messages"] = [in_fields(each) for each in answer["messages"]]
+            answer["messages"] = [
+                _without_folder(in_fields(each), folder) for each in answer["messages"]
+            ]
         return json.dumps(answer, allow_nan=False).encode()
 
     return task
+
+
+def _without_folder(sentence: str, folder: str) -> str:
+    """Return a sentence that names files as they were sent, without the folder of the task."""
+    sent = str(Path(folder, "sent"))
+    return sentence.replace(f" in {sent}", " among these files").replace(f"{sent}/", "")
 
 
 @_task
@@ -114,7 +122,10 @@ def study(folder: Path, settings: Answer) -> Answer:
         n_jobs=1,
     )
     not_used = fitted.files[fitted.files["status"] != "used"]
-    messages = [f"{row.file}: {row.status}. {row.reason}" for row in not_used.itertuples()]
+    messages = [
+        f"{row.file}: {row.status}. {in_fields(str(row.reason).removeprefix(f'{row.file}: '))}"
+        for row in not_used.itertuples()
+    ]
     messages += [f"{name}: not in the table of traits." for name in fitted.unlisted[:20]]
     if fitted.population is None:
         raise ValueError(
@@ -141,9 +152,15 @@ def _mapping(captures: Path, settings: Answer) -> Any:
     from eigenwalker.markers.mapping import is_mapping
 
     sent = [path for path in sorted(captures.glob("**/*.toml")) if is_mapping(path)]
+    sent = sent or [path for path in captures.glob("*.toml") if not _describes(path)]
     if len(sent) > 1:
         raise ValueError(f"{len(sent)} mappings of markers came; one is enough.")
     return sent[0] if sent else settings.get("mapping")
+
+
+def _describes(path: Path) -> bool:
+    """Return whether a TOML file describes the table of the same name."""
+    return any(each.suffix != path.suffix for each in path.parent.glob(f"{path.stem}.*"))
 
 
 def _traits_table(captures: Path) -> Path | None:
