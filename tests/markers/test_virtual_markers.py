@@ -236,7 +236,7 @@ def test_a_set_without_arms_is_refused_with_what_is_missing():
     told = str(refusal.value)
     assert "'left_elbow', 'left_wrist', 'right_shoulder'" in told
     assert "left_knee" not in told.partition("Tell which")[0]
-    assert "mapping={'left_shoulder': ['marker', 'marker'], ...}" in told
+    assert "virtual_markers(..., mapping='names.toml')" in told
 
 
 def test_a_capture_of_two_people_is_refused():
