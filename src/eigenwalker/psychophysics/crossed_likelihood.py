@@ -18,6 +18,8 @@ from scipy.optimize import minimize
 from scipy.special import expit
 
 _MAX_STEPS = 60
+_LARGEST = 5.0
+"""Log odds: standard deviations of random effects that are looked at."""
 _FAR = 12.0
 """Log odds of a fixed effect beyond which answers are separated."""
 
@@ -88,8 +90,8 @@ class CrossedLikelihood:
             for m in range(self.n_terms[1])
         }
 
-    def mode(self, beta: np.ndarray, theta: np.ndarray) -> Mode:
-        """Return the most likely random effects, by Newton's method from where the last ended."""
+    def mode(self, beta: np.ndarray, theta: np.ndarray, *, again: bool = True) -> Mode:
+        """Return the most likely random effects, by Newton's method from the last ones."""
         fixed, (v1, v2) = self.X @ beta, self._v
         value, mu = self._penalised(fixed, theta, v1, v2)
         for _ in range(_MAX_STEPS):
@@ -108,6 +110,9 @@ class CrossedLikelihood:
                 length /= 2
                 tried, mu = self._penalised(fixed, theta, v1 + length * d1, v2 + length * d2)
             v1, v2, value = v1 + length * d1, v2 + length * d2, tried
+        if again:
+            self._v = np.zeros(self._q[0]), np.zeros(self._q[1])
+            return self.mode(beta, theta, again=False)
         raise FloatingPointError("the random effects found no mode")
 
     def deviance(self, beta: np.ndarray, theta: np.ndarray) -> tuple[float, np.ndarray]:
@@ -231,7 +236,7 @@ def fit_crossed(
         value, gradient = likelihood.deviance(beta + root @ z[:p], z[p:] / 4)
         return value, np.concatenate([root.T @ gradient[:p], gradient[p:] / 4])
 
-    bounds = [(-30.0, 30.0)] * p + [(0.0, 40.0)] * n_terms
+    bounds = [(-30.0, 30.0)] * p + [(0.0, 4 * _LARGEST)] * n_terms
     z = np.concatenate([np.zeros(p), 4 * theta])
     options = {"gtol": 1e-4, "ftol": 1e-13, "maxiter": 200}
     for _ in range(3):
