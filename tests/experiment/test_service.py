@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 from eigenwalker.experiment import store
@@ -44,10 +46,8 @@ def item(trial: int = 1, name: str | None = None, **content: Any) -> dict[str, A
 def exported(service: Service, folder: Path) -> list[dict[str, str]]:
     export_experiment(service.folder, folder)
     tables = folder.glob("data/*_data.csv")
-    with next(path for path in tables if "questions" not in path.name).open(
-        encoding="utf-8"
-    ) as file:
-        return list(csv.DictReader(file))
+    trials = next(path for path in tables if "_description-" not in path.name)
+    return list(csv.DictReader(trials.read_text(encoding="utf-8").splitlines()))
 
 
 def test_a_session_goes_on_where_it_was(service: Service) -> None:
@@ -212,7 +212,10 @@ def test_the_export_has_a_row_a_showing_and_the_same_bytes(
     assert rows[3]["response"] == "'=1+1"
     assert {row["session_outcome"] for row in rows} == {"left"}
     description = json.loads((tmp_path / "one" / "dataset_description.json").read_text())
-    assert [each["name"] for each in description["variableMeasured"]] == list(rows[0])
+    measured = {each["name"] for each in description["variableMeasured"]}
+    for path in (tmp_path / "one" / "data").glob("*.csv"):
+        assert re.fullmatch(r"([a-z]+-[A-Za-z0-9]+_)+data\.csv", path.name)
+        assert set(path.read_text(encoding="utf-8").splitlines()[0].split(",")) <= measured
     exported(service, tmp_path / "two")
     for path in (tmp_path / "one").rglob("*"):
         if path.is_file():
@@ -330,5 +333,33 @@ def test_answers_to_questions_are_a_table_of_their_own(
         asked = {**item(content=content), "kind": "questions", "trial": None, "content": content}
         service.answers(key, session["session"], [asked])
         exported(service, tmp_path / "data")
-    table = tmp_path / "data" / "data" / "study-troje2002_questions_data.csv"
+    table = tmp_path / "data" / "data" / "study-troje2002_description-questions_data.csv"
     assert table.read_text(encoding="utf-8").splitlines()[1:] == ["1,1,hand,left"]
+
+
+def test_whatever_a_page_reports_the_export_is_whole(service: Service, tmp_path: Path) -> None:
+    [key] = service.invite(1)
+    session = begin(service, key)["session"]
+    strange = {"rt_ms": "late", "frames_shown": 1.5, "page_hidden": 10**30, "response_by": [1]}
+    items = [
+        item(1, **strange, frame_times=[0, "x", 16.7]),
+        item(2, rt_ms=1e300, response='a "quoted", text', started_utc="@now", focus_lost=True),
+        item(3, response="\ud800", first_frame_ms=True, outcome={"no": 1}),
+        {**item(content={}), "kind": "screen", "trial": None, "content": {"px_per_cm": 38.5}},
+    ]
+    service.answers(key, session, items)
+    rows = exported(service, tmp_path / "data")
+    assert [row["rt_ms"] for row in rows] == ["", "1e+300", ""]
+    assert [row["frames_shown"] + row["page_hidden"] for row in rows] == ["", "", ""]
+    assert [row["focus_lost"] for row in rows] == ["", "1", ""]
+    assert rows[0]["response_by"] == "[1]"
+    assert rows[1]["response"] == 'a "quoted", text'
+    assert rows[1]["started_utc"] == "'@now"
+    assert rows[2]["response"] == "?"
+    export_experiment(service.folder, tmp_path / "data", frames=True)
+    frames = pq.read_table(tmp_path / "data" / "data" / "study-troje2002_frames.parquet")
+    assert frames["frame_times_ms"].to_pylist() == [[0.0, 16.7]]
+    screens = tmp_path / "data" / "data" / "study-troje2002_description-screens_data.parquet"
+    assert pq.read_table(screens)["px_per_cm"].to_pylist() == [38.5]
+    with pytest.raises(ValueError, match="inside"):
+        export_experiment(service.folder, service.folder / "data")

@@ -149,3 +149,51 @@ SETTINGS = (
         "number; empty",
     ),
 )
+_WHO = tuple(
+    column
+    for column in COLUMNS
+    if column.name in ("observer", "session", "group", "test", "simulated", "session_outcome")
+)
+SESSIONS = (
+    *_WHO,
+    Column("language", "language of the texts", "", "two or three letters", "page"),
+    Column("version", "hash of design, texts and stimuli", "", "materials/", "server"),
+    Column("consent_hash", "hash of the text that was agreed to", "", "SHA-256", "server"),
+    Column("started_utc", "when the observer agreed", "", "ISO 8601, UTC", "server"),
+    Column("ended_utc", "when the session ended", "", "ISO 8601, UTC; empty", "server"),
+    Column("n_items", "answers and other reports that are kept", "", "integer", "server"),
+    Column("n_refused", "answers that were refused for good", "", "integer", "server"),
+)
+SCREENS = (
+    *_WHO[:2],
+    Column("time_utc", "when the screen was measured", "", "ISO 8601, UTC", "page, its clock"),
+    Column("width_px", "width of the screen", "CSS pixel", "integer", "page"),
+    Column("height_px", "height of the screen", "CSS pixel", "integer", "page"),
+    Column("window_px", "width and height of the window", "CSS pixel", "list of two", "page"),
+    Column("pixel_ratio", "pixels of the device in one CSS pixel", "", "number", "page"),
+    Column("refresh_hz", "refresh rate of the screen", "hertz", "number", "page"),
+    Column("clock_isolated", "whether clocks are fine (5 microseconds)", "", "0, 1", "page"),
+    Column("touch", "whether the screen is touched", "", "0, 1", "page"),
+    Column("px_per_cm", "size of a CSS pixel", "CSS pixel per centimetre", "number", "page"),
+    Column(
+        "px_per_cm_step", "within which it was set", "CSS pixel per centimetre", "number", "page"
+    ),
+    Column("size_method", "how it is known", "", "card, assumed", "page"),
+    Column("size_device", "what it was set with", "", "keyboard, mouse, touch, pen; empty", "page"),
+    Column(
+        "viewing_distance_mm",
+        "distance of the eyes from the screen; known to some 10 %, not better",
+        "millimetre",
+        "number",
+        "page",
+    ),
+    Column("distance_method", "how it is known", "", "told, blind_spot, assumed", "page"),
+    Column("distance_sd_mm", "standard deviation over settings", "millimetre", "number", "page"),
+    Column("distance_settings_mm", "the distance by each setting", "millimetre", "list", "page"),
+    Column("stored", "whether the page could store answers", "", "0, 1", "page"),
+    Column("browser", "what the browser calls itself", "", "text", "page"),
+)
+FRAMES = (
+    Column("answer", "name of the answer, as in the table of trials", "", "text", "page"),
+    Column("frame_times_ms", "time from the first frame to each", "millisecond", "list", "page"),
+)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 import shutil
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import closing
 from itertools import islice
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -19,23 +17,24 @@ from eigenwalker.experiment import store
 from eigenwalker.experiment.columns import (
     COLUMNS,
     FIGURES,
+    FRAMES,
     ODD,
     PAIRS,
     QUESTIONS,
     RATING,
     RIGHT,
+    SCREENS,
+    SESSIONS,
     SETTINGS,
     Column,
 )
 from eigenwalker.experiment.design import Design
 from eigenwalker.experiment.experiment_folder import ANSWERS, VERSIONS, Material
-from eigenwalker.experiment.showings import session_rows
+from eigenwalker.experiment.showings import Row, session_rows
+from eigenwalker.experiment.table_files import write_codebook, write_table
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
-FROM_PAGES = ("response", "response_by", "outcome", "started_utc", "answer", "level", "stimulus")
-"""Columns whose text comes from pages; none may be run as a formula by a spreadsheet."""
-BATCH = 20_000
-"""Rows that are written to Parquet at once."""
+Tables = dict[str, tuple[Column, ...]]
+"""Columns of each table that was written; the table of trials has no name."""
 
 
 def export_experiment(folder: Path, output: Path, *, frames: bool = False) -> list[str]:
@@ -43,35 +42,62 @@ def export_experiment(folder: Path, output: Path, *, frames: bool = False) -> li
 
     Reads only, also while a server writes; the same answers give the same bytes.
     """
+    if output.resolve().is_relative_to(folder.resolve()):
+        raise ValueError(
+            f"{output} lies inside {folder}, where a withdrawal must leave nothing; "
+            "name a folder outside."
+        )
     if output.exists() and any(output.iterdir()) and not (output / DESCRIPTION).exists():
         raise ValueError(f"{output} holds other things; name a new folder.")
     with closing(store.read_only(folder / ANSWERS)) as database:
         database.execute("BEGIN")  # one state of the data for all that is read
-        materials = {
-            row["version"]: Material(folder / VERSIONS / row["version"][:16])
-            for row in store.versions(database)
+        used = store.versions_of_sessions(database)
+        materials = {each: Material(folder / VERSIONS / each[:16]) for each in used}
+        designs = [each.design for each in materials.values()] or [Material(folder).design]
+        place = output / "data" / f"study-{re.sub('[^A-Za-z0-9]', '', designs[0].name)}"
+        place.parent.mkdir(parents=True, exist_ok=True)
+        tables = _tables(designs)
+        rows = {
+            "": _trials(database, materials),
+            "sessions": _sessions(database),
+            "screens": _reports(database, "screen"),
+            "questions": _questions(database),
         }
-        used = {row["version"] for row in store.sessions(database)}
-        designs = [materials[version].design for version in used] or [Material(folder).design]
-        columns = _columns(designs)
-        name = re.sub("[^A-Za-z0-9]", "", designs[0].name)
-        table = output / "data" / f"study-{name}_data.csv"
-        table.parent.mkdir(parents=True, exist_ok=True)
-        written = _write_table(table, _all_rows(database, materials), [c.name for c in columns])
-        if any(design.questions for design in designs):
-            written.append(_write_questions(database, table.parent, name))
-            columns = tuple({c.name: c for c in (*columns, *QUESTIONS)}.values())
-        counts = store.counts(database)
+        written: list[str] = []
+        for name, columns in tables.items():
+            path = _path(place, name)
+            written += write_table(path, rows[name], [column.name for column in columns])
         if frames:
-            written.append(_write_frames(database, output / "data", name))
-    _write_description(output, designs[0], columns, counts)
-    _write_codebook(output / "documentation" / "codebook.csv", columns)
-    for version in sorted(used):
+            tables["frames"] = FRAMES
+            written.append(_write_frames(database, place))
+        counts = store.counts(database)
+    _write_description(output, designs[0], tables, counts)
+    write_codebook(
+        output / "documentation" / "codebook.csv",
+        (
+            (name or "trials", c.name, c.meaning, c.unit, c.values, c.source)
+            for name, columns in tables.items()
+            for c in columns
+        ),
+    )
+    for version, material in materials.items():
         target = output / "materials" / f"version-{version[:16]}"
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copytree(materials[version].folder, target)
+            shutil.copytree(material.folder, target)
     return written
+
+
+def _path(place: Path, table: str) -> Path:
+    """Return the file of a table, under a name that Psych-DS takes."""
+    middle = f"_description-{table}" if table else ""
+    return place.with_name(f"{place.name}{middle}_data.csv")
+
+
+def _tables(designs: list[Design]) -> Tables:
+    asked = any(design.questions for design in designs)
+    found = {"": _columns(designs), "sessions": SESSIONS, "screens": SCREENS}
+    return {**found, "questions": QUESTIONS} if asked else found
 
 
 DESCRIPTION = "dataset_description.json"
@@ -92,112 +118,71 @@ def _columns(designs: list[Design]) -> tuple[Column, ...]:
     return (*COLUMNS, *(column for columns, of in added if of & tasks for column in columns))
 
 
-def _all_rows(database: Any, materials: dict[str, Material]) -> Iterator[dict[str, Any]]:
-    for session in list(store.sessions(database)):
+def _trials(database: sqlite3.Connection, materials: dict[str, Material]) -> Iterator[Row]:
+    for session in store.sessions(database):
         material = materials[session["version"]]
+        trials = store.trials_of(database, session["session"])
         answers = store.answers_of(database, session["session"])
-        yield from session_rows(session, answers, material.design, material.walker_names)
+        whole = {**session, "trials": trials}
+        yield from session_rows(whole, answers, material.design, material.walker_names)
 
 
-def _write_table(path: Path, rows: Iterator[dict[str, Any]], names: list[str]) -> list[str]:
-    """Write rows as CSV, and as Parquet where its library is installed."""
-    parquet = _ParquetTable(path.with_suffix(".parquet"), names)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
-        empty, in_order = dict.fromkeys(names), itemgetter(*names)
-        for row in rows:
-            for name in FROM_PAGES:
-                row[name] = _no_formula(row[name])
-            values = in_order({**empty, **row})
-            writer.writerow(values)
-            parquet.add(values)
-    parquet.close()
-    return [str(path), str(parquet.path)]
-
-
-def _no_formula(value: Any) -> Any:
-    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
-
-
-class _ParquetTable:
-    """A Parquet file that grows by batches of rows."""
-
-    MEASURED = ("_ms", "_deg")
-    NUMBERS = ("level", "setting", "setting_start")
-    WHOLE = (
-        *("observer", "session", "block", "trial", "attempt", "repeated", "interrupted"),
-        *("practice", "test", "simulated", "rating", "page_hidden", "focus_lost"),
-        *("frames_shown", "frames_planned", "frames_dropped", "correct", "catch"),
-    )
-
-    def __init__(self, path: Path, names: list[str]) -> None:
-        self.path, self._names = path, names
-        self._rows: list[Sequence[Any]] = []
-        import pyarrow as pa  # type: ignore[import]
-        import pyarrow.parquet  # type: ignore[import]
-
-        kinds = {
-            **{name: pa.float64() for name in names if name.endswith(self.MEASURED)},
-            **dict.fromkeys(self.NUMBERS, pa.float64()),
-            **dict.fromkeys(self.WHOLE, pa.int64()),
+def _sessions(database: sqlite3.Connection) -> Iterator[Row]:
+    """Yield a row a session: who, when, and to what they agreed."""
+    for session in store.sessions(database):
+        yield {
+            **_who(session),
+            **{name: session[name] for name in ("language", "version", "consent_hash")},
+            "started_utc": session["consent_utc"],
+            "ended_utc": session["ended_utc"],
+            "n_items": store.n_confirmed(database, session["session"]),
+            "n_refused": store.n_refused(database, session["session"]),
         }
-        self._pa = pa
-        self._schema = pa.schema([(name, kinds.get(name, pa.string())) for name in names])
-        self._writer: Any = pyarrow.parquet.ParquetWriter(path, self._schema)
-
-    def add(self, values: Sequence[Any]) -> None:
-        self._rows.append(values)
-        if len(self._rows) >= BATCH:
-            self._flush()
-
-    def _flush(self) -> None:
-        columns = zip(*self._rows, strict=True) if self._rows else [[] for _ in self._names]
-        arrays = [
-            self._pa.array(
-                [
-                    str(v) if v is not None and field.type == self._pa.string() else v
-                    for v in column
-                ],
-                type=field.type,
-            )
-            for column, field in zip(columns, self._schema, strict=True)
-        ]
-        self._writer.write_table(self._pa.Table.from_arrays(arrays, schema=self._schema))
-        self._rows = []
-
-    def close(self) -> None:
-        self._flush()
-        self._writer.close()
 
 
-def _write_questions(database: sqlite3.Connection, folder: Path, name: str) -> str:
-    """Write the answers to questions, one a row; of a question asked again, all of them."""
-    path = folder / f"study-{name}_questions_data.csv"
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([column.name for column in QUESTIONS])
-        for session in list(store.sessions(database)):
-            for item in store.answers_of(database, session["session"]):
-                given = item["content"].get("answers") if item["kind"] == "questions" else None
-                for question, text in (given if isinstance(given, dict) else {}).items():
-                    row = [session["observer"], session["number"], question, text]
-                    writer.writerow([_no_formula(value) for value in row])
-    return str(path)
+def _who(session: Row) -> Row:
+    return {
+        "observer": session["observer"],
+        "session": session["number"],
+        "group": session["group"],
+        "test": int(session["observer_kind"] == "test"),
+        "simulated": int(session["observer_kind"] == "simulated"),
+        "session_outcome": session["outcome"] or "left",
+    }
 
 
-def _write_frames(database: Any, folder: Path, name: str) -> str:
+def _reports(database: sqlite3.Connection, kind: str) -> Iterator[Row]:
+    """Yield what pages reported of one kind, one row a report."""
+    for session in store.sessions(database):
+        for content in store.reports_of(database, session["session"], kind):
+            yield {**content, "observer": session["observer"], "session": session["number"]}
+
+
+def _questions(database: sqlite3.Connection) -> Iterator[Row]:
+    """Yield the answers to questions, one a row; of a question asked again, all of them."""
+    for report in _reports(database, "questions"):
+        given = report.get("answers")
+        for question, text in (given if isinstance(given, dict) else {}).items():
+            yield {**report, "question": question, "question_answer": text}
+
+
+def _write_frames(database: sqlite3.Connection, place: Path) -> str:
     """Write the times of all frames, one list an answer."""
     import pyarrow as pa  # type: ignore[import]
     import pyarrow.parquet as pq  # type: ignore[import]
 
-    path = folder / f"study-{name}_frames.parquet"
+    path = place.with_name(f"{place.name}_frames.parquet")
     schema = pa.schema([("answer", pa.string()), ("frame_times_ms", pa.list_(pa.float64()))])
     with pq.ParquetWriter(path, schema) as writer:
         for rows in _batches(store.frame_times(database), 2000):
-            columns = [[row[name] for row in rows] for name in ("answer", "frame_times")]
+            times = [[t for t in each["frame_times"] if _is_number(t)] for each in rows]
+            columns = [[each["answer"] for each in rows], times]
             writer.write_table(pa.table(columns, schema=schema))
     return str(path)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, float) or (type(value) is int and abs(value) < 2**1000)
 
 
 def _batches(rows: Iterator[dict[str, Any]], size: int) -> Iterator[list[dict[str, Any]]]:
@@ -206,8 +191,9 @@ def _batches(rows: Iterator[dict[str, Any]], size: int) -> Iterator[list[dict[st
 
 
 def _write_description(
-    output: Path, design: Design, columns: tuple[Column, ...], counts: dict[str, Any]
+    output: Path, design: Design, tables: Tables, counts: dict[str, Any]
 ) -> None:
+    columns = {column.name: column for each in reversed(tables.values()) for column in each}
     measured = [
         {
             "@type": "PropertyValue",
@@ -215,7 +201,7 @@ def _write_description(
             "description": column.meaning,
             **({"unitText": column.unit} if column.unit else {}),
         }
-        for column in columns
+        for column in sorted(columns.values(), key=lambda column: column.name)
     ]
     content = {
         "@context": "https://schema.org/",
@@ -231,11 +217,3 @@ def _write_description(
     }
     text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
     (output / DESCRIPTION).write_text(text, encoding="utf-8")
-
-
-def _write_codebook(path: Path, columns: tuple[Column, ...]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["column", "meaning", "unit", "values", "source"])
-        writer.writerows([c.name, c.meaning, c.unit, c.values, c.source] for c in columns)

@@ -455,13 +455,36 @@ def observers(connection: sqlite3.Connection) -> list[Row]:
 
 
 def sessions(connection: sqlite3.Connection) -> Iterator[Row]:
-    """Yield all sessions with group and kind of their observers."""
+    """Yield all sessions with group and kind of their observers, but without their trials."""
     sql = (
-        'SELECT session.*, observer.kind AS observer_kind, "group", place FROM session'
+        "SELECT session, observer, number, version, language, consent_hash, consent_utc, ended_utc,"
+        ' outcome, observer.kind AS observer_kind, "group", place FROM session'
         " JOIN observer USING (observer) ORDER BY observer, number"
     )
     for row in connection.execute(sql):
         yield dict(row)
+
+
+def versions_of_sessions(connection: sqlite3.Connection) -> list[str]:
+    """Return the versions that observers were shown, oldest first."""
+    sql = (
+        "SELECT version FROM version WHERE version IN (SELECT version FROM session) ORDER BY rowid"
+    )
+    return [row["version"] for row in connection.execute(sql)]
+
+
+def trials_of(connection: sqlite3.Connection, session: int) -> str:
+    """Return the trials of a session, as JSON."""
+    sql = "SELECT trials FROM session WHERE session = ?"
+    return connection.execute(sql, (session,)).fetchone()[0]
+
+
+def reports_of(connection: sqlite3.Connection, session: int, kind: str) -> list[Row]:
+    """Return what a session's pages reported of one kind, in the order in which it came."""
+    sql = (
+        "SELECT content FROM answer WHERE session = ? AND kind = ? AND trial IS NULL ORDER BY rowid"
+    )
+    return [json.loads(row["content"]) for row in connection.execute(sql, (session, kind))]
 
 
 def n_dropping(connection: sqlite3.Connection, share: float) -> int:
