@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from io import BytesIO
 from typing import Any
+from zipfile import ZipFile
 
 import httpx
 import pytest
@@ -73,6 +75,51 @@ def test_an_answer_is_confirmed_once_and_another_content_conflicts(
     assert answer.status_code == 409
     assert answer.json()["confirmed"] == ["b" * 22]
     assert answer.json()["refused"][0]["outcome"] == "other content"
+
+
+def test_half_a_character_is_taken_and_no_number_is_refused(
+    client: httpx.Client, begun: tuple[str, int]
+) -> None:
+    key, session = begun
+    start = f'{{"session":{session},"items":[{{"answer":"{"s" * 22}","kind":"answer","content":'
+    for content, status in (
+        ('{"text":"\\ud800"}', 200),
+        ('{"text":"\\ud800"}', 200),
+        ('{"text":"NaN is text"}', 409),
+        ('{"rt":NaN}', 422),
+        ('{"rt":1e999}', 422),
+        ('{"rt":' + "[" * 2000 + "]" * 2000 + "}", 422),
+    ):
+        headers = {"authorization": f"Bearer {key}"}
+        answer = client.post("/api/answers", content=f"{start}{content}}}]}}", headers=headers)
+        assert answer.status_code == status, content
+
+
+def test_the_lab_gets_the_export_as_an_archive(
+    client: httpx.Client, service: Service, begun: tuple[str, int]
+) -> None:
+    key, session = begun
+    asked(client, "answers", key, {"session": session, "items": [item()]})
+    [lab] = service.invite(1, kind="lab")
+    assert f'href="{lab}/data.zip"' in client.get(f"/lab/{lab}").text
+    answer = client.get(f"/lab/{lab}/data.zip", timeout=120)
+    with ZipFile(BytesIO(answer.content)) as archive:
+        rows = archive.read("data/data/study-troje2002_data.csv").decode().splitlines()
+    assert len(rows) == 2
+    assert client.get(f"/lab/{key}/data.zip").status_code == 403
+
+
+def test_stimuli_are_the_same_with_and_without_compression(
+    client: httpx.Client, begun: tuple[str, int]
+) -> None:
+    key, session = begun
+    answers = [
+        asked(client, "stimuli", key, {"session": session}, **{"accept-encoding": coding})
+        for coding in ("gzip", "identity")
+    ]
+    assert [each.headers.get("content-encoding") for each in answers] == ["gzip", None]
+    assert answers[0].json() == answers[1].json()
+    assert len(answers[0].json()) == 12
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -176,6 +177,28 @@ def test_a_database_that_is_not_ours_is_refused_untouched(
     path.write_bytes(before[:3000] + os.urandom(2000))
     with pytest.raises(store.UnusableDatabase, match="damaged"):
         store.connect(path)
+
+
+def test_a_database_of_an_older_version_is_brought_forward_with_all_it_has(tmp_path: Path) -> None:
+    path, fresh = tmp_path / "answers.sqlite", tmp_path / "fresh.sqlite"
+    schema = Path(__file__).with_name("schema_1.sql").read_text(encoding="utf-8")
+    with closing(sqlite3.connect(path, isolation_level=None)) as old:
+        old.executescript(schema)
+        old.execute(f"PRAGMA application_id = {store.APPLICATION_ID}")
+        old.execute("PRAGMA user_version = 1")
+        session(old)
+        content = {"rt_ms": 1.0, "frames_dropped": 9, "frames_shown": 1}
+        store.add_answers(old, 1, [item(**content)], n_trials=1)
+    with AnswerWriter(path) as writer:
+        assert writer.do(lambda db: store.answers_of(db, 1))[0]["content"] == content
+        assert writer.do(lambda db: store.n_dropping(db, 0.5)) == 1
+    store.connect(fresh).close()
+    shapes = []
+    for each in (path, fresh):
+        with closing(sqlite3.connect(each)) as database:
+            shapes.append(set(database.execute("SELECT type, name FROM sqlite_schema")))
+            assert database.execute("PRAGMA user_version").fetchone()[0] == store.VERSION
+    assert shapes[0] == shapes[1]
 
 
 def test_a_full_disk_confirms_nothing_and_is_named(writer: AnswerWriter) -> None:

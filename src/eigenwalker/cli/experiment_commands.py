@@ -289,7 +289,7 @@ class _Pages:
     def __init__(self, service: Service, received: Any) -> None:
         self.welcome, self.start = service.welcome, service.start
         self.stimuli, self.end = service.stimuli, service.end
-        self.lab_page = service.lab_page
+        self.lab_page, self.lab_export = service.lab_page, service.lab_export
         self.page_version, self.page = service.page_version, service.page
         self._submit, self._received = service.submit_answers, received
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from eigenwalker.core.atomic_write import atomic_write
 from eigenwalker.experiment import store
-from eigenwalker.experiment.experiment_folder import ANSWERS, BACKUPS
+from eigenwalker.experiment.experiment_folder import ANSWERS, BACKUPS, STIMULI, VERSIONS
 from eigenwalker.experiment.rescue import FORMAT
 
 HOUR_S = 3600.0
@@ -59,7 +59,9 @@ def hourly_backup(
 
 def forget_in_copies(folder: Path, sessions: list[int]) -> None:
     """Remove what copies inside the folder hold of sessions that were withdrawn."""
-    for path in [*folder.glob("*.json"), *(folder / BACKUPS).glob("*.json")]:
+    for path in folder.rglob("*.json"):
+        if path.relative_to(folder).parts[0] in (STIMULI, VERSIONS):
+            continue
         content = _rescue_file(path)
         if content is not None and content.get("session") in sessions:
             path.unlink()

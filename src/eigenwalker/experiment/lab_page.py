@@ -19,20 +19,22 @@ table {{ border-collapse: collapse; margin: 1rem 0 }}
 caption {{ text-align: start; font-weight: 600 }}
 th, td {{ text-align: start; padding: 4px 16px 4px 0; border-bottom: 1px solid #ccc }}
 .wrong {{ color: #a40000 }}
+.button {{ border: 1px solid; border-radius: 4px; padding: 4px 12px }}
 </style>
 </head>
 <body><main>
 <h1>{name}</h1>
 {trouble}
 {tables}
-<p>The page is read again every 10 s. Answers: <code>eigenwalker experiment export</code>.</p>
+<p><a class="button" href="{export}" download>Export the data</a> as a ZIP archive of tables,
+codebook and materials. The page is read again every 10 s.</p>
 </main></body>
 </html>
 """
 
 
-def lab_page(status: dict[str, Any], trouble: str) -> str:
-    """Return the page, from the numbers of `experiment_status`."""
+def lab_page(status: dict[str, Any], trouble: str, export: str) -> str:
+    """Return the page, from the numbers of `experiment_status`; `export` is where its data are."""
     groups = [
         [name, group["finished_or_under_way"], group["wanted"], _listed(group["sessions"])]
         for name, group in status["groups"].items()
@@ -49,6 +51,7 @@ def lab_page(status: dict[str, Any], trouble: str) -> str:
     sentence = f"Answers cannot be written: {trouble}." if trouble else "Answers are being kept."
     return _PAGE.format(
         name=escape(status["name"]),
+        export=escape(export),
         trouble=f'<p{" class=wrong" if trouble else ""} role="status">{escape(sentence)}</p>',
         tables=_table("Groups", ["group", "finished or under way", "wanted", "sessions"], groups)
         + _table("Counts", ["what", "number"], counts),

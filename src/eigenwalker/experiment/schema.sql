@@ -60,6 +60,9 @@ CREATE TABLE answer (             -- all that pages report: trials begun and ans
     frame_times   TEXT                              -- JSON: ms from the first frame to each
 ) STRICT;
 CREATE INDEX answer_session ON answer (session, trial);
+CREATE INDEX answer_dropping ON answer (session)   -- for the page of the lab
+    WHERE kind = 'answer' AND json_extract(content, '$.frames_dropped') > 0;
+CREATE INDEX answer_screen ON answer (session) WHERE kind = 'screen';
 
 CREATE TABLE refused (            -- what could not be taken, for the lab
     refused       INTEGER PRIMARY KEY,

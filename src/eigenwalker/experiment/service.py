@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import subprocess
+import sys
+import threading
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
 
 from eigenwalker.experiment import store
 from eigenwalker.experiment.answer_writer import AnswerWriter
@@ -25,6 +30,8 @@ from eigenwalker.experiment.stimulus_bundle import Bundle
 Content = dict[str, Any]
 OBSERVERS = ("personal", "open", "preview")
 """Kinds of links that lead to the page of observers."""
+RETRY_S = 5.0
+"""Between attempts to remove the bytes of a withdrawal while an export reads them."""
 FINAL = ("answered", "timeout")
 """Outcomes after which a trial is not shown again."""
 
@@ -55,6 +62,7 @@ class Service:
     _current: tuple[Any, str] = (None, "")
     _n_trials: dict[tuple[str, int], int] = field(default_factory=dict)
     """Of sessions, under the hash of the key that reached them; for the writer's thread alone."""
+    _exporting: threading.Lock = field(default_factory=threading.Lock)
 
     @property
     def material(self) -> Material:
@@ -126,16 +134,40 @@ class Service:
             return sessions, store.withdraw_observer(db, observer)
 
         sessions, n_answers = self.writer.do(delete)
-        self.writer.do(store.remove_bytes, alone=True)
+        self._remove_bytes()
         forget_in_copies(self.folder, sessions)
         return n_answers
+
+    def _remove_bytes(self) -> None:
+        """Remove what deleted rows left in the files: now, or once an export has been read."""
+        try:
+            self.writer.do(store.remove_bytes, alone=True)
+        except BlockingIOError:
+            again = threading.Timer(RETRY_S, self._remove_bytes)
+            again.daemon = True
+            again.start()
 
     # --------------------------------------------------------------------------------- for the lab
 
     def lab_page(self, key: str) -> str:
         """Return the page of the lab, for the key of the lab."""
         self.writer.do(lambda db: self._link(db, key, ["lab"]))
-        return lab_page(experiment_status(self.folder), self.writer.trouble)
+        status = experiment_status(self.folder, check=False)
+        return lab_page(status, self.writer.trouble, f"{key}/data.zip")
+
+    def lab_export(self, key: str, target: Path) -> None:
+        """Write the data as a ZIP archive, in a process of its own: answers are not held up."""
+        self.writer.do(lambda db: self._link(db, key, ["lab"]))
+        with self._exporting, TemporaryDirectory() as place:
+            command = [sys.executable, "-m", "eigenwalker", "experiment", "export"]
+            arguments = [str(self.folder.resolve()), "-o", f"{place}/data"]
+            done = subprocess.run([*command, *arguments], capture_output=True, text=True)
+            if done.returncode:
+                raise ValueError(done.stderr.strip() or "The export failed.")
+            with ZipFile(target, "w", ZIP_DEFLATED) as archive:
+                for path in sorted(Path(place).rglob("*")):
+                    if path.is_file():
+                        archive.write(path, path.relative_to(place))
 
     def rescue(self, content: dict[str, Any]) -> list[str]:
         """Take answers of a file, and say of each what became of it."""

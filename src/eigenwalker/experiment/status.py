@@ -11,10 +11,10 @@ from eigenwalker.experiment import store
 from eigenwalker.experiment.experiment_folder import ANSWERS, Material
 
 
-def experiment_status(folder: Path) -> dict[str, Any]:
-    """Return the progress of an experiment in numbers; reads only."""
+def experiment_status(folder: Path, *, check: bool = True) -> dict[str, Any]:
+    """Return the progress of an experiment in numbers; reads only, and checks the file first."""
     design = Material(folder).design
-    with closing(store.read_only(folder / ANSWERS)) as database:
+    with closing(store.read_only(folder / ANSWERS, check=check)) as database:
         counts = store.counts(database)
         sessions = list(store.sessions(database))
         active = store.active_places(database, design.pace.hold_place_min)

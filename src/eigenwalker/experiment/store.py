@@ -17,8 +17,14 @@ from typing import Any
 from pydantic_core import to_json
 
 APPLICATION_ID = 0x65776578
-VERSION = 1
-MIGRATIONS: dict[int, str] = {}
+VERSION = 2
+MIGRATIONS = {
+    1: """
+        CREATE INDEX answer_dropping ON answer (session)
+            WHERE kind = 'answer' AND json_extract(content, '$.frames_dropped') > 0;
+        CREATE INDEX answer_screen ON answer (session) WHERE kind = 'screen';
+    """
+}
 """Statements that bring a database from that version to the next."""
 MAX_CHECKED = 100_000_000
 """Bytes of a database that is checked whole at each start."""
@@ -62,11 +68,12 @@ def connect(path: Path) -> sqlite3.Connection:
     return connection
 
 
-def read_only(path: Path) -> sqlite3.Connection:
-    """Return a connection that only reads."""
+def read_only(path: Path, *, check: bool = True) -> sqlite3.Connection:
+    """Return a connection that only reads; a file that a server has open needs no check."""
     if not Path(path).exists():
         raise FileNotFoundError(f"{path}: there are no answers yet.")
-    _check(path)
+    if check:
+        _check(path)
     return _open_to_read(path)
 
 
@@ -443,7 +450,7 @@ def remove_bytes(connection: sqlite3.Connection) -> None:
     connection.execute("VACUUM")
     busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
-        raise OSError("The database is being read; withdraw again when the export is over.")
+        raise BlockingIOError("The database is being read.")
 
 
 # ---------------------------------------------------------------------------------------- overview
@@ -490,9 +497,10 @@ def reports_of(connection: sqlite3.Connection, session: int, kind: str) -> list[
 def n_dropping(connection: sqlite3.Connection, share: float) -> int:
     """Return how many trials dropped more than that share of their frames."""
     sql = (
-        "SELECT count(*) FROM answer WHERE kind = 'answer' AND"
-        " json_extract(content, '$.frames_dropped') > ? * (json_extract(content, '$.frames_shown')"
-        " + json_extract(content, '$.frames_dropped'))"
+        "SELECT count(*) FROM answer WHERE kind = 'answer'"
+        " AND json_extract(content, '$.frames_dropped') > 0"
+        " AND json_extract(content, '$.frames_dropped') > ? *"
+        " (json_extract(content, '$.frames_shown') + json_extract(content, '$.frames_dropped'))"
     )
     return connection.execute(sql, (share,)).fetchone()[0]
 

@@ -8,15 +8,19 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import shutil
+import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from functools import lru_cache
+from pathlib import Path
 from typing import Annotated, Any, Literal, Protocol
 
 from fastapi import Depends, FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
-from fastapi.responses import HTMLResponse, JSONResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from starlette.background import BackgroundTask
 from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.routing import request_response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -57,6 +61,7 @@ class Sessions(Protocol):
     async def answers(self, key: str, session: int, items: Sequence[Any]) -> Any: ...  # noqa: D102
     def end(self, key: str, session: int, how: str) -> Any: ...  # noqa: D102
     def lab_page(self, key: str) -> str: ...  # noqa: D102
+    def lab_export(self, key: str, target: Path) -> None: ...  # noqa: D102
     def page_version(self, key: str) -> str | None: ...  # noqa: D102
     def page(self, version: str) -> str | None: ...  # noqa: D102
 
@@ -133,6 +138,7 @@ def session_app(
     ``GET /s/KEY``           the page of the link's version; opening it uses nothing up
     ``GET /v/VERSION``       the same page, for a reload
     ``GET /lab/KEY``         the page of the lab
+    ``GET …/KEY/data.zip``   the export, for the lab
     ``POST /api/welcome``    the texts, and whether a session can begin or is under way
     ``POST /api/start``      begins a session, or goes on
     ``POST /api/stimuli``    all stimuli of a session
@@ -181,6 +187,19 @@ def session_app(
     def show_lab_page(key: str) -> HTMLResponse:
         app.state.rate.count(key[:100])
         return HTMLResponse(sessions.lab_page(key[:100]))
+
+    @app.get("/lab/{key}/data.zip")
+    def export(key: str) -> FileResponse:
+        app.state.rate.count(key[:100])
+        place = tempfile.mkdtemp()
+        path = Path(place) / "data.zip"
+        remove = BackgroundTask(shutil.rmtree, place, ignore_errors=True)
+        try:
+            sessions.lab_export(key[:100], path)
+        except BaseException:
+            shutil.rmtree(place, ignore_errors=True)
+            raise
+        return FileResponse(path, filename="data.zip", background=remove)
 
     @app.post("/api/welcome")
     def welcome(key: KeyOf, body: WelcomeBody) -> Any:
