@@ -58,9 +58,12 @@ def _kind(pa: Any, name: str) -> Any:
 
 def _array(pa: Any, values: list[Any], kind: Any) -> Any:
     """Return a column, in one go where all values are what they should be."""
-    import pyarrow.compute as pc  # type: ignore[import]
+    from pyarrow import compute  # type: ignore[import]
 
+    pc: Any = compute
     try:
+        if kind == pa.int64() and float in set(map(type, values)):
+            raise TypeError("numbers with fractions would be cut")
         array = pa.array(values, kind)
     except (pa.ArrowException, ValueError, TypeError, OverflowError):
         clean = _text if kind == pa.string() else _whole if kind == pa.int64() else _number
