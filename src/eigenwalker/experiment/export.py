@@ -95,9 +95,9 @@ def _path(place: Path, table: str) -> Path:
 
 
 def _tables(designs: list[Design]) -> Tables:
-    asked = any(design.questions for design in designs)
+    has_questions = any(design.questions for design in designs)
     found = {"": _columns(designs), "sessions": SESSIONS, "screens": SCREENS}
-    return {**found, "questions": QUESTIONS} if asked else found
+    return {**found, "questions": QUESTIONS} if has_questions else found
 
 
 DESCRIPTION = "dataset_description.json"
