@@ -446,3 +446,63 @@ def test_zoom_and_leaving_full_screen_are_asked_about(
             answer(page)
     finally:
         started.kill()
+
+
+NEW_TASKS = """
+[[blocks]]
+task = "same_different"
+trials = 2
+practice = true
+feedback = true
+
+[[blocks]]
+task = "odd_one_out"
+trials = 3
+break_every = 2
+
+[[blocks]]
+task = "adjustment"
+trait = "sex"
+steps = 5
+instances = 1
+"""
+
+
+def test_same_or_different_the_odd_one_and_settings_are_answered_by_touch_and_by_keys(
+    browser: Browser, small: Callable[..., Path], run_command: Callable, tmp_path: Path
+) -> None:
+    folder = small("same_different", blank_s="0.05", measure="false", full_screen="false")
+    design = folder / "design.toml"
+    head, _, rest = design.read_text(encoding="utf-8").partition("[[blocks]]")
+    tail = rest[rest.index("[pace]") :]
+    design.write_text(head + NEW_TASKS + tail, encoding="utf-8")
+    with (folder / "texts" / "en.md").open("a", encoding="utf-8") as file:
+        file.write("\n\n# figure\nFigure {number}\n")
+    code, _, problems = run_command("experiment", "stimuli", folder)
+    assert code == 0, problems
+    started = Server(folder)
+    try:
+        with visit(browser, started.link(run_command), has_touch=True) as (_, page):
+            press(page, "I have read this")
+            press(page, "Begin")
+            for _ in range(2):
+                page.get_by_role("button", name="Same (S)").tap()
+                page.locator(".feedback").wait_for()
+            press(page, "Continue")
+            page.get_by_role("button", name="Figure 2").tap()
+            answer(page, "1")
+            press(page, "Continue")  # the break within the block
+            answer(page, "3")
+            press(page, "Continue")
+            page.locator("#trials input:enabled").wait_for()
+            page.locator("#trials input").evaluate("slider => (slider.value = 0)")
+            page.keyboard.press("ArrowRight")
+            page.keyboard.press("Enter")
+            page.get_by_text("every answer has arrived").wait_for()
+    finally:
+        started.kill()
+    found = rows(folder, tmp_path / "data")
+    assert [row["response"] for row in found] == ["same", "same", "1", "0", "2", "-3"]
+    assert [row["response_device"] for row in found] == [*["touch"] * 3, *["keyboard"] * 3]
+    assert {row["correct"] for row in found[:2]} == {"0", "1"}
+    assert float(found[5]["setting"]) == -3
