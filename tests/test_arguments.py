@@ -90,6 +90,20 @@ ANSWERS = pd.DataFrame(
     + [["Ida", *"abce", *pair] for pair in ("ab", "ae", "ce")],
     columns=["observer", *"abcd", "chosen_1", "chosen_2"],
 )
+JUDGED = pd.DataFrame(
+    [(who, w, info) for who in range(6) for w in range(4) for info in ("full", "structure")],
+    columns=["observer", "walker", "info"],
+)
+JUDGED = JUDGED.assign(
+    view=JUDGED["observer"] % 2 * 90,
+    sex=np.where(JUDGED["walker"] % 2, "male", "female"),
+    answer=np.random.default_rng(0).choice(["female", "male"], len(JUDGED)),
+    number=np.random.default_rng(1).normal(size=len(JUDGED)),
+    one=np.random.default_rng(2).integers(0, 2, len(JUDGED)),
+)
+DESIGN = {"dv": "number", "between": "view", "within": "info", "subject": "observer"}
+RESPONSES = {"table": JUDGED, "response": "answer", "truth": "sex", "observer": "observer"}
+ITEMS = {**RESPONSES, "walker": "walker", "within": "info"}
 SHOWN = np.full((4, 10), 10.0)
 CHOSEN = np.tile(np.arange(10.0), (4, 1))
 
@@ -299,6 +313,12 @@ CALLS = {
     },
     "population.match_sign_and_order": lambda: {"walkers": walkers()},
     "population.posture_correlations": lambda: {"postures": numbers(3, 4, 15, 3)},
+    "psychophysics.agreement": lambda: {
+        "table": JUDGED,
+        "rating": "number",
+        "walker": "walker",
+        "observer": "observer",
+    },
     "psychophysics.bootstrap_choices": lambda: {
         "X": numbers(10, 2),
         "trials": trials(),
@@ -318,8 +338,23 @@ CALLS = {
         "y": numbers(10),
         "pairs": PAIRS,
     },
+    "psychophysics.condition_means": lambda: {"table": JUDGED, **DESIGN},
+    "psychophysics.confidence_correlations": lambda: {
+        **ITEMS,
+        "confidence": pd.DataFrame({"size": [1.0, 3, 2, 4]}),
+    },
     "psychophysics.count_pairs": lambda: {"answers": ANSWERS},
+    "psychophysics.crossed_logistic": lambda: {
+        "table": JUDGED,
+        "response": "one",
+        "fixed": "info",
+        "observer": "observer",
+        "walker": "walker",
+    },
+    "psychophysics.difference_table": lambda: {"answers": ANSWERS},
+    "psychophysics.error_rates": lambda: {**RESPONSES, "within": "info"},
     "psychophysics.expected_differences": lambda: {"distances": numbers(10), "trials": trials()},
+    "psychophysics.fit_choice_model": lambda: {"answers": ANSWERS},
     "psychophysics.fit_choices": lambda: {
         "X": numbers(10, 2),
         "trials": trials(),
@@ -334,25 +369,45 @@ CALLS = {
     "psychophysics.goodness": lambda: {"observed": numbers(5), "predicted": numbers(5)},
     "psychophysics.left_out_differences": lambda: {"X": numbers(10, 2), "trials": trials()},
     "psychophysics.map_of_walks": lambda: {"table": DISTANCES},
+    "psychophysics.mixed_anova": lambda: {"table": JUDGED, **DESIGN},
     "psychophysics.non_negative_fit": lambda: {
         "X": numbers(10, 2),
         "y": numbers(10),
         "sample_weight": np.ones(10),
     },
     "psychophysics.order_of_walks": lambda: {"table": DISTANCES},
+    "psychophysics.paired_t": lambda: {
+        "table": JUDGED,
+        "dv": "number",
+        "within": "info",
+        "subject": "observer",
+        "first": "full",
+        "second": "structure",
+    },
+    "psychophysics.psychometric": lambda: {
+        "table": JUDGED,
+        "level": "number",
+        "response": "one",
+        "observer": "observer",
+    },
+    "psychophysics.rank_correlation": lambda: {"x": numbers(6), "y": numbers(6)[::-1]},
     "psychophysics.read_trials": lambda: {"answers": ANSWERS},
     "psychophysics.save_weights": lambda: {
         "weights": pd.DataFrame({"weight": [1.0]}, index=["head"]),
         "path": "{folder}/weights.csv",
         "metric": "kovar",
     },
+    "psychophysics.scheffe": lambda: {"table": JUDGED, **DESIGN},
     "psychophysics.search_shape": lambda: {
         "columns": lambda n: numbers(10, 2) ** n,
         "y": numbers(10),
         "bounds": (0.1, 2),
         "n_grid": 3,
     },
+    "psychophysics.sensitivity": lambda: RESPONSES,
     "psychophysics.split_half": lambda: {"chosen": CHOSEN, "shown": SHOWN, "n_splits": 3},
+    "psychophysics.triangle_inequalities": lambda: {"table": DISTANCES},
+    "psychophysics.walker_errors": lambda: ITEMS,
     "quality.assess": lambda: {"trajectories": walk()},
     "simulation.add_effect": lambda: {
         "walk": walk(),

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from eigenwalker.core.arguments import check_numbers
 from eigenwalker.psychophysics.trials import Trials, count_pairs
@@ -82,7 +83,7 @@ class TriangleInequalities(NamedTuple):
     """Triples whose three pairs were all shown."""
 
 
-def triangle_inequalities(table: pd.DataFrame) -> TriangleInequalities:
+def triangle_inequalities(table: ArrayLike) -> TriangleInequalities:
     """Return how many triangle inequalities hold in a table of differences.
 
     Over all triples i < j < k and their three inequalities, such as T_ij <= T_ik + T_kj. Triples
@@ -90,7 +91,7 @@ def triangle_inequalities(table: pd.DataFrame) -> TriangleInequalities:
 
     Parameters
     ----------
-    table : DataFrame or array of shape (walker, walker)
+    table : array of shape (walker, walker)
         Differences, symmetric.
 
     Returns
