@@ -276,6 +276,7 @@ CALLS = {
     },
     "plotting.figure_eigenpostures": lambda: {"walker": walkers()[0]},
     "plotting.figure_joints": lambda: {"walker": walkers()[0]},
+    "plotting.figure_parameters": lambda: {"values": {"m": numbers(4)}},
     "plotting.figure_scores": lambda: {"walk": walk(), "walker": walkers()[1]},
     "plotting.figure_space": lambda: {
         "space": space(),

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from eigenwalker.core.arguments import check_kind
+from eigenwalker.core.arguments import check_kind, check_numbers
 from eigenwalker.plotting.style import CLASSES, INK, SMALL, head_line, new_figure, panels
 
 _REACH = 0.22
@@ -42,7 +42,10 @@ def figure_parameters(values: Mapping[str, ArrayLike], *, groups: Sequence[str] 
     ['man', 'woman']
     """
     check_kind(values, Mapping, "parameters by title")
-    columns = {title: np.asarray(column, dtype=float) for title, column in values.items()}
+    columns = {
+        title: check_numbers(column, f"the values of {title}", "walk", missing=True)
+        for title, column in values.items()
+    }
     lengths = {len(column) for column in columns.values()} | ({len(groups)} if groups else set())
     if len(lengths) != 1:
         raise ValueError(

@@ -72,12 +72,7 @@ ProvenanceText = Annotated[str, Field(strict=True, max_length=2000)]
 
 @dataclass(frozen=True, kw_only=True)
 class View(KnownNames):
-    """From where a stimulus is seen; see `project`. The centre is in the middle of the picture.
-
-    See Also
-    --------
-    eigenwalker.Stimulus : Has one.
-    """
+    """From where a stimulus is seen; see `project`. The centre is in the middle of the picture."""
 
     view_deg: Annotated[Degrees, about("0 is the front, 90 in profile to the right")] = 0.0
     elevation_deg: Annotated[Degrees, about("of the observer above the horizontal")] = 0.0
@@ -95,12 +90,7 @@ class View(KnownNames):
 
 @dataclass(frozen=True, kw_only=True)
 class Timing(KnownNames):
-    """How long a stimulus is shown, and the frames a second of films and tables of it.
-
-    See Also
-    --------
-    eigenwalker.Stimulus : Has one.
-    """
+    """How long a stimulus is shown, and the frames a second of films and tables of it."""
 
     duration_s: Annotated[float, Field(strict=True, gt=0, le=3600), about("how long it is shown")]
     rate_hz: Annotated[
@@ -110,12 +100,7 @@ class Timing(KnownNames):
 
 @dataclass(frozen=True, kw_only=True)
 class Display(KnownNames):
-    """How a stimulus is drawn, and before what screen its observer sits.
-
-    See Also
-    --------
-    eigenwalker.make_stimulus : Takes one.
-    """
+    """How a stimulus is drawn, and before what screen its observer sits."""
 
     width_px: Annotated[Pixels, about("of the picture")] = 512
     height_px: Annotated[Pixels, about("of the picture")] = 512
