@@ -106,3 +106,6 @@ def test_no_cell_is_a_formula(tmp_path) -> None:
     table = pd.DataFrame({"x": [-1.5, 2.0], "name": ["=1+1", "a=b"]}, index=["@a", "-b"])
     content = write_table(table, tmp_path / "a.csv").read_text().splitlines()
     assert content == [",x,name", "'@a,-1.5,'=1+1", "'-b,2.0,a=b"]
+    numbers = pd.DataFrame({"setting": ["-3", "+1.5e3", "-3+1"]})
+    content = write_table(numbers, tmp_path / "b.csv", index=False).read_text().split()
+    assert content == ["setting", "-3", "+1.5e3", "'-3+1"]

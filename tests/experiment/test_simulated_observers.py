@@ -28,7 +28,7 @@ def simulated(small: Callable[..., Path], tmp_path: Path) -> Callable[..., Table
         with AnswerWriter(folder / ANSWERS) as writer:
             Service(folder, writer).simulate(number, seed=1, model={"missed": 0.0, **model})
         export_experiment(folder, tmp_path / "data")
-        [path] = (tmp_path / "data").glob("data/*.csv")
+        path = min((tmp_path / "data").glob("data/*_data.csv"))  # others are study-..._description
         with (folder / "simulated_truth.csv").open(encoding="utf-8") as file:
             rows = csv.DictReader(file)
             truth = {(row["name"], row["of"]): float(row["value"]) for row in rows}

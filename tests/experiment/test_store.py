@@ -130,6 +130,28 @@ def test_groups_stay_balanced_when_many_arrive_at_once_and_some_leave(tmp_path: 
         assert again.count(None) == 3
 
 
+@pytest.mark.parametrize(
+    ("ended", "sessions", "held"),
+    [("2000", 1, True), ("2000", 3, False), ("now", 3, True)],
+)
+def test_who_does_not_come_back_for_the_next_session_gives_the_place_back(
+    tmp_path: Path, ended: str, sessions: int, held: bool
+) -> None:
+    def finish(db: sqlite3.Connection) -> None:
+        number = session(db)
+        store.put_into_group(db, store.observers(db)[-1]["observer"], {"only": 1}, 60)
+        when = store.utc_now() if ended == "now" else ended
+        db.execute(
+            "UPDATE session SET outcome = 'finished', ended_utc = ? WHERE session = ?",
+            (when, number),
+        )
+
+    with AnswerWriter(tmp_path / "answers.sqlite") as writer:
+        writer.do(finish)
+        active = writer.do(lambda db: store.active_places(db, 60, sessions, 24))
+    assert len(active) == held
+
+
 def test_tests_and_simulated_observers_take_no_place(tmp_path: Path) -> None:
     with AnswerWriter(tmp_path / "answers.sqlite") as writer:
         for kind in ("test", "simulated", "real"):

@@ -35,7 +35,10 @@ def new(
     folder: Folder,
     design: Annotated[
         str,
-        option("troje2002, wdp2002, prazak2010, caricature, manipulation:NAME, or a file (.toml)."),
+        option(
+            "troje2002, wdp2002, prazak2010, caricature, manipulation:NAME, detection, "
+            "same_different, odd_one_out, adjustment, or a file (.toml)."
+        ),
     ] = "troje2002",
     population: Annotated[
         Path | None, option("Population file (.nc); left out, the built-in one.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Collection, Generator
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """How a cell begins that a spreadsheet takes for a formula."""
+_NUMBER = re.compile(r"[+-]\d+([.,]\d+)?([eE][+-]?\d+)?")
 
 
 @contextmanager
@@ -69,4 +71,6 @@ def write_table(table: pd.DataFrame, path: Path, **options: Any) -> Path:
 
 
 def _no_formula(value: Any) -> Any:
-    return f"'{value}" if isinstance(value, str) and value.startswith(_FORMULA) else value
+    """Return a cell that no spreadsheet takes for a formula; a number stays one."""
+    formula = isinstance(value, str) and value.startswith(_FORMULA)
+    return f"'{value}" if formula and not _NUMBER.fullmatch(value) else value

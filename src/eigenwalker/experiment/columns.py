@@ -133,7 +133,7 @@ PAIRS = (
     Column("chosen_1", "one walker of the chosen pair", "", "names; empty", "page"),
     Column("chosen_2", "the other walker of the chosen pair", "", "names; empty", "page"),
 )
-ODD = (Column("chosen", "the walker that was chosen as the odd one", "", "names; empty", "page"),)
+ODD = (Column("odd", "the walker that was chosen as the odd one", "", "names; empty", "page"),)
 SETTINGS = (
     Column(
         "setting",

@@ -345,6 +345,11 @@ class Design(Part):
         """Sessions of one observer."""
         return max(len(self.sessions.views_deg), 1)
 
+    @property
+    def places_held(self) -> tuple[float, int, float]:
+        """For `active_places`: minutes that a place is held, sessions, hours until the next one."""
+        return self.pace.hold_place_min, self.n_sessions, self.sessions.most_hours
+
     def group(self, name: str) -> Group:
         """Return the group of that name."""
         return next(group for group in self.groups if group.name == name)

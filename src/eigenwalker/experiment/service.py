@@ -300,7 +300,7 @@ class Service:
         group, place = who["group"], who["place"]
         if group is None or not begun:
             limits = {each.name: each.observers for each in design.groups}
-            found = store.put_into_group(db, observer, limits, design.pace.hold_place_min)
+            found = store.put_into_group(db, observer, limits, *design.places_held)
             if found is None:
                 raise Closed("closed")
             group, place = found

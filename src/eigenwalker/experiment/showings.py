@@ -121,7 +121,7 @@ def _row(
         shown = [names[walker] for walker in trial["walkers"]]
         row |= dict(zip("abcd", shown, strict=False))
         chosen = [shown[place] for place in _places(response, len(shown))]
-        columns = ("chosen_1", "chosen_2") if trial["task"] == "similar_pair" else ("chosen",)
+        columns = ("chosen_1", "chosen_2") if trial["task"] == "similar_pair" else ("odd",)
         row |= dict(zip(columns, chosen, strict=False))
     return row
 

@@ -56,7 +56,7 @@ def _one_observer(
     design = material.design
     observer = store.add_observer(db, "simulated")
     limits = {each.name: each.observers for each in design.groups}
-    found = store.put_into_group(db, observer, limits, design.pace.hold_place_min)
+    found = store.put_into_group(db, observer, limits, *design.places_held)
     assert found is not None
     truth = model.draw(observer, rng)
     for session in range(design.n_sessions):

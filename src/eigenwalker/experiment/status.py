@@ -17,7 +17,7 @@ def experiment_status(folder: Path, *, check: bool = True) -> dict[str, Any]:
     with closing(store.read_only(folder / ANSWERS, check=check)) as database:
         counts = store.counts(database)
         sessions = list(store.sessions(database))
-        active = store.active_places(database, design.pace.hold_place_min)
+        active = store.active_places(database, *design.places_held)
         quality = {
             "dropped_frames": store.n_dropping(database, design.screen.flag_dropped_share),
             "not_stored": store.n_not_stored(database),

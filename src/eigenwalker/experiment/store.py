@@ -216,18 +216,39 @@ _ACTIVE = """
     WHERE kind = 'real' AND withdrawn_utc IS NULL AND "group" IS NOT NULL
     AND EXISTS (SELECT 1 FROM session JOIN presence USING (session)
                 WHERE session.observer = observer.observer
-                AND (outcome = 'finished' OR (outcome IS NULL AND seen_utc > ?)))
+                AND number = (SELECT max(number) FROM session AS any_of
+                              WHERE any_of.observer = observer.observer)
+                AND (outcome IS NULL AND seen_utc > ?
+                     OR outcome = 'finished' AND (number >= ? OR ended_utc > ?)))
 """
 
 
-def active_places(connection: sqlite3.Connection, hold_place_min: float) -> list[Row]:
-    """Return group and place of all real observers who finished or are under way."""
-    since = datetime.now(UTC) - timedelta(minutes=hold_place_min)
-    return rows(connection, _ACTIVE, since.isoformat(timespec="milliseconds")[:23] + "Z")
+def active_places(
+    connection: sqlite3.Connection,
+    hold_place_min: float,
+    n_sessions: int = 1,
+    most_hours: float = 0.0,
+) -> list[Row]:
+    """Return group and place of all real observers who finished or are under way.
+
+    Between their sessions observers are under way until the next may no longer begin.
+    """
+
+    def before_now(minutes: float) -> str:
+        moment = datetime.now(UTC) - timedelta(minutes=minutes)
+        return moment.isoformat(timespec="milliseconds")[:23] + "Z"
+
+    values = (before_now(hold_place_min), n_sessions, before_now(60 * most_hours))
+    return rows(connection, _ACTIVE, *values)
 
 
 def put_into_group(
-    connection: sqlite3.Connection, observer: int, limits: Mapping[str, int], hold_place_min: float
+    connection: sqlite3.Connection,
+    observer: int,
+    limits: Mapping[str, int],
+    hold_place_min: float,
+    n_sessions: int = 1,
+    most_hours: float = 0.0,
 ) -> tuple[str, int] | None:
     """Put an observer into the group with the fewest, and return it; none where all are full.
 
@@ -237,7 +258,7 @@ def put_into_group(
         "SELECT kind FROM observer WHERE observer = ?", (observer,)
     ).fetchone()[0]
     if kind == "real":
-        taken = active_places(connection, hold_place_min)
+        taken = active_places(connection, hold_place_min, n_sessions, most_hours)
     else:
         sql = 'SELECT "group", place FROM observer WHERE kind = ? AND "group" IS NOT NULL'
         taken = rows(connection, sql, kind)

@@ -24,6 +24,7 @@ WHOLE = (
 )
 TEXTS = ("distance_settings_mm",)
 _FORMULA = r"^[=+\-@\t\r]"
+_A_NUMBER = r"^[+-]\d+(\.\d+)?([eE][+-]?\d+)?$"
 
 
 def write_table(path: Path, rows: Iterable[Mapping[str, Any]], names: Sequence[str]) -> list[str]:
@@ -70,7 +71,9 @@ def _array(pa: Any, values: list[Any], kind: Any) -> Any:
         array = pa.array([None if value is None else clean(value) for value in values], kind)
     if kind != pa.string():
         return array
-    formulas = pc.match_substring_regex(array, _FORMULA)
+    formulas = pc.and_not(
+        pc.match_substring_regex(array, _FORMULA), pc.match_substring_regex(array, _A_NUMBER)
+    )
     if not pc.any(formulas).as_py():
         return array
     return pc.if_else(formulas, pc.binary_join_element_wise("'", array, ""), array)
