@@ -25,7 +25,7 @@ small = {"duration_s": 2.38, "rate_hz": 25, "size_px": (128, 128)}
 shown = make_stimulus(average, **small)
 """
 """What the lines of all rows begin with; it stands in the page."""
-COMMAND = "eigenwalker stimulus --duration 2.38 --rate 25 --size 128x128 {} -o {}"
+OPTIONS = {"--duration": "2.38", "--rate": "25", "--size": "128x128"}
 TITLES = {
     "body": "The body",
     "time": "Time",
@@ -366,7 +366,7 @@ def page() -> str:
             "and `.mp4` or `.gif` in place of `.json` a film. The options do the same, as in",
             "",
             "```sh",
-            COMMAND.format("--invert", "invert.gif"),
+            command("--invert", "invert.gif"),
             "```",
             "",
             "`python docs/draw_gallery.py` makes the pictures and this page.",
@@ -375,6 +375,12 @@ def page() -> str:
             PAPERS,
         ]
     ).replace("\n\n\n", "\n\n")
+
+
+def command(options: str, output: str) -> str:
+    """Return the command of a row, whose options stand in place of those of all rows."""
+    usual = [f"{name} {value}" for name, value in OPTIONS.items() if name not in options.split()]
+    return " ".join(["eigenwalker stimulus", *usual, options, "-o", output])
 
 
 def _section(section: str) -> Iterable[str]:

@@ -61,7 +61,7 @@ def test_each_line_runs_and_shows_dots_in_the_picture(row, names):
 )
 def test_the_options_make_the_same_stimulus_as_the_line(row, names, tmp_path, run_command):
     path = tmp_path / "stim.json"
-    code, _, errors = run_command(*shlex.split(gallery.COMMAND.format(row.options, path))[1:])
+    code, _, errors = run_command(*shlex.split(gallery.command(row.options, str(path)))[1:])
     assert code == 0, errors
     typed, line = Stimulus.load(path), gallery.made(row, names)
     for part in ("transforms", "view", "timing"):

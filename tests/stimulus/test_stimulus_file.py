@@ -238,7 +238,7 @@ def test_any_value_anywhere_is_taken_or_refused(data, value):
 def test_unknown_transforms_and_parts_name_what_is_known(plain):
     with pytest.raises(ValueError, match=r"there are.*invert"):
         plain.then("upside_down")
-    with pytest.raises(ValueError, match="tail.*there are head"):
+    with pytest.raises(ValueError, match=r"tail.*there are head"):
         plain.then("occlude", parts="tail")
     with pytest.raises(ValueError, match="speed of this figure is not known"):
         make_stimulus(hop()).then("overground")

@@ -81,14 +81,14 @@ def check(
     seeds: Annotated[
         int, typer.Option(help="How many seeds to draw all orders of.", min=1, max=100_000)
     ] = 1,
-    order: Annotated[
+    output: Annotated[
         Path | None, option("File (.csv) for the trials of all observers.", "-o", "--output")
     ] = None,
 ) -> None:
     """Say all that can be known before anyone is invited: faults, order, balance, length."""
     from eigenwalker.experiment.check import check_experiment
 
-    print(check_experiment(_checked_folder(folder), n_seeds=seeds, order=order))
+    print(check_experiment(_checked_folder(folder), n_seeds=seeds, order=output))
 
 
 @experiment.command()

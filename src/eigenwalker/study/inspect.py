@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from contextlib import suppress
 from pathlib import Path
@@ -89,7 +90,8 @@ def file_facts(path: Path, **reading: Any) -> dict[str, object]:
 
 def _published(path: Path) -> Population | None:
     """Return the walkers of a publication in a file (BML tables, Moler's walkers.mat), if any."""
-    if not path.is_file() or path.suffix.lower() not in (".json", ".mat"):
+    is_there = os.path.isfile(path)  # False, without an error, of names that are too long
+    if path.suffix.lower() not in (".json", ".mat") or not is_there:
         return None
     if path.suffix.lower() == ".json" and not looks_like_bml(path):
         return None
