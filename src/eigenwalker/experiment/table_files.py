@@ -104,15 +104,17 @@ def _write_csv(table: Any, file: Any) -> None:
     import pyarrow as pa  # type: ignore[import]
     import pyarrow.csv as pacsv  # type: ignore[import]
 
-    for style in ("none", "needed"):
-        options = pacsv.WriteOptions(include_header=False, quoting_style=style)
+    def written(style: str) -> Any:
         buffer = pa.BufferOutputStream()
-        try:
-            pacsv.write_csv(table, buffer, options)
-        except pa.ArrowInvalid:
-            continue
-        file.write(buffer.getvalue())
-        return
+        options = pacsv.WriteOptions(include_header=False, quoting_style=style)
+        pacsv.write_csv(table, buffer, options)
+        return buffer.getvalue()
+
+    try:
+        rows = written("none")  # refuses what needs quotes
+    except pa.ArrowInvalid:
+        rows = written("needed")
+    file.write(rows)
 
 
 def write_codebook(path: Path, lines: Iterable[Sequence[str]]) -> None:

@@ -171,8 +171,7 @@ def strata_of(taken: pd.DataFrame, *, between: str, within: str) -> Strata:
     if means.shape[1] < 2:
         raise ValueError(
             f"All observations are at one level, {written(means.columns[0])}, of {within!r}; "
-            "expected two "
-            "levels or more."
+            "expected two levels or more."
         )
     group = groups_of(taken, means.index, between)
     codes = pd.Categorical(group, categories=levels_of(group)).codes
